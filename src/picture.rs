@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
+use crate::recovery::Work;
 use crate::render::Capture;
-use crate::settings::Settings;
-pub use look::{read_look, read_settings};
+pub use look::{Look, ReadError, read_checked_look, read_look};
 use part::PartFile;
 pub use part::{Halt, remove_unfinished};
 
@@ -26,13 +26,13 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
     format_of(path).map(|_| ())
 }
 
-/// Writes a frame as [`numbered`], with its settings. Returns the path.
+/// Writes a frame as [`numbered`], with what made it. Returns the path.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_numbered(capture: &Capture, settings: &Settings) -> Result<PathBuf, String> {
+pub fn write_numbered(capture: &Capture, work: &Work) -> Result<PathBuf, String> {
     let path = numbered();
-    write(capture, settings, &path).map(|()| path)
+    write(capture, work, &path).map(|()| path)
 }
 
 /// `specula-N.png` with the first free number, in the working directory.
@@ -75,15 +75,15 @@ pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     out.with_extension(format!("{}.{ending}", slug.replace(':', "-")))
 }
 
-/// Writes a capture to a file, as [`write_image`] does: 8-bit color and the settings that made it to a PNG, the raw values to an
-/// EXR.
+/// Writes a capture to a file, as [`write_image`] does: 8-bit color, and the settings and files that made it, to a PNG, the raw values
+/// to an EXR.
 ///
 /// # Errors
 /// As [`write_image`].
-pub fn write(capture: &Capture, settings: &Settings, path: &Path) -> Result<(), String> {
+pub fn write(capture: &Capture, work: &Work, path: &Path) -> Result<(), String> {
     let cannot = |why: String| format!("cannot write {}: {why}", path.display());
     if format_of(path)? == ImageFormat::Png {
-        let bytes = look::encode(capture, settings).map_err(cannot)?;
+        let bytes = look::encode(capture, work, path.parent().unwrap_or(Path::new(""))).map_err(cannot)?;
         return write_bytes(&bytes, path).map_err(|e| cannot(e.to_string()));
     }
     let floats = capture.raw.iter().flatten().copied().collect();

@@ -1,6 +1,7 @@
 //! Several modes side by side in the picture: which modes, and where each lies.
 
 use super::screen::PictureRect;
+use crate::shader::{Mode, PATHS_STAGE};
 
 /// Most modes at once.
 const MOST: usize = 9;
@@ -44,6 +45,30 @@ impl Grid {
             self.modes.clear();
         }
         true
+    }
+
+    /// Whether a mode can be one of several: it takes one frame.
+    pub(super) fn can_show(mode: &Mode) -> bool {
+        mode.stage != PATHS_STAGE && !mode.accumulate
+    }
+
+    /// Shows these modes, by their slugs; fewer than two end the grid.
+    ///
+    /// # Errors
+    /// A message if there are too many.
+    pub(super) fn show(&mut self, mut modes: Vec<String>) -> Result<(), String> {
+        let mut seen = Vec::new();
+        modes.retain(|mode| {
+            !seen.contains(mode) && {
+                seen.push(mode.clone());
+                true
+            }
+        });
+        if modes.len() > MOST {
+            return Err(format!("{} modes do not fit side by side; at most {MOST} do", modes.len()));
+        }
+        self.modes = if modes.len() > 1 { modes } else { Vec::new() };
+        Ok(())
     }
 
     /// Shows one mode alone.

@@ -188,13 +188,16 @@ fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
     let Some(view) = screen.camera_view() else { return false };
     let settings = &mut viewer.session.settings;
     let (mouse, camera) = (&screen.mouse, &mut settings.camera);
-    if mouse.left && mouse.modifiers.alt_key() {
+    let modifiers = mouse.modifiers;
+    let turns = mouse.middle && !modifiers.shift_key()
+        || mouse.left && !modifiers.control_key() && (modifiers.alt_key() || modifiers.shift_key());
+    if turns {
         // A height of the picture is half a turn.
         let rotation = &mut settings.environment.rotation;
         *rotation = (*rotation + 180.0 * delta.x + 180.0).rem_euclid(360.0) - 180.0;
         return true;
     }
-    let pans = mouse.middle || (mouse.left && mouse.modifiers.shift_key());
+    let pans = mouse.middle || (mouse.left && modifiers.control_key());
     match (pans, mouse.left, mouse.right) {
         (true, _, _) => CameraController::pan(camera, &view, delta),
         (_, true, _) => CameraController::orbit(camera, &view, delta),

@@ -63,7 +63,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_shader(&mut args.model);
+    args.common.take_files(&mut args.model)?;
     let gpu = args.common.gpu_without_pipelines()?;
     let compiler = compiler()?;
     compiler.warm();

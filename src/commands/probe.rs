@@ -52,7 +52,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args) -> Result<(), Failure> {
-    args.common.take_shader(&mut args.model);
+    args.common.take_files(&mut args.model)?;
     let mut slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
     let (width, height) = args.common.size;

@@ -16,7 +16,7 @@ const fn row(command: &'static str, takes: &'static str, doc: &'static str) -> D
 }
 
 /// All commands.
-pub const COMMANDS: [Described; 25] = [
+pub const COMMANDS: [Described; 28] = [
     row(
         "set",
         r#""values": "path=value" | ["path=value", ...] | {"path": value}"#,
@@ -55,6 +55,22 @@ pub const COMMANDS: [Described; 25] = [
         "versions",
         r#""show"?: number | "newest", "write"?: number"#,
         "Versions of the shaders since the start; show puts one in place of the newest until a file is saved, write puts it into the files",
+    ),
+    row(
+        "grid",
+        r#""modes": ["final", "d", "f"]"#,
+        "Shows up to nine modes side by side; the selected mode becomes one of them. An empty list shows it alone. Result: modes",
+    ),
+    row(
+        "pick",
+        r#""at"?: [x,y]"#,
+        "Does what a click on a pixel of the picture does: pins it for the inspector and selects what it shows. Without `at` it takes \
+         both back. Result: instance, node, primitive, material",
+    ),
+    row(
+        "write-defaults",
+        r#""names"?: ["Rim", ...]"#,
+        "Writes the values of these parameters, or of all, into the GLSL as their defaults. Does not ask. Result: edits",
     ),
     row("undo", "", "Takes the last change of a setting back"),
     row("redo", "", "Takes the last undo back"),

@@ -23,6 +23,12 @@ pub enum Request {
     Reload,
     Open(Open),
     Compare(Compare),
+    /// Slugs of the modes to show side by side; fewer than two end that.
+    Grid(Vec<String>),
+    /// A pixel of the picture to click, or none to take the last click back.
+    Pick(Option<[u32; 2]>),
+    /// Names of the parameters whose values become the defaults in the files; empty for all.
+    WriteDefaults(Vec<String>),
     /// The number of the version to write to the files, if any.
     Versions(VersionsRequest),
     Undo,
@@ -105,6 +111,27 @@ pub struct Compare {
     pub file: Option<PathBuf>,
     pub tree: Option<PathBuf>,
     pub wipe: Option<f32>,
+}
+
+/// Fields of `grid`.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Grid {
+    modes: Vec<String>,
+}
+
+/// Fields of `pick`.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Pick {
+    at: Option<[u32; 2]>,
+}
+
+/// Fields of `write-defaults`.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct WriteDefaults {
+    names: Vec<String>,
 }
 
 /// Fields of `playback`.
@@ -214,6 +241,9 @@ fn request(command: &str, mut fields: Map<String, Value>) -> Result<Request, Str
         "reload" => nothing(Request::Reload, fields)?,
         "open" => Request::Open(open(&fields)?),
         "compare" => Request::Compare(of(command, fields, &[])?),
+        "grid" => Request::Grid(of::<Grid>(command, fields, &["modes"])?.modes),
+        "pick" => Request::Pick(of::<Pick>(command, fields, &[])?.at),
+        "write-defaults" => Request::WriteDefaults(of::<WriteDefaults>(command, fields, &[])?.names),
         "versions" => {
             let mut take = |field: &str| fields.remove(field).filter(|value| !value.is_null());
             let number = |field: &str, value: Value| {

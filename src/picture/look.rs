@@ -1,24 +1,97 @@
-//! The settings of a picture in its PNG file: a text chunk with the keyword `specula` holds them as a look file does.
+//! What a picture shows, in its PNG file: a text chunk with the keyword `specula` holds the settings as a look file does, and one with
+//! the keyword `specula-files` the model, the shader tree and other files, with paths from the picture's folder.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{BufReader, Cursor};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
+use crate::recovery::Work;
 use crate::render::Capture;
-use crate::settings::Settings;
+use crate::scene::BUILT_IN;
+use crate::settings::{LookError, Settings};
 
-/// Keyword of the chunk.
-const KEYWORD: &str = "specula";
+/// Keyword of the chunk of settings.
+const SETTINGS: &str = "specula";
+/// Keyword of the chunk of files.
+const FILES: &str = "specula-files";
 
-/// The bytes of a PNG file with a picture and its settings.
-pub(super) fn encode(capture: &Capture, settings: &Settings) -> Result<Vec<u8>, String> {
+/// What a look file or a picture says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// The settings. Their files are where the picture found them.
+    pub settings: Settings,
+    /// The model's file, or the name of a built-in one. `None`: the file does not say.
+    pub model: Option<PathBuf>,
+    /// The shader tree. `None`: the built-in one, or the file does not say.
+    pub shaders: Option<PathBuf>,
+}
+
+/// Why a look was not read.
+#[derive(Debug)]
+pub enum ReadError {
+    /// The file cannot be read, or is a PNG without settings. The message names it.
+    File(String),
+    /// Its text is no look.
+    Text(LookError),
+}
+
+/// The files behind a picture.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+struct Files {
+    model: Option<PathBuf>,
+    shaders: Option<PathBuf>,
+    environment: Option<PathBuf>,
+    measured: Option<PathBuf>,
+}
+
+impl Files {
+    /// The files of a picture that is written to `folder`.
+    fn of(work: &Work, folder: &Path) -> Self {
+        let is_built_in = |path: &Path| BUILT_IN.iter().any(|name| Path::new(name) == path);
+        let place = |path: &Path| path.exists().then(|| from_folder(path, folder));
+        let model = work.model.clone().unwrap_or_else(|| BUILT_IN[0].into());
+        Self {
+            model: if is_built_in(&model) { Some(model) } else { place(&model) },
+            shaders: work.tree.as_deref().and_then(place),
+            environment: place(Path::new(&work.settings.environment.name)),
+            measured: place(Path::new(&work.settings.measured)),
+        }
+    }
+
+    /// The look of these files, seen from the picture's folder.
+    fn look(self, mut settings: Settings, folder: &Path) -> Look {
+        let there = |path: PathBuf| Some(folder.join(path)).filter(|path| path.exists());
+        let put = |name: &mut String, path: Option<PathBuf>| {
+            if let Some(path) = path.and_then(there) {
+                *name = path.display().to_string();
+            }
+        };
+        put(&mut settings.environment.name, self.environment);
+        put(&mut settings.measured, self.measured);
+        // A file that is gone is an error of whoever opens it.
+        Look {
+            settings,
+            model: self.model.map(|path| there(path.clone()).unwrap_or(path)),
+            shaders: self.shaders.map(|path| there(path.clone()).unwrap_or(path)),
+        }
+    }
+}
+
+/// The bytes of a PNG file in `folder` with a picture of `work`.
+pub(super) fn encode(capture: &Capture, work: &Work, folder: &Path) -> Result<Vec<u8>, String> {
+    let files = toml::to_string(&Files::of(work, folder)).unwrap_or_default();
     let mut bytes = Cursor::new(Vec::new());
-    let mut written = || -> Result<(), png::EncodingError> {
+    let written = || -> Result<(), png::EncodingError> {
         let mut encoder = png::Encoder::new(&mut bytes, capture.width, capture.height);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Fast);
-        encoder.add_itxt_chunk(KEYWORD.to_owned(), settings.to_toml())?;
+        encoder.add_itxt_chunk(SETTINGS.to_owned(), work.settings.to_toml())?;
+        encoder.add_itxt_chunk(FILES.to_owned(), files)?;
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&capture.rgba8)?;
         writer.finish()
@@ -27,63 +100,117 @@ pub(super) fn encode(capture: &Capture, settings: &Settings) -> Result<Vec<u8>, 
     Ok(bytes.into_inner())
 }
 
-/// Settings as text: a look file, or what a PNG file of Specula holds.
-///
-/// # Errors
-/// A message if the file cannot be read, or is a PNG without settings.
-pub fn read_look(path: &Path) -> Result<String, String> {
-    match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-        true => decode(path),
-        false => {
-            std::fs::read_to_string(path).map_err(|e| format!("{}: the look file cannot be read: {e}", path.display()))
-        }
+/// The way from `folder` to a path: with `..` where they part, so that both can move together. As it is where there is none.
+fn from_folder(path: &Path, folder: &Path) -> PathBuf {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (Ok(path_in_full), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else { return path.to_owned() };
+    let (to, from): (Vec<_>, Vec<_>) = (path_in_full.components().collect(), folder.components().collect());
+    let common = to.iter().zip(&from).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return path_in_full;
     }
+    let up = from[common..].iter().map(|_| Component::ParentDir);
+    up.chain(to[common..].iter().copied()).collect()
 }
 
-/// The settings of a look file, or of a PNG file of Specula.
+/// What a look file says, or a PNG file of Specula.
+///
+/// # Errors
+/// The file cannot be read, is a PNG without settings, or its text is no look. Values are not checked against their ranges.
+pub fn read_look(path: &Path) -> Result<Look, ReadError> {
+    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| ReadError::File(format!("{}: the look file cannot be read: {e}", path.display())))?;
+        let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
+        return Ok(Look { settings, model: None, shaders: None });
+    }
+    let (text, files) = decode(path).map_err(|why| ReadError::File(format!("{}: {why}", path.display())))?;
+    let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
+    // Of another version, the files may be unreadable.
+    let files: Files = files.and_then(|files| toml::from_str(&files).ok()).unwrap_or_default();
+    Ok(files.look(settings, path.parent().unwrap_or(Path::new(""))))
+}
+
+/// The same with values in their ranges.
 ///
 /// # Errors
 /// A message with the position of what is wrong.
-pub fn read_settings(path: &Path) -> Result<Settings, String> {
-    let error = |text: String| format!("{}: {text}", path.display());
-    let settings = Settings::from_toml(&read_look(path)?).map_err(|e| error(e.to_string()))?;
-    settings.check().map_err(|problem| error(problem.to_string()))?;
-    Ok(settings)
+pub fn read_checked_look(path: &Path) -> Result<Look, String> {
+    let error = |problem: &dyn fmt::Display| format!("{}: {problem}", path.display());
+    let look = read_look(path).map_err(|why| match why {
+        ReadError::File(message) => message,
+        ReadError::Text(text) => error(&text),
+    })?;
+    look.settings.check().map_err(|problem| error(&problem))?;
+    Ok(look)
 }
 
-/// The settings in a PNG file as the text of a look file.
-fn decode(path: &Path) -> Result<String, String> {
-    let error = |why: String| format!("{}: {why}", path.display());
-    let file = File::open(path).map_err(|e| error(format!("cannot be read: {e}")))?;
+/// The texts of settings and of files in a PNG file.
+fn decode(path: &Path) -> Result<(String, Option<String>), String> {
+    let file = File::open(path).map_err(|e| format!("cannot be read: {e}"))?;
     let decoder = png::Decoder::new(BufReader::new(file));
-    let reader = decoder.read_info().map_err(|e| error(format!("no PNG file: {e}")))?;
-    let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == KEYWORD);
-    let chunk = chunk.ok_or_else(|| error("this PNG holds no settings of Specula".to_owned()))?;
-    chunk.get_text().map_err(|e| error(format!("its settings cannot be read: {e}")))
+    let reader = decoder.read_info().map_err(|e| format!("no PNG file: {e}"))?;
+    let text = |keyword: &str| {
+        let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword);
+        chunk.map(|chunk| chunk.get_text().map_err(|e| format!("its settings cannot be read: {e}"))).transpose()
+    };
+    let settings = text(SETTINGS)?.ok_or_else(|| "this PNG holds no settings of Specula".to_owned())?;
+    Ok((settings, text(FILES)?))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn capture() -> Capture {
+        Capture { width: 3, height: 2, rgba8: (0..3 * 2 * 4).collect(), ..Capture::default() }
+    }
+
     #[test]
     fn settings_and_pixels_are_read_as_they_were_written() {
         let mut settings = Settings::default();
         (settings.mode, settings.view.ev) = ("d \u{3b1}".to_owned(), 1.5);
-        let rgba8: Vec<u8> = (0..3 * 2 * 4).collect();
-        let capture = Capture { width: 3, height: 2, rgba8: rgba8.clone(), ..Capture::default() };
         let path = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
-        std::fs::write(path.path(), encode(&capture, &settings).unwrap()).unwrap();
-        assert_eq!(Settings::from_toml(&read_look(path.path()).unwrap()), Ok(settings));
-        assert_eq!(image::open(path.path()).unwrap().into_rgba8().into_raw(), rgba8);
+        let work = Work { settings: settings.clone(), ..Work::default() };
+        std::fs::write(path.path(), encode(&capture(), &work, Path::new("")).unwrap()).unwrap();
+        let look = read_look(path.path()).unwrap();
+        assert_eq!(look, Look { settings, model: Some(BUILT_IN[0].into()), shaders: None });
+        assert_eq!(image::open(path.path()).unwrap().into_rgba8().into_raw(), capture().rgba8);
+    }
+
+    #[test]
+    fn files_are_found_after_their_folders_and_the_picture_moved_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = folder.path().join("first");
+        for name in ["pictures", "models", "glsl"] {
+            std::fs::create_dir_all(first.join(name)).unwrap();
+        }
+        for name in ["models/duck.glb", "models/sky.hdr"] {
+            std::fs::write(first.join(name), b"").unwrap();
+        }
+        let mut work =
+            Work { model: Some(first.join("models/duck.glb")), tree: Some(first.join("glsl")), ..Work::default() };
+        work.settings.environment.name = first.join("models/sky.hdr").display().to_string();
+        let bytes = encode(&capture(), &work, &first.join("pictures")).unwrap();
+        std::fs::write(first.join("pictures/look.png"), bytes).unwrap();
+        let second = folder.path().join("second");
+        std::fs::rename(first, &second).unwrap();
+        let look = read_look(&second.join("pictures/look.png")).unwrap();
+        let is = |path: Option<&Path>, name: &str| {
+            assert_eq!(path.unwrap().canonicalize().unwrap(), second.join(name).canonicalize().unwrap());
+        };
+        is(look.model.as_deref(), "models/duck.glb");
+        is(look.shaders.as_deref(), "glsl");
+        is(Some(Path::new(&look.settings.environment.name)), "models/sky.hdr");
     }
 
     #[test]
     fn a_file_without_settings_is_refused() {
+        let message = |path: &Path| read_checked_look(path).unwrap_err();
         let path = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
         image::RgbaImage::new(2, 2).save(path.path()).unwrap();
-        assert!(read_look(path.path()).unwrap_err().ends_with("this PNG holds no settings of Specula"));
+        assert!(message(path.path()).ends_with("this PNG holds no settings of Specula"));
         std::fs::write(path.path(), b"text").unwrap();
-        assert!(read_look(path.path()).unwrap_err().contains("no PNG file"));
+        assert!(message(path.path()).contains("no PNG file"));
     }
 }

@@ -26,10 +26,10 @@ use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, Rect, SetLayouts};
 use crate::learn::Exercise;
 use crate::message::panic_text;
+use crate::picture::Look;
 use crate::render::tools::Tools;
 use crate::render::{Readback, TraceKey};
 use crate::scene::BuiltInPictures;
-use crate::settings::Settings;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
@@ -66,7 +66,7 @@ pub(crate) enum Message {
     /// The first statement that makes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
     /// The settings of a look file, or why it cannot be used.
-    Look(Result<Box<Settings>, String>),
+    Look(Result<Box<Look>, String>),
     /// The pictures of the built-in models and environments.
     Pictures(Box<BuiltInPictures>),
     /// A message for the user.

@@ -17,6 +17,7 @@ use crate::capture::{
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;
 use crate::picture;
+use crate::recovery;
 use crate::render::Texel;
 use crate::shader::{Compiler, Source};
 use crate::threads::Message;
@@ -86,12 +87,13 @@ impl Work {
         }
     }
 
-    /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with. Returns the result of the answer.
+    /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with, `files` the model and the shader
+    /// tree. Returns the result of the answer.
     fn draw(
         self,
         stills: &mut Stills,
         size: (u32, u32),
-        (versions, tree): (&[VersionPicture], (&Compiler, &Source)),
+        (versions, tree, files): (&[VersionPicture], (&Compiler, &Source), recovery::Work),
         tell: &mut dyn FnMut(u64, u64) -> bool,
     ) -> Result<Value, CaptureError> {
         let wrong = |message: String| CaptureError::Usage(message);
@@ -103,8 +105,8 @@ impl Work {
                 }
                 stills.set_count(frames);
                 let capture = stills.capture(own.unwrap_or(size))?;
-                let settings = stills.settings().clone();
-                let file = write_capture(&capture, &settings, file.as_deref()).map_err(CaptureError::Write)?;
+                let shown = recovery::Work { settings: stills.settings().clone(), ..files };
+                let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
                 Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
             }
             Self::Probe { at, names } => {
@@ -213,7 +215,7 @@ impl Viewer {
         let size = self.shown().map_or((1, 1), |state| state.size);
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
-        let (compiler, source) = (self.compiler.clone(), self.source().clone());
+        let (compiler, source, files) = (self.compiler.clone(), self.source().clone(), self.work());
         self.threads.capture(number, canceled.clone(), move |outbox| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {
@@ -227,7 +229,9 @@ impl Viewer {
             let result = match tell(0, 0) {
                 true => Stills::new(&gpu, session, resources, clock)
                     .map_err(|error| CaptureError::Render(error.into()))
-                    .and_then(|mut stills| work.draw(&mut stills, size, (&versions, (&compiler, &source)), &mut tell)),
+                    .and_then(|mut stills| {
+                        work.draw(&mut stills, size, (&versions, (&compiler, &source), files), &mut tell)
+                    }),
                 false => Err(CaptureError::Canceled),
             };
             outbox.send(Message::Captured(number));

@@ -10,16 +10,16 @@ use super::requests::path_text;
 use super::{Shot, Viewer};
 use crate::gpu::Buffer;
 use crate::picture;
+use crate::recovery::Work;
 use crate::render::Capture;
-use crate::settings::Settings;
 
 impl Viewer {
     /// Writes the picture of the screen, and answers.
     pub(in crate::app) fn write_shot(&self, shot: Shot, capture: Capture) {
-        let settings = self.look();
+        let work = self.shown_work();
         self.threads.wait(move || {
             let Shot { reply, file } = shot;
-            match write_capture(&capture, &settings, file.as_deref()) {
+            match write_capture(&capture, &work, file.as_deref()) {
                 Ok(file) => {
                     let (width, height) = (capture.width, capture.height);
                     reply.done(json!({ "file": path_text(&file), "width": width, "height": height }));
@@ -53,7 +53,7 @@ impl Viewer {
 }
 
 /// Writes a capture to a file, or to the first free `specula-N.png`.
-pub(super) fn write_capture(capture: &Capture, settings: &Settings, file: Option<&Path>) -> Result<PathBuf, String> {
+pub(super) fn write_capture(capture: &Capture, work: &Work, file: Option<&Path>) -> Result<PathBuf, String> {
     let file = file.map_or_else(picture::numbered, Path::to_owned);
-    picture::write(capture, settings, &file).map(|()| file)
+    picture::write(capture, work, &file).map(|()| file)
 }

@@ -40,6 +40,10 @@ pub(super) enum Until {
     Compared,
     /// The files of this version of the shaders.
     Written(u64),
+    /// The shader files with these edits.
+    DefaultsWritten(Value),
+    /// A frame that shows the settings; the answer tells the modes side by side.
+    Grid,
     /// A frame that shows the settings, for a picture of it.
     Screen(Option<PathBuf>),
     /// The same for a picture of the window.
@@ -98,6 +102,7 @@ impl Viewer {
             match until {
                 Until::Shown if shows => reply.done(Value::Null),
                 Until::Camera if shows => reply.done(self.camera_json()),
+                Until::Grid if shows => reply.done(json!({ "modes": self.panels.grid.modes() })),
                 Until::Compared if shows && self.compare.is_drawn() => reply.done(self.compare_json()),
                 Until::Picture(work) if shows && self.has_all_modes() => self.begin_capture(reply, work),
                 Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
@@ -105,7 +110,12 @@ impl Viewer {
                     true => self.controlled.waiting.push((reply, Until::Shown)),
                     false => reply.error(format!("{} was not loaded", path.display())),
                 },
-                Until::Shown | Until::Camera | Until::Picture(_) | Until::Screen(_) | Until::Window(_)
+                Until::Shown
+                | Until::Camera
+                | Until::Grid
+                | Until::Picture(_)
+                | Until::Screen(_)
+                | Until::Window(_)
                     if self.never_shows() =>
                 {
                     self.without_picture(reply);
@@ -117,8 +127,9 @@ impl Viewer {
 
     /// Whether another frame must follow, because a command waits for nothing else. Messages wake the window for all others.
     pub(super) fn has_unanswered(&self) -> bool {
-        let waits_for_frame =
-            |until: &Until| matches!(until, Until::Shown | Until::Camera | Until::Screen(_) | Until::Window(_));
+        let waits_for_frame = |until: &Until| {
+            matches!(until, Until::Shown | Until::Camera | Until::Grid | Until::Screen(_) | Until::Window(_))
+        };
         self.shows_settings() && self.controlled.waiting.iter().any(|(_, until)| waits_for_frame(until))
     }
 
@@ -126,7 +137,7 @@ impl Viewer {
     pub(super) fn fail_waiting(&mut self, message: &str) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match until {
-                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) => {
+                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) | Until::DefaultsWritten(_) => {
                     self.controlled.waiting.push((reply, until))
                 }
                 _ => reply.error(message),
@@ -139,17 +150,17 @@ impl Viewer {
         self.end_waiting(|until| matches!(until, Until::Model(_)), message);
     }
 
-    /// Answers those who wait for a look file, or lets them wait for its frame.
-    pub(super) fn look_read(&mut self, result: &Result<(), String>) {
+    /// Answers those who wait for a look file, or lets them wait for its model or its frame.
+    pub(super) fn look_read(&mut self, result: Result<Option<PathBuf>, String>) {
         match result {
-            Ok(()) => {
+            Ok(model) => {
                 for (_, until) in &mut self.controlled.waiting {
                     if matches!(until, Until::Look) {
-                        *until = Until::Shown;
+                        *until = model.clone().map_or(Until::Shown, Until::Model);
                     }
                 }
             }
-            Err(message) => self.end_waiting(|until| matches!(until, Until::Look), message),
+            Err(message) => self.end_waiting(|until| matches!(until, Until::Look), &message),
         }
     }
 
@@ -164,6 +175,17 @@ impl Viewer {
             match (until, error) {
                 (Until::Written(of), Some(error)) if of == number => reply.error(error),
                 (Until::Written(of), None) if of == number => reply.done(Value::Null),
+                (until, _) => self.controlled.waiting.push((reply, until)),
+            }
+        }
+    }
+
+    /// Answers those who wait for defaults in the files.
+    pub(super) fn answer_defaults(&mut self, result: Result<(), &str>) {
+        for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
+            match (until, result) {
+                (Until::DefaultsWritten(edits), Ok(())) => reply.done(json!({ "edits": edits })),
+                (Until::DefaultsWritten(_), Err(error)) => reply.error(error),
                 (until, _) => self.controlled.waiting.push((reply, until)),
             }
         }

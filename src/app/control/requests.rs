@@ -6,8 +6,10 @@ use serde_json::{Value, json};
 
 use super::{Next, Until, Work};
 use crate::app::command::{Command, Side, open_as};
+use crate::app::grid::Grid;
 use crate::app::palette;
-use crate::app::viewer::Viewer;
+use crate::app::selection::Selected;
+use crate::app::viewer::{NO_FOLDER, Viewer};
 use crate::capture::modes_of;
 use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run, VersionsRequest};
 use crate::message::did_you_mean;
@@ -52,6 +54,9 @@ impl Viewer {
             Request::Open(open) => Next::Wait(self.open(open)?),
             Request::Compare(compare) => self.compare_as(compare)?,
             Request::Versions(versions) => self.versions_as(versions)?,
+            Request::Grid(modes) => self.show_grid(modes)?,
+            Request::Pick(at) => Next::Done(self.pick(at)?),
+            Request::WriteDefaults(names) => self.write_defaults(&names)?,
             Request::Undo if !self.history.undo(&mut self.session.settings) => {
                 return Err("there is nothing to undo".into());
             }
@@ -187,6 +192,63 @@ impl Viewer {
             command => command,
         });
         Ok(until)
+    }
+
+    /// Shows modes side by side.
+    fn show_grid(&mut self, modes: Vec<String>) -> Result<Next, String> {
+        let shaders = self.session.shaders.clone().ok_or("the shaders have not been compiled yet")?;
+        for name in &modes {
+            let mode = shaders.modes.iter().find(|mode| mode.slug == *name).ok_or_else(|| {
+                let hint = did_you_mean(name, shaders.modes.iter().map(|mode| mode.slug.as_str()));
+                format!("there is no mode `{name}`.{hint} `modes` lists them all")
+            })?;
+            if !Grid::can_show(mode) {
+                return Err(format!("`{name}` takes many frames, and can only be shown alone"));
+            }
+        }
+        let selected = self.session.settings.mode.clone();
+        if let Some(first) = modes.first().filter(|_| !modes.contains(&selected)) {
+            self.adopt(Settings { mode: first.clone(), ..self.session.settings.clone() })?;
+        }
+        self.panels.grid.show(modes)?;
+        Ok(Next::Wait(Until::Grid))
+    }
+
+    /// Does what a click on a pixel does, or takes that back.
+    fn pick(&mut self, at: Option<[u32; 2]>) -> Result<Value, String> {
+        self.panels.inspector.unpin();
+        match at {
+            None => self.select(Selected::Nothing),
+            Some([x, y]) => {
+                let (width, height) = self.shown().ok_or("there is no picture yet")?.size;
+                if x >= width || y >= height {
+                    return Err(format!("[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"));
+                }
+                self.execute(Command::Pick([x, y]));
+            }
+        }
+        Ok(json!(self.selected_event()))
+    }
+
+    /// Writes the values of parameters into the files.
+    fn write_defaults(&mut self, names: &[String]) -> Result<Next, String> {
+        let edits = match names {
+            [] => self.edits_of_defaults(None)?,
+            names => {
+                let of_each = names.iter().map(|name| self.edits_of_defaults(Some(name)));
+                of_each.collect::<Result<Vec<_>, _>>()?.concat()
+            }
+        };
+        if edits.is_empty() {
+            return Err("the shader files have these values already".into());
+        }
+        if !self.has_folder() {
+            return Err(NO_FOLDER.into());
+        }
+        let told = edits.iter().map(|edit| json!({ "name": edit.name, "file": edit.path, "line": edit.line }));
+        let told = told.collect();
+        self.execute(Command::WriteEdits(edits));
+        Ok(Next::Wait(Until::DefaultsWritten(told)))
     }
 
     /// Lists the versions of the shaders, shows one, or writes one into the files.

@@ -12,8 +12,8 @@ const KEYS: &[(&str, &str)] = &[
     ("letters", "the mode with this letter in the list; press it again to go back"),
     ("Esc", "close this list, unpin the pixel, select nothing, or show one mode alone; otherwise the final picture"),
     ("drag", "orbit"),
-    ("Shift+drag, middle drag", "pan"),
-    ("Alt+drag", "turn the environment"),
+    ("Ctrl+drag, Shift+middle drag", "pan"),
+    ("Shift+drag, Alt+drag, middle drag", "turn the environment"),
     ("wheel", "zoom"),
     ("right button + W A S D Q E", "look around and fly"),
     ("click", "read this pixel in the Inspector, and select what is there"),
@@ -115,7 +115,7 @@ mod tests {
     fn the_filter_finds_keys_and_meanings() {
         let keys = |filter| found(filter).map(|(keys, _)| keys).collect::<Vec<_>>();
         assert_eq!(keys("ctrl undo"), ["Ctrl+Z, Ctrl+Shift+Z"]);
-        assert_eq!(keys("PAN"), ["Shift+drag, middle drag", "H", "Ctrl+P"]);
+        assert_eq!(keys("PAN"), ["Ctrl+drag, Shift+middle drag", "H", "Ctrl+P"]);
         assert_eq!(keys("").len(), KEYS.len());
         assert!(keys("no such key").is_empty());
     }

@@ -10,8 +10,8 @@ use super::theme::icon;
 use super::{PanelState, QUIET};
 use crate::app::gallery::GalleryState;
 use crate::app::grid::Grid;
+use crate::shader::ShaderSet;
 use crate::shader::annotation::{Mode, listed};
-use crate::shader::{PATHS_STAGE, ShaderSet};
 
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;
@@ -66,7 +66,7 @@ pub(super) fn show(
     });
     let Some(mode) = clicked.inner else { return false };
     if ui.input(|input| input.modifiers.command) {
-        return mode.stage == PATHS_STAGE || mode.accumulate || !grid.toggle(&mode.slug, current);
+        return !Grid::can_show(mode) || !grid.toggle(&mode.slug, current);
     }
     current.clone_from(&mode.slug);
     false

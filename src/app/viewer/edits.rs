@@ -163,6 +163,7 @@ impl Viewer {
 
     /// Takes the result of writing.
     pub(super) fn on_written(&mut self, written: Result<String, String>) {
+        self.answer_defaults(written.as_ref().map(|_| ()).map_err(String::as_str));
         match written {
             Ok(text) => {
                 // The file has the dragged numbers now, so nothing is compiled.

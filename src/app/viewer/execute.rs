@@ -7,7 +7,7 @@ use super::Viewer;
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
 use crate::app::{dialog, editor, hint};
-use crate::picture::read_settings;
+use crate::picture::read_checked_look;
 use crate::scene::LoadOptions;
 use crate::shader::{Change, Source};
 use crate::threads::Message;
@@ -87,7 +87,7 @@ impl Viewer {
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
             Command::OpenLook(path) => {
-                self.threads.wait(move || Some(Message::Look(read_settings(&path).map(Box::new))));
+                self.threads.wait(move || Some(Message::Look(read_checked_look(&path).map(Box::new))));
             }
             Command::OpenMeasured(path) => {
                 self.session.settings.measured = path.display().to_string();

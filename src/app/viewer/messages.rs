@@ -65,16 +65,18 @@ impl Viewer {
             Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
             Message::Tools(tools) => self.on_tools(tools),
-            Message::Look(Ok(settings)) => {
-                self.session.settings = *settings;
-                self.look_read(&Ok(()));
-                self.check_names();
+            Message::Look(Ok(look)) => {
+                let model = self.show_look(*look);
+                if model.is_none() {
+                    self.check_names();
+                }
+                self.look_read(Ok(model));
                 self.watch_files();
             }
             Message::Written(written) => self.on_written(written),
             Message::Look(Err(message)) => {
                 self.say(message.clone());
-                self.look_read(&Err(message));
+                self.look_read(Err(message));
             }
             Message::Asked(asked) => self.on_asked(*asked),
             // The screen has taken it.

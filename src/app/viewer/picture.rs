@@ -8,6 +8,7 @@ use crate::app::status::title;
 use crate::events::{Event, emit};
 use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
+use crate::recovery::Work;
 use crate::render::{BoundFrame, PixelAt, View};
 use crate::settings::Settings;
 use crate::shader::{PixelValue, expression};
@@ -196,11 +197,12 @@ impl Viewer {
         self.clock
     }
 
-    /// The settings of the picture on screen, from the current camera.
-    pub(in crate::app) fn look(&self) -> Settings {
+    /// The settings and the files of the picture on screen, from the current camera.
+    pub(in crate::app) fn shown_work(&self) -> Work {
         let now = &self.session.settings;
         let shown = self.shown.as_ref().map_or(now, |shown| &shown.settings);
-        Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() }
+        let settings = Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() };
+        Work { settings, ..self.work() }
     }
 
     /// The state of the picture on screen.

@@ -23,7 +23,14 @@ impl Viewer {
         if std::mem::replace(&mut self.selected, selected) == selected {
             return;
         }
-        let Some(scene) = self.session.scene() else { return };
+        let event = self.selected_event();
+        event.into_iter().for_each(|event| emit(&self.events, &Event::Selected(event)));
+    }
+
+    /// What is selected, by its names; `None` without a model.
+    pub(in crate::app) fn selected_event(&self) -> Option<SelectedEvent> {
+        let selected = self.selected;
+        let scene = self.session.scene()?;
         let model = scene.model();
         let instance = match selected {
             Selected::Instance(instance) => model.instances.get(instance),
@@ -34,18 +41,15 @@ impl Viewer {
             _ => instance.and_then(|instance| model.nodes.get(model.node_of(instance)?)),
         };
         let material = selected.material(&scene).map(|material| model.material_key(material));
-        emit(
-            &self.events,
-            &Event::Selected(SelectedEvent {
-                instance: instance.is_some().then_some(match selected {
-                    Selected::Instance(index) => index,
-                    _ => 0,
-                }),
-                node: node.map(|node| name_or(&node.name, || format!("#{}", node.index))),
-                primitive: instance.map(|instance| model.primitives[instance.primitive].name.clone()),
-                material,
-            }),
-        );
+        Some(SelectedEvent {
+            instance: match selected {
+                Selected::Instance(index) => instance.map(|_| index),
+                _ => None,
+            },
+            node: node.map(|node| name_or(&node.name, || format!("#{}", node.index))),
+            primitive: instance.map(|instance| model.primitives[instance.primitive].name.clone()),
+            material,
+        })
     }
 
     /// Whether each instance of the scene on screen is selected; empty if none is.

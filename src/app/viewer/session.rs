@@ -1,15 +1,17 @@
 //! Goes on with the last session of the working directory, and remembers this one.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Viewer;
 use crate::app::command::Command;
 use crate::app::last_session;
+use crate::picture::Look;
 use crate::recovery::Work;
+use crate::scene::BUILT_IN;
 
 impl Viewer {
     /// The settings, the model and the shader tree.
-    pub(super) fn work(&self) -> Work {
+    pub(in crate::app) fn work(&self) -> Work {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.location().map(Path::to_owned);
         Work { settings: self.session.settings.clone(), model: model.clone(), tree }
@@ -20,20 +22,34 @@ impl Viewer {
         let Some(last) = self.panels.last_sessions.here.clone() else {
             return self.say("There is no session to restore");
         };
+        self.go_to(last.work);
+        self.offers_session = false;
+    }
+
+    /// Shows the look of a file: its settings, and the model and the shaders that it names. Returns the model that has to be loaded.
+    pub(super) fn show_look(&mut self, look: Look) -> Option<PathBuf> {
         let now = self.work();
-        let Work { settings, model, tree } = last.work;
-        if let Some(tree) =
-            tree.filter(|tree| now.tree.as_ref().and_then(|now| std::path::absolute(now).ok()).as_ref() != Some(tree))
-        {
-            self.execute(Command::OpenTree(tree));
+        let model = match &look.model {
+            Some(model) => (model != Path::new(BUILT_IN[0])).then(|| model.clone()),
+            None => now.model.clone(),
+        };
+        let loads = is_other(model.as_deref(), now.model.as_deref());
+        let tree = look.shaders.or(now.tree);
+        self.go_to(Work { settings: look.settings, model: model.clone(), tree });
+        loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
+    }
+
+    /// Shows other work. The camera is that of the work, and not one that frames the model.
+    fn go_to(&mut self, Work { settings, model, tree }: Work) {
+        let now = self.work();
+        if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
+            self.execute(Command::OpenTree(full_path(&tree)));
         }
         self.session.settings = settings;
-        if now.model != model {
-            // The camera is that of the session, and not one that frames the model.
+        if is_other(model.as_deref(), now.model.as_deref()) {
             self.model.keeps_camera = true;
             self.load_model(model);
         }
-        self.offers_session = false;
     }
 
     /// Whether to offer the last session: until the user does anything that is worth keeping.
@@ -53,4 +69,13 @@ impl Viewer {
             last_session::remember(&self.work());
         }
     }
+}
+
+/// A path in full, through symbolic links; the name of something built in as it is.
+fn full_path(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+fn is_other(a: Option<&Path>, b: Option<&Path>) -> bool {
+    a.map(full_path) != b.map(full_path)
 }

@@ -12,7 +12,7 @@ use clap::ValueEnum;
 use specula::disk_cache::Pipelines;
 use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
-use specula::picture;
+use specula::picture::{self, Look, ReadError};
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
@@ -73,7 +73,7 @@ pub struct Common {
     /// Change a setting, such as view.msaa=1, or a shader parameter, such as NDF=Beckmann; may be repeated. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Read settings from a look file: TOML, or a PNG that Specula has written. Other options override it
+    /// Read settings from a look file: TOML, or a PNG that Specula has written, which also names the model and the shader tree. Other options override it
     #[arg(long, value_name = "FILE")]
     look: Option<PathBuf>,
     /// Use the device whose name contains this text; `specula info` lists the devices
@@ -141,7 +141,10 @@ impl Common {
 
     /// The same without the warnings.
     fn settings_silently(&self, first: Settings) -> Result<Settings, Failure> {
-        let look = self.look.as_deref().map(read_look).transpose()?.unwrap_or(first);
+        let look = match self.look.as_deref() {
+            Some(path) => read_look(path)?.settings,
+            None => first,
+        };
         let mut settings = look.clone();
         let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
         settings.camera.eye = self.eye.or(settings.camera.eye);
@@ -210,11 +213,36 @@ impl Common {
         !options.contains(&true)
     }
 
-    /// Takes a shader file that stands where the model may stand for the shader tree.
-    pub fn take_shader(&mut self, model: &mut Option<PathBuf>) {
+    /// Takes a shader file that stands where the model may stand for the shader tree. What the command line leaves open is that of
+    /// the look.
+    ///
+    /// # Errors
+    /// The look cannot be read, or a file that it names is gone.
+    pub fn take_files(&mut self, model: &mut Option<PathBuf>) -> Result<(), Failure> {
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
             self.shaders = model.take();
         }
+        let Some(path) = self.look.as_deref() else { return Ok(()) };
+        let look = read_look(path)?;
+        let gone = |what: &str, file: &Path, option: &str| {
+            let (path, file) = (path.display(), file.display());
+            Err(Failure::Input(format!("{path}: its {what} {file} is not there; name it with {option}")))
+        };
+        match look.model {
+            Some(file) if model.is_none() => {
+                if !file.exists() && !scene::BUILT_IN.iter().any(|name| Path::new(name) == file) {
+                    return gone("model", &file, "MODEL");
+                }
+                *model = Some(file);
+            }
+            _ => {}
+        }
+        match look.shaders {
+            Some(tree) if self.shaders.is_none() && !tree.exists() => return gone("shader tree", &tree, "`--shaders`"),
+            Some(tree) if self.shaders.is_none() => self.shaders = Some(tree),
+            _ => {}
+        }
+        Ok(())
     }
 
     /// The shader tree.
@@ -374,13 +402,15 @@ fn open(path: &Path) -> Result<Source, Failure> {
     absolute.map(Source::open).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))
 }
 
-/// Reads a look file. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
-fn read_look(path: &Path) -> Result<Settings, Failure> {
-    let text = picture::read_look(path).map_err(Failure::Input)?;
-    Settings::from_toml(&text).map_err(|error| {
-        // As `file:line:column: message`, which editors parse.
-        let separator = if error.place.is_some() { ":" } else { ": " };
-        let message = format!("{}{separator}{error}", path.display());
-        if error.is_value { Failure::Usage(message) } else { Failure::Input(message) }
+/// Reads a look. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
+fn read_look(path: &Path) -> Result<Look, Failure> {
+    picture::read_look(path).map_err(|error| match error {
+        ReadError::File(message) => Failure::Input(message),
+        ReadError::Text(error) => {
+            // As `file:line:column: message`, which editors parse.
+            let separator = if error.place.is_some() { ":" } else { ": " };
+            let message = format!("{}{separator}{error}", path.display());
+            if error.is_value { Failure::Usage(message) } else { Failure::Input(message) }
+        }
     })
 }

@@ -4,7 +4,7 @@ mod many;
 mod warnings;
 mod watch;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use specula::capture::Turn;
@@ -13,6 +13,7 @@ use specula::headless::Headless;
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
+use specula::recovery::Work;
 use specula::render::Capture;
 use specula::shader::{Diagnostic, Mode};
 
@@ -58,7 +59,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_shader(&mut args.model);
+    args.common.take_files(&mut args.model)?;
     let mut settings = args.common.settings()?;
     let all = settings.mode == "all";
     if all {
@@ -316,7 +317,7 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
         let capture = capture(headless, args, &Progress::new(!args.common.emits()), (0, 1))?;
-        return picture::write(&capture, headless.settings_mut(), out).map_err(Failure::Input);
+        return write_picture(headless, args, &capture, out);
     }
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling all modes");
@@ -334,10 +335,20 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         settings.view.frames = if mode.traces { 1 } else { frames };
         let capture = capture(headless, args, &progress, (number, modes.len()))?;
         let path = picture::path_of_mode(out, &mode.slug);
-        picture::write(&capture, headless.settings_mut(), &path).map_err(Failure::Input)?;
+        write_picture(headless, args, &capture, &path)?;
     }
     headless.settings_mut().view.frames = frames;
     Ok(())
+}
+
+/// Writes a picture with its settings, the model and the shader tree.
+fn write_picture(headless: &mut Headless, args: &Args, capture: &Capture, out: &Path) -> Result<(), Failure> {
+    let work = Work {
+        settings: headless.settings_mut().clone(),
+        model: args.model.clone(),
+        tree: args.common.source()?.location().map(Path::to_owned),
+    };
+    picture::write(capture, &work, out).map_err(Failure::Input)
 }
 
 /// Renders the picture, which is one of several (its number from 0, and their count), and reports the number of random paths behind

@@ -52,7 +52,7 @@ impl Args {
 
 /// Runs the command: the window if this is the child, else the child.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_shader(&mut args.model);
+    args.common.take_files(&mut args.model)?;
     match supervisor::session() {
         Some(folder) => window(args, start, Some(folder)),
         None => supervisor::run(reads_commands(&args), || window(args, start, None)),
