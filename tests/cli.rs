@@ -362,6 +362,17 @@ fn a_picture_is_a_look_file() {
     assert!(fs::read(here.join("out.png")).unwrap() == first, "not the same file again");
     render(here, "ball.glb", &["--look", "first.png", "--background", "#ff0000"]).expect(0, &[]);
     assert_eq!(open_image(&here.join("out.png")).into_rgba8().get_pixel(0, 0).0, [255, 0, 0, 255]);
+    // It finds its model, also after both have moved together.
+    let of_look = |look: &str| run(here, &["render", "--look", look, "--out", "again.png", SMALL[0], SMALL[1]]);
+    fs::create_dir(here.join("moved")).unwrap();
+    for name in ["ball.glb", "first.png"] {
+        fs::rename(here.join(name), here.join("moved").join(name)).unwrap();
+    }
+    of_look("moved/first.png").expect(0, &[]);
+    assert!(open_image(&here.join("again.png")) == open_image(&here.join("moved/first.png")), "another picture");
+    fs::rename(here.join("moved/first.png"), here.join("first.png")).unwrap();
+    of_look("first.png").expect(1, &["first.png: its model ball.glb is not there; name it with MODEL"]);
+    fs::rename(here.join("moved/ball.glb"), here.join("ball.glb")).unwrap();
     image::RgbaImage::new(2, 2).save(here.join("photo.png")).unwrap();
     render(here, "ball.glb", &["--look", "photo.png"]).expect(1, &["photo.png: this PNG holds no settings of Specula"]);
     run(here, &["render", "first.png"]).expect(2, &["first.png is a look file; use `--look first.png`"]);

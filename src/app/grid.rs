@@ -84,17 +84,29 @@ impl Grid {
     }
 }
 
-/// Where `count` pictures lie in `whole`, row by row, in pixels of the window.
-pub(super) fn cells(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+/// Columns and rows for `count` pictures: nearly as many of both.
+fn columns_and_rows(count: usize) -> (u32, u32) {
     let columns = (1..=count).find(|columns| columns * columns >= count).unwrap_or(1) as u32;
-    let rows = (count as u32).div_ceil(columns).max(1);
+    (columns, (count as u32).div_ceil(columns).max(1))
+}
+
+/// Where `count` pictures lie in `whole`, row by row, in pixels of the window, and then the places that stay empty.
+pub(super) fn places(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+    let (columns, rows) = columns_and_rows(count);
     let side = |length: u32, parts: u32| (length.saturating_sub(GAP * (parts - 1)) / parts).max(1);
     let size = (side(whole.size.0, columns), side(whole.size.1, rows));
     let place = |index: u32| PictureRect {
         at: (whole.at.0 + index % columns * (size.0 + GAP), whole.at.1 + index / columns * (size.1 + GAP)),
         size,
     };
-    (0..count as u32).map(place).collect()
+    (0..columns * rows).map(place).collect()
+}
+
+/// The places of `count` pictures.
+pub(super) fn cells(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+    let mut cells = places(count, whole);
+    cells.truncate(count);
+    cells
 }
 
 #[cfg(test)]

@@ -187,6 +187,51 @@ fn an_older_version_is_shown_in_place_of_the_newest() {
     viewer.quit();
 }
 
+#[test]
+fn clicks_grids_defaults_and_looks_are_commands() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--validate"]);
+    viewer.running.event("ready");
+    let first = capture(&mut viewer, "first.png");
+    let running = &mut viewer.running;
+
+    // Modes side by side.
+    let shown = running.done(json!({"command": "grid", "modes": ["d", "f", "d"]}));
+    assert_eq!(shown["modes"], json!(["d", "f"]));
+    assert_eq!(running.done(json!({"command": "get", "path": "mode"})), "d");
+    let message = running.refused(json!({"command": "grid", "modes": ["ruffness", "d"]}));
+    assert!(message.contains("Did you mean `roughness`?"), "{message}");
+    assert_eq!(running.done(json!({"command": "grid", "modes": []}))["modes"], json!([]));
+    running.done(json!({"command": "mode", "name": "final"}));
+
+    // A click on a sphere, and beside all.
+    let (x, y) = (first.width() / 2, first.height() / 2);
+    let center = running.done(json!({"command": "pick", "at": [x, y]}));
+    assert!(center["primitive"].is_string(), "{center}");
+    assert_eq!(running.done(json!({"command": "pick"}))["primitive"], Value::Null);
+    assert!(running.refused(json!({"command": "pick", "at": [9999, 0]})).contains("is outside of the picture"));
+
+    // Another model, and back by the picture.
+    running.done(json!({"command": "open", "model": "clearcoat"}));
+    assert!(capture(&mut viewer, "other.png") != first);
+    viewer.running.done(json!({"command": "open", "look": "first.png"}));
+    assert!(capture(&mut viewer, "again.png") == first, "the look does not restore its picture");
+
+    // A value becomes the default in the file, and nothing else in it changes.
+    let file = "user/params.glsl";
+    let before = viewer.tree.read(file);
+    let running = &mut viewer.running;
+    running.done(json!({"command": "set", "values": "rim_strength=0.5"}));
+    let written = running.done(json!({"command": "write-defaults", "names": ["rim_strength"]}));
+    assert_eq!(written["edits"][0]["name"], "rim_strength", "{written}");
+    let after = viewer.tree.read(file);
+    let changed: Vec<(&str, &str)> = before.lines().zip(after.lines()).filter(|(a, b)| a != b).collect();
+    assert!(changed.len() == 1 && changed[0].1.contains("0.5"), "{changed:?}");
+    let running = &mut viewer.running;
+    assert!(running.refused(json!({"command": "write-defaults"})).contains("have these values already"));
+    viewer.running.end_input();
+    viewer.quit();
+}
+
 /// The mean difference of two pictures' channels, 0 to 255.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let sum: u64 = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();

@@ -1,23 +1,19 @@
 //! The BRDF of the inspected pixel's material: its lobe in the plane of incidence and in space, and its albedo over the angle. The curves
 //! before the last edit are dashed.
 
-use egui::{Color32, Pos2, RichText, Sense, Stroke, Ui, vec2};
+use egui::{RichText, Sense, Ui, vec2};
 
-use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
-use super::plot::{self, Chart, HalfDisk, Pen};
+use super::super::theme::{ERROR, QUIET, WARNING};
+use super::plot::{PARTS, Pair, albedo, polar};
 use super::solid;
 use crate::app::inspector::directions::Directions;
 use crate::app::inspector::{Asked, Reading, Shown};
-use crate::measure::{Curves, Lobe, Material};
+use crate::measure::{Curves, Material};
 
-const DIFFUSE: Color32 = Color32::from_rgb(240, 140, 66);
-const SPECULAR: Color32 = Color32::from_rgb(98, 160, 255);
-const MULTIPLE: Color32 = Color32::from_rgb(98, 200, 132);
-const SUM: Color32 = Color32::from_rgb(222, 224, 230);
-/// Height of the polar plot and of the lobe in space, points.
+/// Height of the lobe in space, points.
 const TALL: f32 = 170.0;
-/// Height of the charts, points.
-const LOW: f32 = 110.0;
+/// Controls of a plot.
+const MOVE: &str = "Drag moves the plot, Ctrl+wheel zooms, a double click shows all";
 
 /// The modes of properties that the curves leave out, with the value that glTF gives them where a material does not.
 const LEFT_OUT: [(&str, &str, f32); 9] = [
@@ -64,10 +60,16 @@ pub(super) fn show(
     };
     let before = shown.before.as_ref();
     legend(ui, before.is_some());
-    polar(ui, curves, before, &shown.of, &directions);
-    let chart = |ui: &mut Ui, title: &str, doc: &str, of: fn(&Curves) -> &[[f32; 3]]| {
-        ui.label(RichText::new(title).small().color(QUIET)).on_hover_text(doc);
-        albedo(ui, of(curves), before.map(of), directions.eye_deg);
+    let title = |ui: &mut Ui, title: &str, doc: &str| {
+        ui.label(RichText::new(title).small().color(QUIET)).on_hover_text(format!("{doc}. {MOVE}"));
+    };
+    let doc = "The luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. The arrow of the eye has this \
+        pixel's angle; out of plane: the eye lies outside this plane";
+    title(ui, "Lobe in the plane of incidence", doc);
+    polar(ui, &Pair { now: curves, before }, &shown.of, &directions);
+    let chart = |ui: &mut Ui, name: &str, doc: &str, of: fn(&Curves) -> &[[f32; 3]]| {
+        title(ui, name, doc);
+        albedo(ui, name, &Pair { now: of(curves), before: before.map(of) }, directions.eye_deg);
     };
     let doc = "Part of the light from a uniform white sky that leaves the surface towards the eye, over the angle of the eye from the \
         normal: the integral of f NoL over the hemisphere. Red, green and blue";
@@ -134,124 +136,14 @@ fn left_out(reading: &Reading) -> Vec<&'static str> {
 
 fn legend(ui: &mut Ui, has_before: bool) {
     ui.horizontal_wrapped(|ui| {
-        let names = [
-            (
-                SUM,
-                "sum",
-                "f NoV: the part of the irradiance that leaves per steradian, 1/sr. Its integral over the hemisphere is the albedo",
-            ),
-            (DIFFUSE, "diffuse", "k_d times the selected diffuse model"),
-            (SPECULAR, "specular", "D V F: single scattering between microfacets"),
-            (MULTIPLE, "multiple scattering", "Multiple scattering between microfacets"),
-        ];
-        for (color, name, doc) in names {
-            ui.label(RichText::new(name).small().color(color)).on_hover_text(doc);
+        for part in &PARTS {
+            ui.label(RichText::new(part.name).small().color(part.color)).on_hover_text(part.doc);
         }
         if has_before {
             let doc = "The shaders before the last edit, with the same material and light";
             ui.label(RichText::new("- - before the last edit").small().color(QUIET)).on_hover_text(doc);
         }
     });
-}
-
-/// One of the parts of a lobe.
-type Part = fn(&Lobe) -> [f32; 3];
-
-/// The lobe in the plane of incidence, with the directions to the light and to the eye.
-fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, directions: &Directions) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::hover());
-    if !ui.is_rect_visible(rect) {
-        return;
-    }
-    let painter = ui.painter();
-    let all = curves.lobes.iter().chain(before.into_iter().flat_map(|before| &before.lobes));
-    let most = all.map(|lobe| luminance(sum(lobe))).filter(|value| value.is_finite()).fold(0.0, f32::max);
-    let disk = HalfDisk::within(rect, if most > 0.0 { 1.1 * most } else { 1.0 });
-    disk.axes(painter);
-    for (curves, is_dashed) in before.into_iter().map(|before| (before, true)).chain([(curves, false)]) {
-        let parts: [(Color32, Part); 4] = [
-            (SUM, sum),
-            (DIFFUSE, |lobe| lobe.diffuse),
-            (SPECULAR, |lobe| lobe.specular),
-            (MULTIPLE, |lobe| lobe.multiple),
-        ];
-        for (color, part) in parts {
-            let count = curves.lobes.len().max(1) as f32;
-            let deg = |index: usize| 180.0 * ((index as f32 + 0.5) / count - 0.5);
-            let points: Vec<Pos2> = curves
-                .lobes
-                .iter()
-                .enumerate()
-                .map(|(index, lobe)| disk.at(deg(index), luminance(part(lobe))))
-                .collect();
-            Pen { color, is_dashed }.line(painter, &points);
-        }
-    }
-    // The names lie at different distances, since both directions may be on one side.
-    let arrow = |deg: f32, color: Color32, (name, at): (&str, f32), inwards: bool| {
-        let (near, far) = (disk.direction(deg, 0.25 * disk.radius), disk.direction(deg, 0.92 * disk.radius));
-        let (from, to) = if inwards { (far, near) } else { (near, far) };
-        plot::arrow(painter, from, to, color);
-        plot::name(painter, disk.direction(deg, at * disk.radius), name, color);
-    };
-    arrow(-of.light_deg, WARNING.color(), ("light", 0.8), true);
-    let name = if directions.is_in_plane() { "eye" } else { "eye (out of plane)" };
-    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), (name, 0.5), false);
-    response.on_hover_text(
-        "The lobe in the plane of incidence: the luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. \
-         The arrow of the eye has this pixel's angle; out of plane: the eye lies outside this plane",
-    );
-}
-
-/// A chart of albedo over the angle of the eye.
-fn albedo(ui: &mut Ui, now: &[[f32; 3]], before: Option<&[[f32; 3]]>, eye_deg: f32) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LOW), Sense::hover());
-    if !ui.is_rect_visible(rect) {
-        return;
-    }
-    let painter = ui.painter();
-    let all = now.iter().chain(before.unwrap_or_default()).flatten().copied().filter(|value| value.is_finite());
-    let chart = Chart::within(rect, all.fold(1.1, |most, value| most.max(1.05 * value)));
-    chart.axes(painter);
-    let eye = eye_deg.clamp(0.0, 90.0);
-    let top = chart.rect().min.y;
-    let below = chart.at(eye, 0.0);
-    painter.line_segment([below, Pos2::new(below.x, top)], Stroke::new(1.0, ACCENT));
-    for (values, is_dashed) in before.into_iter().map(|values| (values, true)).chain([(now, false)]) {
-        let channels =
-            [Color32::from_rgb(255, 105, 97), Color32::from_rgb(119, 221, 119), Color32::from_rgb(110, 160, 255)];
-        let is_gray = values.iter().all(|[r, g, b]| (r - g).abs().max((r - b).abs()) < 2e-3);
-        let shown = if is_gray { 1 } else { 3 };
-        for (channel, color) in channels.into_iter().enumerate().take(shown) {
-            let points: Vec<Pos2> = values
-                .iter()
-                .enumerate()
-                .map(|(index, rgb)| chart.at(Curves::angle_deg(index), rgb[channel]))
-                .collect();
-            Pen { color: if is_gray { SUM } else { color }, is_dashed }.line(painter, &points);
-        }
-    }
-    response.on_hover_ui(|ui| {
-        let Some(at) = ui.input(|input| input.pointer.hover_pos()) else { return };
-        let deg = (90.0 * (at.x - chart.rect().min.x) / chart.rect().width())
-            .clamp(0.0, Curves::angle_deg(now.len().max(1) - 1));
-        let nearest = (0..now.len()).min_by(|a, b| {
-            let apart = |index: &usize| (Curves::angle_deg(*index) - deg).abs();
-            apart(a).total_cmp(&apart(b))
-        });
-        let Some(index) = nearest else { return };
-        let text = |values: &[[f32; 3]]| {
-            values.get(index).map(|[r, g, b]| format!("{r:.4} {g:.4} {b:.4}")).unwrap_or_default()
-        };
-        ui.label(RichText::new(format!("{:.0}°  now {}", Curves::angle_deg(index), text(now))).monospace());
-        if let Some(before) = before {
-            ui.label(RichText::new(format!("  before {}", text(before))).monospace());
-        }
-    });
-}
-
-fn sum(lobe: &Lobe) -> [f32; 3] {
-    std::array::from_fn(|c| lobe.diffuse[c] + lobe.specular[c] + lobe.multiple[c])
 }
 
 /// Luminance Y of linear RGB (ITU-R BT.709).

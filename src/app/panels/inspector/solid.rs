@@ -1,12 +1,12 @@
 //! The lobe in space: a surface whose distance from the origin is f NoV in that direction, drawn with egui's painter.
 
 use egui::epaint::{Mesh, Vertex};
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use super::super::theme::{ACCENT, WARNING};
 use super::lobe::luminance;
-use super::plot::{self, GRID};
+use super::plot::GRID;
 use crate::app::inspector::directions::Directions;
 use crate::measure::Hemisphere;
 
@@ -14,6 +14,9 @@ use crate::measure::Hemisphere;
 const ELEVATION: (f32, f32) = (18.0, 55.0);
 /// The view stands beside the eye, so that the arrow of the eye is no point, degrees.
 const ASIDE: f32 = 40.0;
+
+/// Size of the names, points.
+const FONT: f32 = 10.0;
 
 /// A view of the lobe: the normal is up.
 struct View {
@@ -59,8 +62,8 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
     let arrow = |towards: Vec3, color: Color32, name: &str, inwards: bool| {
         let (near, far) = (view.place(0.15 * towards), view.place(0.98 * towards));
         let (from, to) = if inwards { (far, near) } else { (near, far) };
-        plot::arrow(painter, from, to, color);
-        plot::name(painter, view.place(1.06 * towards), name, color);
+        draw_arrow(painter, from, to, color);
+        draw_name(painter, view.place(1.06 * towards), name, color);
     };
     let arrows = [
         (direction(directions.light_deg.min(90.0), 180.0), WARNING.color(), "light", true),
@@ -72,6 +75,24 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
     behind.into_iter().for_each(|(towards, color, name, inwards)| arrow(towards, color, name, inwards));
     painter.add(Shape::mesh(mesh(&view, hemisphere)));
     front.into_iter().for_each(|(towards, color, name, inwards)| arrow(towards, color, name, inwards));
+}
+
+/// The name of an arrow, with its color, on a dark ground.
+fn draw_name(painter: &Painter, at: Pos2, text: &str, color: Color32) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(FONT), color);
+    let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+    painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, Color32::from_black_alpha(140));
+    painter.galley(rect.min, galley, color);
+}
+
+/// An arrow with a small head.
+fn draw_arrow(painter: &Painter, from: Pos2, to: Pos2, color: Color32) {
+    let stroke = Stroke::new(1.2, color);
+    let back = (from - to).normalized() * 6.0;
+    let side = 0.5 * back.rot90();
+    painter.line_segment([from, to], stroke);
+    painter.line_segment([to + back + side, to], stroke);
+    painter.line_segment([to + back - side, to], stroke);
 }
 
 /// The surface as quads, the farthest first.

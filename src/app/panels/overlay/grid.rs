@@ -2,9 +2,9 @@
 
 use egui::{Align2, FontId, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use crate::app::grid::cells;
+use crate::app::grid::places;
 use crate::app::panels::PanelState;
-use crate::app::panels::theme::{ACCENT, CARD, STRONG};
+use crate::app::panels::theme::{ACCENT, CARD, PANEL, STRONG};
 use crate::app::screen::PictureRect;
 use crate::session::Session;
 
@@ -21,9 +21,15 @@ pub(super) fn show(egui: &egui::Context, session: &Session, state: &PanelState, 
         at: (pixel(picture.min.x), pixel(picture.min.y)),
         size: (pixel(picture.width()), pixel(picture.height())),
     };
-    for (slug, cell) in grid.modes().iter().zip(cells(grid.modes().len(), whole)) {
-        let corner = pos2(cell.at.0 as f32, cell.at.1 as f32) / scale;
-        let rect = Rect::from_min_size(corner, vec2(cell.size.0 as f32, cell.size.1 as f32) / scale);
+    let count = grid.modes().len();
+    let places = places(count, whole).into_iter().map(|PictureRect { at, size }| {
+        Rect::from_min_size(pos2(at.0 as f32, at.1 as f32) / scale, vec2(size.0 as f32, size.1 as f32) / scale)
+    });
+    let (rects, empty) = places.enumerate().partition::<Vec<_>, _>(|(index, _)| *index < count);
+    for (_, rect) in empty {
+        painter.rect_filled(rect, 0.0, PANEL.color());
+    }
+    for (slug, (_, rect)) in grid.modes().iter().zip(rects) {
         let is_selected = *slug == session.settings.mode;
         // The selected one previews the mode that the mouse rests on.
         let slug = state.gallery.preview().filter(|_| is_selected).unwrap_or(slug);
