@@ -7,10 +7,10 @@ mod solid;
 mod texels;
 mod values;
 
-use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, TextEdit, Ui, pos2, vec2};
+use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use super::rows::{choose, elided};
-use super::spoken::named;
+use super::search::{self, Words};
 use super::theme::{ACCENT, QUIET};
 use crate::app::command::Command;
 use crate::app::inspector::{Inspector, Page, text};
@@ -46,15 +46,15 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, comm
     });
     match state.page {
         Page::Values => {
-            let hint = "Search values";
-            named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(f32::INFINITY)), hint);
+            search::field(ui, &mut state.search, "values", 0.0);
+            let words = Words::new(&state.search);
             let features = viewer.session.features();
             if let Some(search) = &state.search_not_finite {
                 not_finite::show(ui, search, viewer.shader.location.is_some(), commands);
             }
-            let with = |ui: &mut Ui| texels::show(ui, &reading.texels, &state.search, commands);
+            let with = |ui: &mut Ui| texels::show(ui, &reading.texels, &words, commands);
             let mode = &mut viewer.session.settings.mode;
-            values::show(ui, reading, &state.search, &shaders.modes, features, mode, with);
+            values::show(ui, reading, &words, &shaders.modes, features, mode, with);
         }
         Page::Lobe => {
             let chosen = viewer.session.settings.lights.chosen;

@@ -1,7 +1,8 @@
 //! The list of keys.
 
-use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
+use egui::{Key, Label, RichText, Ui, Window, vec2};
 
+use super::search::{self, Words};
 use super::theme::hide_hover_texts;
 use super::{ACCENT, QUIET};
 
@@ -71,7 +72,7 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
     hide_hover_texts(egui);
     window.show(egui, |ui| {
         ui.set_width(WIDTH.min(room.width() - 40.0));
-        let field = ui.add(TextEdit::singleline(&mut list.filter).hint_text("Filter").desired_width(f32::INFINITY));
+        let field = search::field(ui, &mut list.filter, "keys", 0.0);
         if is_new {
             field.request_focus();
         }
@@ -80,7 +81,7 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
         egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
             let found: Vec<_> = found(&list.filter).collect();
             if found.is_empty() {
-                ui.label(RichText::new("No match").color(QUIET));
+                Words::new(&list.filter).no_match(ui, "key");
             }
             found.into_iter().for_each(|(keys, meaning)| row(ui, keys, meaning));
         });
@@ -89,11 +90,8 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
 
 /// The rows that have all words of the filter.
 fn found(filter: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let filter = filter.to_lowercase();
-    KEYS.iter().copied().filter(move |(keys, meaning)| {
-        let text = format!("{keys} {meaning}").to_lowercase();
-        filter.split_whitespace().all(|word| text.contains(word))
-    })
+    let words = Words::new(filter);
+    KEYS.iter().copied().filter(move |(keys, meaning)| words.are_in(&format!("{keys} {meaning}")))
 }
 
 fn row(ui: &mut Ui, keys: &str, meaning: &str) {

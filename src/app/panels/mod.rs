@@ -18,6 +18,7 @@ pub(super) mod parameters;
 pub(super) mod passes;
 pub(super) mod rows;
 pub(super) mod scene;
+mod search;
 mod shaders;
 mod spoken;
 mod status_bar;

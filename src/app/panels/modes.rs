@@ -5,6 +5,7 @@ mod tile;
 
 use egui::{RichText, Ui, vec2};
 
+use super::search::{self, Words};
 use super::spoken::named;
 use super::theme::icon;
 use super::{PanelState, QUIET};
@@ -30,18 +31,18 @@ pub(super) fn show(
         return false;
     };
     let PanelState { search, scrolled_to, gallery, grid, .. } = state;
-    search_bar(ui, search, gallery, shaders.modes.len());
+    search_bar(ui, search, gallery);
     if grid.is_on() {
         side_by_side(ui, grid);
     }
-    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
+    let words = Words::new(search);
+    let is_found = |mode: &Mode| words.are_in(&text_of(mode));
     let place = |mode: &Mode| shaders.modes.iter().position(|other| other.slug == mode.slug).unwrap_or(0);
     let found =
         listed(&shaders.modes).into_iter().filter(|mode| is_found(mode)).map(|mode| (place(mode), mode)).collect();
     let found = best_first(found, &search.trim().to_lowercase());
     if found.is_empty() {
-        ui.label(RichText::new(format!("No mode matches \"{}\".", search.trim())).small().color(QUIET));
+        words.no_match(ui, "mode");
     }
     // A search shows modes without data too, and the selected mode is never folded away.
     let has_data = |mode: &Mode| mode.has_data(features) || !words.is_empty() || *current == mode.slug;
@@ -73,16 +74,9 @@ pub(super) fn show(
 }
 
 /// The search, and the button that switches between gallery and list.
-fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState, modes: usize) {
+fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState) {
     ui.horizontal(|ui| {
-        let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
-        let hint = format!("{}  Search {modes} modes", icon::MAGNIFYING_GLASS);
-        named(ui.add(egui::TextEdit::singleline(search).hint_text(hint).desired_width(width)), "Search modes");
-        if !search.is_empty()
-            && named(ui.small_button(icon::X), "Show all modes").on_hover_text("Show all modes").clicked()
-        {
-            search.clear();
-        }
+        search::field(ui, search, "modes", TOGGLE);
         let (symbol, hint) =
             if gallery.is_on { (icon::LIST, "Show names only") } else { (icon::GRID_FOUR, "Show thumbnails") };
         let toggle = named(ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(symbol)), hint);
@@ -183,7 +177,7 @@ fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize
     found
 }
 
-/// Returns the lowercase text that the search matches against.
-fn text_of(mode: &Mode) -> String {
-    format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase()
+/// The text that a search looks into.
+pub(super) fn text_of(mode: &Mode) -> String {
+    format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc)
 }

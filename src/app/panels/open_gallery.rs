@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Align2, FontId, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
 use egui::{TextureOptions, pos2, vec2};
 
+use super::search::{self, Words};
 use super::theme::{ACCENT, EDGE, QUIET};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
@@ -24,6 +25,7 @@ const WINDOW: egui::Vec2 = vec2(570.0, 520.0);
 pub(in crate::app) struct OpenGallery {
     pub(in crate::app) is_open: bool,
     pictures: Pictures,
+    search: String,
 }
 
 /// The pictures, which are decoded once the gallery is open.
@@ -61,15 +63,17 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec
         provide(egui, viewer, &mut state);
         let mut stays = true;
         let room = egui.content_rect();
-        let size = WINDOW.min(room.size() - vec2(24.0, 70.0));
+        let size = WINDOW.min(room.size() - vec2(24.0, 94.0));
         let window = Window::new(RichText::new("Open").strong()).open(&mut stays).collapsible(false).resizable(false);
         let window = window.order(egui::Order::Foreground).pivot(Align2::CENTER_CENTER).default_pos(room.center());
         let before = commands.len();
         window.show(egui, |ui| {
             ui.set_width(size.x);
-            contents(ui, viewer, &state, size.y, commands);
+            contents(ui, viewer, &mut state, size.y, commands);
         });
         state.is_open = stays && commands.len() == before;
+    } else {
+        state.search.clear();
     }
     viewer.panels.open_gallery = state;
 }
@@ -91,7 +95,7 @@ fn provide(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery) {
     };
 }
 
-fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &OpenGallery, height: f32, commands: &mut Vec<Command>) {
+fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &mut OpenGallery, height: f32, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         if ui.button("File…").on_hover_text("A model, environment, measured BRDF, look or shader (Ctrl+O)").clicked()
         {
@@ -102,22 +106,38 @@ fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &OpenGallery, height: f32, 
         }
         ui.label(RichText::new("or drop a file on the window").small().color(QUIET));
     });
-    ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-        heading(ui, "Models");
+    search::field(ui, &mut state.search, "models and environments", 0.0);
+    let words = Words::new(&state.search);
+    let state = &*state;
+    let mut is_empty = true;
+    // The height does not follow the search, so that the window stays in place.
+    ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
         let model = viewer.session.model().map(|model| model.name.clone()).unwrap_or_default();
         let models = BUILT_IN.map(|name| (name, name.to_owned(), name == model, format!("specula {name}")));
-        if let Some(name) = grid(ui, state, &models) {
-            commands.push(Command::OpenModel(name.into()));
+        let (tiles, files) = (found(models, &words), recent(viewer, Kind::Model, &words));
+        if !tiles.is_empty() || !files.is_empty() {
+            is_empty = false;
+            heading(ui, "Models");
+            if let Some(name) = grid(ui, state, &tiles) {
+                commands.push(Command::OpenModel(name.into()));
+            }
+            show_recent(ui, &files, |path| commands.push(Command::OpenModel(path)));
         }
-        recent(ui, viewer, Kind::Model, commands);
-        heading(ui, "Environments");
         let now = viewer.session.settings.environment.name.clone();
         let environments = environment::BUILT_IN
             .map(|name| (name, format!("environment-{name}"), name == now, format!("specula --env {name}")));
-        if let Some(name) = grid(ui, state, &environments) {
-            commands.push(Command::OpenEnvironment(PathBuf::from(name)));
+        let (tiles, files) = (found(environments, &words), recent(viewer, Kind::Environment, &words));
+        if !tiles.is_empty() || !files.is_empty() {
+            is_empty = false;
+            heading(ui, "Environments");
+            if let Some(name) = grid(ui, state, &tiles) {
+                commands.push(Command::OpenEnvironment(PathBuf::from(name)));
+            }
+            show_recent(ui, &files, |path| commands.push(Command::OpenEnvironment(path)));
         }
-        recent(ui, viewer, Kind::Environment, commands);
+        if is_empty {
+            words.no_match(ui, "model or environment");
+        }
     });
 }
 
@@ -128,6 +148,11 @@ fn heading(ui: &mut Ui, title: &str) {
 
 /// A picture with its name: the name, the name of the picture, whether it is on screen, and how the command line opens it.
 type Tile<'a> = (&'a str, String, bool, String);
+
+/// The tiles that have the words of the search in their names.
+fn found<'a>(tiles: impl IntoIterator<Item = Tile<'a>>, words: &Words) -> Vec<Tile<'a>> {
+    tiles.into_iter().filter(|(name, ..)| words.are_in(name)).collect()
+}
 
 /// Shows pictures with their names. Returns the name of the clicked one.
 fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a str> {
@@ -161,19 +186,20 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
     clicked
 }
 
-/// The files of a kind that were open.
-fn recent(ui: &mut Ui, viewer: &Viewer, kind: Kind, commands: &mut Vec<Command>) {
-    let files = viewer.panels.recent.of(kind);
+/// The files of a kind that were open and have the words of the search in their paths.
+fn recent(viewer: &Viewer, kind: Kind, words: &Words) -> Vec<PathBuf> {
     let is_built_in = |path: &Path| path.components().count() == 1 && !path.exists();
+    let is_found = |path: &&PathBuf| !is_built_in(path) && words.are_in(&path.to_string_lossy());
+    viewer.panels.recent.of(kind).iter().filter(is_found).cloned().collect()
+}
+
+/// Shows files by their names, and opens the clicked one.
+fn show_recent(ui: &mut Ui, files: &[PathBuf], mut open: impl FnMut(PathBuf)) {
     ui.horizontal_wrapped(|ui| {
-        for path in files.iter().filter(|path| !is_built_in(path)) {
+        for path in files {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
             if ui.button(RichText::new(name).small()).on_hover_text(path.display().to_string()).clicked() {
-                commands.push(match kind {
-                    Kind::Model => Command::OpenModel(path.clone()),
-                    Kind::Environment => Command::OpenEnvironment(path.clone()),
-                    Kind::Tree => Command::OpenTree(path.clone()),
-                });
+                open(path.clone());
             }
         }
     });
@@ -185,12 +211,21 @@ mod tests {
     use crate::scene::PICTURE_SIZE;
 
     #[test]
+    fn a_search_finds_tiles_by_name() {
+        let tiles = || ["shader-ball", "teapot"].map(|name| (name, name.to_owned(), false, String::new()));
+        let names = |search: &str| found(tiles(), &Words::new(search)).iter().map(|tile| tile.0).collect::<Vec<_>>();
+        assert_eq!(names("BALL shader"), ["shader-ball"]);
+        assert_eq!((names("").len(), names("cup").len()), (2, 0));
+    }
+
+    #[test]
     fn each_picture_has_its_place_in_the_texture() {
         let egui = egui::Context::default();
         let image = egui::ColorImage::filled([PICTURE_SIZE.0 as usize * 4, 1], egui::Color32::RED);
         let texture = egui.load_texture("test", image, TextureOptions::LINEAR);
         let names = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
-        let gallery = OpenGallery { is_open: true, pictures: Pictures::Uploaded(texture, names) };
+        let gallery =
+            OpenGallery { is_open: true, pictures: Pictures::Uploaded(texture, names), search: String::new() };
         let place = |name: &str| gallery.picture(name).map(|(_, place)| (place.left(), place.right()));
         assert_eq!((place("a"), place("c"), place("e")), (Some((0.0, 0.25)), Some((0.5, 0.75)), None));
     }

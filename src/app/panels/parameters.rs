@@ -4,22 +4,17 @@ pub(in crate::app) mod defaults;
 
 use std::collections::BTreeMap;
 
-use egui::{Response, RichText, Ui};
+use egui::{Response, Ui};
 
-use super::QUIET;
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
-use super::spoken::named;
-use super::theme::icon;
+use super::search;
 use crate::app::numbers::{component, of_constant, of_parameter};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
-
-/// Up to this many rows need no search.
-const FEW: usize = 10;
 
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;
@@ -38,17 +33,14 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     }
     let all: Vec<&String> = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name)).collect();
     let set: Vec<String> = all.iter().filter(|name| values.contains_key(**name)).map(|name| (*name).clone()).collect();
-    let words = if all.len() > FEW { search(ui) } else { Vec::new() };
-    let is_found = |texts: [&str; 4]| {
-        let text = texts.join(" ").to_lowercase();
-        words.iter().all(|word| text.contains(word))
-    };
+    let words = search::above_kept(ui, "parameters", all.len());
+    let is_found = |texts: [&str; 4]| words.are_in(&texts.join(" "));
     let parameters: Vec<&Parameter> =
         parameters.into_iter().filter(|p| is_found([&p.label, &p.name, &p.group, &p.doc])).collect();
     let constants: Vec<&Constant> =
         constants.into_iter().filter(|c| is_found([&c.label, &c.name, &c.group, &c.doc])).collect();
     if constants.is_empty() && parameters.is_empty() {
-        ui.label(RichText::new(format!("No parameter matches \"{}\".", words.join(" "))).small().color(QUIET));
+        words.no_match(ui, "parameter");
     }
     // Without a group first, then group by group in the order in which the tree names them.
     let mut groups = vec![""];
@@ -75,18 +67,6 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     if resets {
         set.iter().for_each(|name| drop(values.remove(name)));
     }
-}
-
-/// Shows the search above the rows. Returns its words, in small letters.
-fn search(ui: &mut Ui) -> Vec<String> {
-    let id = ui.id().with("search");
-    let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
-    let hint = format!("{}  Search parameters", icon::MAGNIFYING_GLASS);
-    let field = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(f32::INFINITY);
-    named(ui.add(field), "Search parameters").on_hover_text("Searches names, groups and descriptions");
-    let words = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    ui.data_mut(|data| data.insert_temp(id, text));
-    words
 }
 
 /// Shows the row of a constant.

@@ -8,6 +8,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::QUIET;
 use super::parameters::{is_true, show_constant, show_parameter};
 use super::rows::{Row, check, set_option};
+use super::search::{self, Words};
 use crate::app::playback::Playback;
 use crate::settings::Settings;
 use crate::shader::annotation::pass::{MODEL, Target};
@@ -24,22 +25,24 @@ pub(super) fn show(
     if is_animated {
         clock(ui, playback);
     }
+    let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());
+    let names = internal(shaders);
+    let Found { added, switches, shipped, inside } = Found::new(shaders, &names, &words);
+    if !words.is_empty() && added.len() + switches.len() + shipped.len() + inside.len() == 0 {
+        words.no_match(ui, "pass");
+    }
     // A parameter that several effects use is shown once.
     let mut shown = BTreeSet::new();
-    let names = internal(shaders);
-    let (inside, effects): (Vec<&GraphPass>, Vec<&GraphPass>) =
-        own(shaders).partition(|pass| names.contains(pass.name()));
-    let (shipped, added): (Vec<&GraphPass>, Vec<&GraphPass>) = effects.into_iter().partition(|pass| is_shipped(pass));
     let show_effect = |ui: &mut Ui, pass: &GraphPass, settings: &mut Settings, shown: &mut BTreeSet<_>| {
         if show_switch(ui, pass, settings) {
             show_parameters(ui, of_effect(shaders, pass, &names), &pass.note.label, settings, shown);
         }
     };
     // A shader without a model covers what the others draw.
-    let is_covered = added.iter().any(|pass| pass.covers());
+    let is_covered = words.is_empty() && added.iter().any(|pass| pass.covers());
     added.into_iter().for_each(|pass| show_effect(ui, pass, settings, &mut shown));
     let mut show_others = |ui: &mut Ui| {
-        for switch in switches(shaders) {
+        for switch in &switches {
             show_constant(ui, switch, &mut settings.shader);
             if is_true(switch, &settings.shader) {
                 let of_switch = of_switch(shaders, switch);
@@ -56,13 +59,48 @@ pub(super) fn show(
     }
     if !inside.is_empty() {
         let title = RichText::new(format!("Internal passes ({})", inside.len())).small().color(QUIET);
-        let header = CollapsingHeader::new(title).id_salt("internal passes");
+        let header = CollapsingHeader::new(title).id_salt("internal passes").open((!words.is_empty()).then_some(true));
         let header = header.show_unindented(ui, |ui| {
             for pass in inside {
                 let _ = show_switch(ui, pass, settings);
             }
         });
         header.header_response.on_hover_text("Passes whose images the effects read");
+    }
+}
+
+/// What the panel lists: the passes and switches that have the words of the search, or whose parameters do.
+#[derive(Debug, Default)]
+struct Found<'a> {
+    /// Effects of the user.
+    added: Vec<&'a GraphPass>,
+    /// Constants that switch passes.
+    switches: Vec<&'a Constant>,
+    /// Effects that Specula comes with.
+    shipped: Vec<&'a GraphPass>,
+    /// Internal passes.
+    inside: Vec<&'a GraphPass>,
+}
+
+impl<'a> Found<'a> {
+    fn new(shaders: &'a ShaderSet, names: &BTreeSet<&str>, words: &Words) -> Self {
+        let with = |texts: [&str; 4], parameters: Vec<&Parameter>| {
+            let own = std::iter::once(texts.join(" "));
+            let below = parameters.iter().map(|p| [texts[0], &p.label, &p.name, &p.doc].join(" "));
+            own.chain(below).any(|text| words.are_in(&text))
+        };
+        let is_found = |pass: &&GraphPass| {
+            let note = &pass.note;
+            with([&note.label, pass.name(), &note.stage, &note.doc], of_effect(shaders, pass, names))
+        };
+        let is_switch = |switch: &&Constant| {
+            let Constant { label, name, doc, group, .. } = *switch;
+            with([label, name, group, doc], of_switch(shaders, switch))
+        };
+        let (inside, effects): (Vec<_>, Vec<_>) =
+            own(shaders).filter(is_found).partition(|pass| names.contains(pass.name()));
+        let (shipped, added) = effects.into_iter().partition(|pass| is_shipped(pass));
+        Self { added, switches: switches(shaders).filter(is_switch).collect(), shipped, inside }
     }
 }
 

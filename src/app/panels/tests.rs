@@ -117,7 +117,7 @@ fn cameras_are_kept_and_found_by_their_number() {
 #[test]
 fn a_comparison_begins_with_a_picture_or_a_second_tree() {
     let state = (Compare::default(), Vec::new());
-    let mut harness = harness(state, |ui, (compare, commands)| comparison::show(ui, compare, commands));
+    let mut harness = harness(state, |ui, (compare, commands)| comparison::show(ui, compare, None, commands));
     harness.get_by_role_and_label(Role::Button, "Keep this picture").click();
     harness.run();
     for name in ["A picture…", "A shader tree…"] {

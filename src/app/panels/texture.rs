@@ -5,6 +5,7 @@ use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::QUIET;
 use super::scene::tree::textures;
+use super::search;
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
@@ -38,6 +39,8 @@ pub(in crate::app) struct TextureState {
     /// The picture that the screen has drawn, and the part of it that shows the texture.
     pub(in crate::app) shown: Option<(egui::TextureId, Rect)>,
     source: Option<TextureSource>,
+    /// The texture that was selected in the scene in the last frame.
+    selected: Option<TextureSource>,
     channels: u32,
     /// `None` is the level that fits the scale.
     level: Option<u32>,
@@ -46,6 +49,8 @@ pub(in crate::app) struct TextureState {
     scale: Option<f32>,
     /// The texture coordinates in the middle.
     middle: [f32; 2],
+    /// The search in the list of textures.
+    search: String,
 }
 
 impl Default for TextureState {
@@ -54,11 +59,13 @@ impl Default for TextureState {
             request: None,
             shown: None,
             source: None,
+            selected: None,
             channels: 0,
             level: None,
             shows_uv: false,
             scale: None,
             middle: [0.5; 2],
+            search: String::new(),
         }
     }
 }
@@ -67,10 +74,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
     let Some(scene) = viewer.session.scene() else { return };
     let model = scene.model();
     let all = textures(model);
-    if let Selected::Texture(source) = viewer.selected
-        && state.source != Some(source)
-    {
-        (state.source, state.level, state.scale, state.middle) = (Some(source), None, None, [0.5; 2]);
+    let selected = if let Selected::Texture(source) = viewer.selected { Some(source) } else { None };
+    // A texture that the user chose in the list since then stays.
+    if std::mem::replace(&mut state.selected, selected) != selected && selected.is_some() {
+        (state.source, state.level, state.scale, state.middle) = (selected, None, None, [0.5; 2]);
     }
     let source = state.source.filter(|source| all.contains_key(source)).or_else(|| all.keys().next().copied());
     let Some(source) = source else {
@@ -80,21 +87,41 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
     state.source = Some(source);
     let (uses, image) = (&all[&source], source.image(model));
     let (width, height) = image.map_or((1, 1), |image| (image.width, image.height));
-    let name = image.map_or("", |image| image.name.as_str());
-    let list = egui::ComboBox::from_id_salt("texture").selected_text(name).width(ui.available_width()).truncate();
-    let list = list.show_ui(ui, |ui| {
-        for other in all.keys() {
-            let label = other.image(model).map_or("", |image| image.name.as_str());
-            ui.selectable_value(&mut state.source, Some(*other), label);
-        }
-    });
-    list.response.on_hover_text("The texture to show. The Scene panel lists textures by material");
+    let names: Vec<(TextureSource, &str)> = all.keys().map(|other| (*other, name_of(*other, model))).collect();
+    list(ui, state, source, &names);
     controls(ui, state, mips::count(width, height));
     let about = about(model, source, uses, (width, height));
     let text_height = 4.0 * 14.0;
     let area = vec2(ui.available_width(), (ui.available_height() - text_height).max(80.0));
     picture(ui, state, source, (width, height), area, meshes(&scene, source, uses));
     ui.add(Label::new(RichText::new(about).small().color(QUIET)).selectable(true));
+}
+
+/// The name of the image of a texture.
+fn name_of(source: TextureSource, model: &Model) -> &str {
+    source.image(model).map_or("", |image| image.name.as_str())
+}
+
+/// The list of all textures with their names, with a search.
+fn list(ui: &mut Ui, state: &mut TextureState, source: TextureSource, all: &[(TextureSource, &str)]) {
+    let name = all.iter().find(|(other, _)| *other == source).map_or("", |(_, name)| name);
+    let list = egui::ComboBox::from_id_salt("texture").selected_text(name).width(ui.available_width()).truncate();
+    // A click into the search leaves the list open.
+    let list = list.close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    let list = list.show_ui(ui, |ui| {
+        let words = search::above(ui, &mut state.search, "textures", all.len());
+        if !all.iter().any(|(_, name)| words.are_in(name)) {
+            words.no_match(ui, "texture");
+        }
+        for (other, name) in all.iter().filter(|(_, name)| words.are_in(name)) {
+            if ui.selectable_label(*other == source, *name).clicked() {
+                state.source = Some(*other);
+                state.search.clear();
+                ui.close();
+            }
+        }
+    });
+    list.response.on_hover_text("The texture to show. The Scene panel lists textures by material");
 }
 
 /// Channels, level and texture coordinates.

@@ -5,6 +5,7 @@ pub(super) mod comparison;
 use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::rows::elided;
+use super::search::{self, Words};
 use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
@@ -15,6 +16,8 @@ use crate::app::viewer::{Version, Viewer};
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 /// How much smaller it is in a list.
 const IN_LIST: f32 = 0.625;
+/// What the panel lists, in words.
+const WHAT: &str = "versions";
 /// Most lines of a difference in the hover text.
 const MOST_LINES: usize = 40;
 
@@ -23,6 +26,7 @@ const MOST_LINES: usize = 40;
 pub(in crate::app) struct TimelineState {
     /// The version that the user is asked about before it is written to the files.
     asked: Option<u64>,
+    search: String,
     /// Whether the last frame has shown the panel.
     pub(in crate::app) is_visible: bool,
 }
@@ -37,15 +41,23 @@ impl TimelineState {
 /// Shows the panel.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
     state.is_visible = true;
-    comparison::show(ui, &mut viewer.compare, commands);
+    let area = ui.available_size();
+    // A wide tile runs from left to right, with the newest version first as in a tall one.
+    let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
+    let count = viewer.versions.iter().count();
+    // A strip has no height to spare, so the search stands beside the buttons there.
+    let beside = (is_strip && count > search::FEW).then_some(&mut state.search);
+    comparison::show(ui, &mut viewer.compare, beside, commands);
+    let words = match is_strip {
+        true if count <= search::FEW => Words::default(),
+        true => Words::new(&state.search),
+        false => search::above(ui, &mut state.search, WHAT, count),
+    };
     if let Some(number) = state.asked {
         ask(ui, viewer, number, &mut state.asked, commands);
     }
     let viewer = &*viewer;
     let newest = viewer.shown_generation();
-    let area = ui.available_size();
-    // A wide tile runs from left to right, with the newest version first as in a tall one.
-    let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
     let scroll = if is_strip { egui::ScrollArea::horizontal() } else { egui::ScrollArea::vertical() };
     scroll.auto_shrink(false).show(ui, |ui| {
         let layout = match is_strip {
@@ -53,16 +65,28 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             false => egui::Layout::top_down(egui::Align::Min),
         };
         ui.with_layout(layout, |ui| {
-            for version in viewer.versions.iter().rev() {
+            let mut found = viewer.versions.iter().rev().filter(|version| is_found(viewer, version, &words)).peekable();
+            if found.peek().is_none() && !words.is_empty() {
+                words.no_match(ui, "version");
+            }
+            for version in found {
                 let entry = Entry { viewer, version, newest };
                 let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
                 entry.respond(response, &mut state.asked, commands);
             }
-            if viewer.versions.iter().next().is_none() {
+            if count == 0 {
                 ui.label(RichText::new("Your edits appear here once they are shown").color(QUIET));
             }
         });
     });
+}
+
+/// Whether a version has the words of the search in its number, files and time, or in a line that it changed.
+fn is_found(viewer: &Viewer, version: &Version, words: &Words) -> bool {
+    let title = || format!("{} {} {}", version.number, version.title(), version.since.format("%H:%M:%S"));
+    let is_change = |line: &&Line| matches!(line.kind, Kind::Added | Kind::Removed);
+    let mut lines = viewer.versions.difference(version).iter().filter(is_change);
+    words.is_empty() || words.are_in(&title()) || lines.any(|line| words.are_in(&line.text))
 }
 
 /// A version in the panel.

@@ -7,16 +7,15 @@ use super::super::theme::{ACCENT, EDGE, QUIET};
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
+use crate::app::panels::search::Words;
 use crate::app::panels::spoken;
 use crate::app::selection::Selected;
 use crate::render::Texel;
 
-/// Shows a row for each texture that has the words of `search`.
-pub(super) fn show(ui: &mut Ui, texels: &[Texel], search: &str, commands: &mut Vec<Command>) {
-    let is_found = |texel: &&Texel| {
-        let text = format!("texture texel {} {}", texel.place.slot_name(), texel.place.name).to_lowercase();
-        search.to_lowercase().split_whitespace().all(|word| text.contains(word))
-    };
+/// Shows a row for each texture that has the words of the search.
+pub(super) fn show(ui: &mut Ui, texels: &[Texel], words: &Words, commands: &mut Vec<Command>) {
+    let is_found =
+        |texel: &&Texel| words.are_in(&format!("texture texel {} {}", texel.place.slot_name(), texel.place.name));
     let found: Vec<&Texel> = texels.iter().filter(is_found).collect();
     if found.is_empty() {
         return;
@@ -126,7 +125,7 @@ mod tests {
         let search = NotFiniteSearch { number: 1, mode: "final".into(), found };
         let show = move |ui: &mut Ui, commands: &mut Vec<Command>| {
             not_finite::show(ui, &search, true, commands);
-            super::show(ui, &texels, "", commands);
+            super::show(ui, &texels, &Words::default(), commands);
         };
         let mut harness = Harness::new_ui_state(show, Vec::new());
         harness.run();

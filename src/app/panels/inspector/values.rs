@@ -6,6 +6,8 @@ use egui::{Align2, Color32, FontId, Rect, Response, RichText, Sense, Stroke, Str
 use super::super::rows::option_text;
 use super::super::theme::{ACCENT, EDGE, ERROR, QUIET};
 use crate::app::inspector::{Reading, text};
+use crate::app::panels::modes::text_of;
+use crate::app::panels::search::Words;
 use crate::app::panels::spoken;
 use crate::shader::{Mode, PixelValue};
 
@@ -21,28 +23,23 @@ const UNIT: f32 = 34.0;
 pub(super) fn show(
     ui: &mut Ui,
     reading: &Reading,
-    search: &str,
+    words: &Words,
     modes: &[Mode],
     features: Option<u32>,
     current: &mut String,
     more: impl FnOnce(&mut Ui),
 ) {
-    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    let is_found = |mode: &Mode| {
-        let text = || format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase();
-        words.is_empty() || words.iter().all(|word| text().contains(word))
-    };
+    let is_found = |mode: &Mode| words.is_empty() || words.are_in(&text_of(mode));
     let has_feature = |mode: &Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
     let (read, unread): (Vec<&Mode>, Vec<&Mode>) =
         modes.iter().partition(|mode| reading.value(&mode.slug).is_some() || !has_feature(mode));
     let found: Vec<&Mode> = read.into_iter().filter(|mode| is_found(mode)).collect();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if found.is_empty() {
-            let none = match words.is_empty() {
-                true => "Reading the pixel…".to_owned(),
-                false => format!("No value matches \"{}\".", search.trim()),
-            };
-            ui.label(RichText::new(none).small().color(QUIET));
+            match words.is_empty() {
+                true => drop(ui.label(RichText::new("Reading the pixel…").small().color(QUIET))),
+                false => words.no_match(ui, "value"),
+            }
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut more = Some(more);

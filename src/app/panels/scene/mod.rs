@@ -5,10 +5,10 @@ pub(super) mod material;
 mod row;
 pub(super) mod tree;
 
-use egui::{RichText, ScrollArea, TextEdit, Ui};
+use egui::{RichText, ScrollArea, Ui};
 
 use super::QUIET;
-use super::spoken::named;
+use super::search::{self, Words};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::selection::Selected;
@@ -53,9 +53,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
     ui.horizontal(|ui| {
         let settings = &viewer.session.settings.scene;
         let is_whole = settings.hidden.is_empty() && settings.isolated.is_empty();
-        let width = ui.available_width() - if is_whole { 0.0 } else { 66.0 };
-        let hint = "Search nodes, materials, textures";
-        named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(width)), hint);
+        search::field(ui, &mut state.search, "nodes, materials, textures", if is_whole { 0.0 } else { 66.0 });
         if !is_whole && ui.small_button("Show all").on_hover_text("Draw everything that is hidden (Alt+H)").clicked() {
             commands.push(Command::ShowAll);
         }
@@ -66,9 +64,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
     state.tree.update(&scene, &state.search);
     let rows = state.tree.rows().len();
     if rows == 0 {
-        ui.label(
-            RichText::new(format!("Nothing in the scene matches \"{}\".", state.search.trim())).small().color(QUIET),
-        );
+        Words::new(&state.search).no_match(ui, "part of the scene");
         return;
     }
     let height = row::HEIGHT + ui.spacing().item_spacing.y;

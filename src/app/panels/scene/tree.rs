@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::app::panels::plural;
+use crate::app::panels::search::Words;
 use crate::app::selection::{LightId, Selected, name_or};
 use crate::frame::Scene;
 use crate::scene::{LightKind, Model, TextureSource};
@@ -76,11 +77,11 @@ impl Tree {
             self.folded.clear();
         }
         let all = rows(model);
-        let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+        let words = Words::new(search);
         self.rows = match words.is_empty() {
             true => self.unfolded(all),
             false => {
-                let has = |row: &Row| words.iter().all(|word| row.name.to_lowercase().contains(word));
+                let has = |row: &Row| words.are_in(&row.name);
                 all.into_iter().filter(|row| row.item.is_some() && has(row)).collect()
             }
         };

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{Align2, Color32, CursorIcon, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
 use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
 use crate::app::command::Command;
 use crate::app::editor::Place;
+use crate::app::panels::search::{self, Words};
 use crate::app::panels::spoken;
 use crate::app::viewer::Viewer;
 use crate::shader::{IncludeGraph, Severity, ShaderSet, TreePath};
@@ -73,8 +74,8 @@ enum Row {
 
 /// The rows in sight: folders before files, each sorted.
 fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded: &BTreeSet<TreePath>) -> Vec<Row> {
-    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    let is_found = |path: &&TreePath| words.iter().all(|word| path.as_str().to_lowercase().contains(word));
+    let words = Words::new(search);
+    let is_found = |path: &&TreePath| words.are_in(path.as_str());
     let mut files: Vec<&TreePath> = graph.files().filter(is_found).collect();
     // A folder comes before the files beside it.
     let order = |path: &TreePath| -> Vec<(bool, String)> {
@@ -141,12 +142,11 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, command
         return;
     };
     state.update(&shaders, &viewer.shader.tree);
-    let hint = "Search files";
-    spoken::named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(f32::INFINITY)), hint)
-        .on_hover_text("Files that no stage includes are not listed");
+    let field = search::field(ui, &mut state.search, "files", 0.0);
+    field.on_hover_text("Files that no stage includes are not listed");
     let rows = rows(&state.graph, &state.search, &state.closed, &state.unfolded);
     if rows.is_empty() {
-        ui.label(RichText::new(format!("No file matches \"{}\".", state.search.trim())).small().color(QUIET));
+        Words::new(&state.search).no_match(ui, "file");
     }
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, ROW, rows.len(), |ui, range| {

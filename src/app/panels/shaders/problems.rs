@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
 use super::super::rows::elided;
+use super::super::search::{self, Words};
 use super::super::{ACCENT, ERROR, QUIET, WARNING, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
@@ -22,25 +23,32 @@ enum Line<'a> {
 }
 
 /// The diagnostics by file, in the order in which the files come first.
-fn grouped(diagnostics: &[Diagnostic]) -> Vec<Line<'_>> {
+fn grouped<'a>(diagnostics: &'a [Diagnostic], words: &Words) -> Vec<Line<'a>> {
+    let is_found = |diagnostic: &&Diagnostic| words.are_in(&text_of(diagnostic));
+    let diagnostics: Vec<&Diagnostic> = diagnostics.iter().filter(is_found).collect();
     let mut files: Vec<&str> = Vec::new();
-    for diagnostic in diagnostics {
+    for diagnostic in &diagnostics {
         if !files.contains(&diagnostic.file.as_str()) {
             files.push(&diagnostic.file);
         }
     }
     let lines = files.into_iter().flat_map(|file| {
-        let own: Vec<&Diagnostic> = diagnostics.iter().filter(|diagnostic| diagnostic.file == file).collect();
+        let own: Vec<&Diagnostic> = diagnostics.iter().copied().filter(|diagnostic| diagnostic.file == file).collect();
         std::iter::once(Line::File(file, own.len())).chain(own.into_iter().map(Line::Diagnostic))
     });
     lines.collect()
 }
 
 pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
-    let lines = grouped(&viewer.session.diagnostics);
-    if lines.is_empty() {
+    let diagnostics = &viewer.session.diagnostics;
+    if diagnostics.is_empty() {
         ui.label(RichText::new("No errors and no warnings").small().color(QUIET));
         return;
+    }
+    let words = search::above_kept(ui, "problems", diagnostics.len());
+    let lines = grouped(diagnostics, &words);
+    if lines.is_empty() {
+        words.no_match(ui, "problem");
     }
     let has_files = viewer.shader.location.is_some();
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, lines.len(), |ui, range| {
@@ -54,6 +62,12 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
             }
         }
     });
+}
+
+/// The text that the search looks into.
+fn text_of(diagnostic: &Diagnostic) -> String {
+    let kind = if diagnostic.severity == Severity::Error { "error" } else { "warning" };
+    format!("{kind} {} {}", diagnostic.file, diagnostic.message)
 }
 
 fn one(ui: &mut Ui, diagnostic: &Diagnostic, has_files: bool, commands: &mut Vec<Command>) {
@@ -96,7 +110,10 @@ mod tests {
             Line::File(file, count) => format!("{file} {count}"),
             Line::Diagnostic(diagnostic) => diagnostic.message.clone(),
         };
-        let lines: Vec<String> = grouped(&diagnostics).iter().map(words).collect();
-        assert_eq!(lines, ["b.glsl 2", "1", "3", "a.glsl 1", "2"]);
+        let lines =
+            |search: &str| grouped(&diagnostics, &Words::new(search)).iter().map(words).collect::<Vec<String>>();
+        assert_eq!(lines(""), ["b.glsl 2", "1", "3", "a.glsl 1", "2"]);
+        assert_eq!(lines("ERROR b.glsl 3"), ["b.glsl 1", "3"]);
+        assert!(lines("warning").is_empty());
     }
 }

@@ -4,16 +4,25 @@ use egui::{Label, RichText, Ui};
 
 use crate::app::command::{Command, CompareWith};
 use crate::app::dialog::Dialog;
+use crate::app::panels::search;
 use crate::app::panels::theme::QUIET;
-use crate::app::panels::timeline::monospace;
+use crate::app::panels::timeline::{WHAT, monospace};
 use crate::app::viewer::{Compare, Difference};
 
 /// The meaning of the numbers of a comparison.
 const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different the pictures look to a viewer who flips between \
     them, 0.7 m from a 4K screen. Largest: the largest difference of a channel of the display";
 
-/// Shows the buttons that begin and end a comparison, and its numbers.
-pub(in crate::app::panels) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Command>) {
+/// Width of the search at the right of the buttons, in points.
+const SEARCH: f32 = 180.0;
+
+/// Shows the buttons that begin and end a comparison, and its numbers. A `search` of the versions stands beside them.
+pub(in crate::app::panels) fn show(
+    ui: &mut Ui,
+    compare: &mut Compare,
+    search: Option<&mut String>,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal_wrapped(|ui| {
         if compare.is_on() {
             if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {
@@ -43,6 +52,10 @@ pub(in crate::app::panels) fn show(ui: &mut Ui, compare: &mut Compare, commands:
         });
         if compare.is_opening() {
             ui.spinner().on_hover_text("The other picture is being read or compiled");
+        }
+        if let Some(text) = search {
+            let beside = (ui.available_width() - SEARCH).max(0.0);
+            search::field(ui, text, WHAT, beside);
         }
     });
     if let Some(note) = compare.note() {
