@@ -6,7 +6,7 @@ use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, FontId, TextStyle, Ui, pos2, vec2};
 
 use super::search::Found;
-use crate::app::panels::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT};
+use crate::app::panels::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT, small_mono_font};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 22.0;
@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
     let small = TextStyle::Small.resolve(ui.style());
     ui.painter().text(text.right_center(), Align2::RIGHT_CENTER, found.entry.group, small.clone(), quiet);
     let at = pos2(text.right() - GROUP - GAP, text.center().y);
-    let mono = FontId::monospace(small.size);
+    let mono = small_mono_font();
     let note = ui.painter().text(at, Align2::RIGHT_CENTER, note, mono, quiet);
     let room = note.left() - GAP - text.left();
     let font = TextStyle::Body.resolve(ui.style());

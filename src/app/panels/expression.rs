@@ -11,6 +11,7 @@ use super::spoken::named;
 use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::difference::{Kind, Line};
+use crate::app::panels::theme::small_mono;
 use crate::app::viewer::{NO_FOLDER, Viewer};
 use crate::settings::Settings;
 use crate::shader::expression::{MODE, place_of, variables};
@@ -189,7 +190,7 @@ fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
             state.show_line(shown.path.as_str(), number);
         }
     });
-    let text = RichText::new(shown.before.trim()).monospace().size(11.5);
+    let text = small_mono(shown.before.trim());
     ui.add(elided(text)).on_hover_text(shown.before.trim());
 }
 
@@ -202,7 +203,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut Expr
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
         for (name, kind) in returns.iter().chain(&shown.variables) {
-            let text = RichText::new(name).monospace().size(11.5);
+            let text = small_mono(name);
             let button = ui.selectable_label(watched.as_ref() == Some(name), text);
             if button.on_hover_text(format!("{kind} {name}: click to see its value over the model")).clicked() {
                 state.error = None;
@@ -289,7 +290,7 @@ fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
     ui.horizontal_wrapped(|ui| {
         for (path, line) in edited {
             let name = path.rsplit('/').next().unwrap_or(&path);
-            let text = RichText::new(format!("{name}:{line}")).monospace().size(11.5).color(ACCENT);
+            let text = small_mono(format!("{name}:{line}")).color(ACCENT);
             if ui
                 .add(Button::new(text).frame(false))
                 .on_hover_text(format!("Show the variables and numbers of {path}:{line}"))

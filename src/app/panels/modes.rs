@@ -7,7 +7,7 @@ use egui::{RichText, Ui, vec2};
 
 use super::search::{self, Words};
 use super::spoken::named;
-use super::theme::icon;
+use super::theme::{icon, small_mono};
 use super::{PanelState, QUIET};
 use crate::app::gallery::GalleryState;
 use crate::app::grid::Grid;
@@ -141,7 +141,7 @@ impl<'m> List<'_, 'm> {
 /// Shows a mode with its keys at the right.
 fn row(ui: &mut Ui, index: usize, mode: &Mode, is_current: bool) -> egui::Response {
     let keys = keys(index, mode).into_iter().map(String::from).collect::<Vec<_>>().join(" ");
-    let keys = RichText::new(keys).small().monospace().color(QUIET);
+    let keys = small_mono(keys).color(QUIET);
     let button =
         egui::Button::selectable(is_current, &mode.name).right_text(keys).min_size(vec2(ui.available_width(), 18.0));
     ui.add(button.truncate())

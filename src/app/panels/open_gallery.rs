@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, FontId, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
+use egui::{Align2, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
 use egui::{TextureOptions, pos2, vec2};
 
 use super::search::{self, Words};
-use super::theme::{ACCENT, EDGE, QUIET};
+use super::theme::{ACCENT, EDGE, QUIET, body_font};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::recent::Kind;
@@ -175,7 +175,7 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
                 }
                 let color = if *is_shown { ACCENT.color() } else { ui.visuals().text_color() };
                 let at = pos2(area.left() + 2.0, area.bottom() + NAME / 2.0);
-                ui.painter().text(at, Align2::LEFT_CENTER, name, FontId::proportional(12.0), color);
+                ui.painter().text(at, Align2::LEFT_CENTER, name, body_font(), color);
                 super::spoken::button(&response, name);
                 if response.on_hover_text(option).clicked() {
                     clicked = Some(*name);

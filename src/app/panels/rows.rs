@@ -9,7 +9,7 @@ use egui::{
 };
 
 use super::spoken::named;
-use super::theme::{ACCENT, QUIET};
+use super::theme::{ACCENT, QUIET, small_mono};
 use crate::app::numbers::{Number, Scale};
 use crate::settings::{LightSource, Settings, Tonemap};
 
@@ -119,7 +119,7 @@ impl Row<'_> {
 
 /// An option of the command line. The font of the other texts shows two hyphens as one dash.
 pub(super) fn option_text(option: &str) -> RichText {
-    RichText::new(option).monospace().size(11.5)
+    small_mono(option)
 }
 
 /// A text in one line that ends with an ellipsis where there is no room, for a widget that has a hover text: egui's own hover text

@@ -6,6 +6,7 @@ use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 use super::QUIET;
 use super::scene::tree::textures;
 use super::search;
+use crate::app::panels::theme::small_mono_font;
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
@@ -216,7 +217,7 @@ fn picture(
         let texel = [(uv[0] * texels.x).floor(), (uv[1] * texels.y).floor()];
         let text = format!("uv {:.4} {:.4}   texel {} {}   {:.0} %", uv[0], uv[1], texel[0], texel[1], 100.0 * scale);
         let at = pos2(rect.min.x + 6.0, rect.max.y - 6.0);
-        let galley = ui.painter().layout_no_wrap(text, egui::FontId::monospace(11.0), Color32::WHITE);
+        let galley = ui.painter().layout_no_wrap(text, small_mono_font(), Color32::WHITE);
         let back = Rect::from_min_size(at - vec2(2.0, galley.size().y + 2.0), galley.size() + vec2(4.0, 4.0));
         painter.rect_filled(back, 3.0, Color32::from_black_alpha(190));
         painter.galley(back.min + vec2(2.0, 2.0), galley, Color32::WHITE);

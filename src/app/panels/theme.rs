@@ -1,9 +1,16 @@
-//! Colors, fonts and spacing of the window, dark and light: one accent, three grays of text, two sizes of type.
+//! Colors, fonts and spacing of the window, dark and light: one accent, three grays of text, two sizes of type ([`BODY`] and [`SMALL`]).
 
 use std::cell::Cell;
 
 use egui::style::WidgetVisuals;
-use egui::{Color32, CornerRadius, FontDefinitions, FontId, Id, LayerId, Popup, PopupAnchor, Stroke, TextStyle, Theme};
+use egui::{
+    Color32, CornerRadius, FontDefinitions, FontId, Id, LayerId, Popup, PopupAnchor, RichText, Stroke, TextStyle, Theme,
+};
+
+/// Size of text, in points.
+const BODY: f32 = 13.0;
+/// Size of notes, and of text that is drawn by hand in dense rows and over pictures, in points.
+const SMALL: f32 = 11.0;
 
 /// A color of the window, which depends on the theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,17 +100,37 @@ pub(in crate::app) fn apply(egui: &egui::Context) {
         egui.style_mut_of(theme, |style| colors(style, theme));
     }
     egui.all_styles_mut(|style| {
-        style.text_styles.insert(TextStyle::Heading, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
+        style.text_styles.insert(TextStyle::Heading, FontId::proportional(BODY));
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(BODY));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(BODY));
+        style.text_styles.insert(TextStyle::Monospace, FontId::monospace(BODY));
+        style.text_styles.insert(TextStyle::Small, FontId::proportional(SMALL));
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);
         // Keeps the bar beside the content even while it is wide, under the mouse.
         let scroll = &mut style.spacing.scroll;
         scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
     choose(egui, false);
+}
+
+/// The font of text.
+pub(in crate::app) const fn body_font() -> FontId {
+    FontId::proportional(BODY)
+}
+
+/// The font of notes.
+pub(in crate::app) const fn small_font() -> FontId {
+    FontId::proportional(SMALL)
+}
+
+/// The small font whose characters have one width.
+pub(in crate::app) const fn small_mono_font() -> FontId {
+    FontId::monospace(SMALL)
+}
+
+/// Small text whose characters have one width.
+pub(in crate::app) fn small_mono(text: impl Into<String>) -> RichText {
+    RichText::new(text).font(small_mono_font())
 }
 
 /// Hides the hover texts of the panels in this frame, as an open menu does.
@@ -181,6 +208,14 @@ mod tests {
                 assert!(contrast(STRONG.of(theme), back.of(theme)) >= 4.5, "{theme:?} {back:?}");
             }
         }
+    }
+
+    #[test]
+    fn text_has_two_sizes() {
+        let egui = egui::Context::default();
+        apply(&egui);
+        let sizes: Vec<f32> = egui.style_of(Theme::Dark).text_styles.values().map(|font| font.size).collect();
+        assert!(sizes.iter().all(|size| [SMALL, BODY].contains(size)), "{sizes:?}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::rows::elided;
 use super::search::{self, Words};
-use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
+use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT, small_mono};
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
@@ -243,7 +243,7 @@ fn hover(ui: &mut Ui, [title, times]: &[String; 2], hint: &str, lines: &[Line]) 
 
 /// Small text of a fixed width.
 pub(super) fn monospace(text: impl Into<String>) -> RichText {
-    RichText::new(text).font(egui::FontId::monospace(11.0))
+    small_mono(text)
 }
 
 /// Asks whether to write a version over the files of the tree.

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, Grid, Response, RichText, Stroke, Ui};
 use egui_plot::{Arrows, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
 
-use super::super::theme::{ACCENT, QUIET, WARNING};
+use super::super::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
 use super::lobe::luminance;
 use crate::app::inspector::directions::Directions;
 use crate::measure::{Curves, Lobe, Material};
@@ -14,8 +14,6 @@ pub(super) const GRID: Color32 = Color32::from_gray(52);
 const TALL: f32 = 170.0;
 /// Height of the charts, points.
 const LOW: f32 = 110.0;
-/// Size of the numbers at the axes, points.
-const FONT: f32 = 10.0;
 /// Dashes of the values before the last edit.
 const DASHED: LineStyle = LineStyle::Dashed { length: 5.0 };
 
@@ -156,7 +154,7 @@ fn values_of_lobe(response: &Response, curves: &Pair<'_, Curves>, at: Option<f64
                 for (title, of) in [("now", Some(curves.now)), ("before", curves.before)] {
                     let Some(lobe) = of.and_then(|of| of.lobes.get(index)) else { continue };
                     let value = luminance((part.of)(lobe));
-                    ui.label(RichText::new(format!("{title} {value:.4}")).small().monospace());
+                    ui.label(small_mono(format!("{title} {value:.4}")));
                 }
                 ui.end_row();
             }
@@ -190,9 +188,9 @@ pub(super) fn albedo(ui: &mut Ui, name: &str, values: &Pair<'_, [[f32; 3]]>, eye
             values.get(index).map(|[r, g, b]| format!("{r:.4} {g:.4} {b:.4}")).unwrap_or_default()
         };
         let now = format!("{:>3.0}°    now {}", Curves::angle_deg(index), text(values.now));
-        ui.label(RichText::new(now).small().monospace());
+        ui.label(small_mono(now));
         if let Some(before) = values.before {
-            ui.label(RichText::new(format!("     before {}", text(before))).small().monospace());
+            ui.label(small_mono(format!("     before {}", text(before))));
         }
     });
 }
@@ -221,7 +219,7 @@ fn curve(plot: &mut PlotUi<'_>, name: &str, color: Color32, points: &[[f64; 2]],
 
 /// A small text of a plot.
 fn note(plot: &mut PlotUi<'_>, [x, y]: [f64; 2], anchor: Align2, text: String, color: Color32) {
-    let text = RichText::new(text).size(FONT);
+    let text = RichText::new(text).font(small_font());
     plot.text(Text::new("", PlotPoint::new(x, y), text).color(color).anchor(anchor).allow_hover(false));
 }
 

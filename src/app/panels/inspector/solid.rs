@@ -1,10 +1,10 @@
 //! The lobe in space: a surface whose distance from the origin is f NoV in that direction, drawn with egui's painter.
 
 use egui::epaint::{Mesh, Vertex};
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::super::theme::{ACCENT, WARNING};
+use super::super::theme::{ACCENT, WARNING, small_font};
 use super::lobe::luminance;
 use super::plot::GRID;
 use crate::app::inspector::directions::Directions;
@@ -14,9 +14,6 @@ use crate::measure::Hemisphere;
 const ELEVATION: (f32, f32) = (18.0, 55.0);
 /// The view stands beside the eye, so that the arrow of the eye is no point, degrees.
 const ASIDE: f32 = 40.0;
-
-/// Size of the names, points.
-const FONT: f32 = 10.0;
 
 /// A view of the lobe: the normal is up.
 struct View {
@@ -79,7 +76,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
 
 /// The name of an arrow, with its color, on a dark ground.
 fn draw_name(painter: &Painter, at: Pos2, text: &str, color: Color32) {
-    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(FONT), color);
+    let galley = painter.layout_no_wrap(text.to_owned(), small_font(), color);
     let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
     painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, Color32::from_black_alpha(140));
     painter.galley(rect.min, galley, color);

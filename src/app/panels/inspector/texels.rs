@@ -1,9 +1,9 @@
 //! The texel of each texture of the material at the pixel. A click shows the texture.
 
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::super::theme::{ACCENT, EDGE, QUIET};
+use super::super::theme::{ACCENT, EDGE, QUIET, small_font, small_mono_font};
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
@@ -51,11 +51,11 @@ fn row(ui: &mut Ui, texel: &Texel) -> Response {
         painter.rect_filled(swatch, 2.0, Color32::from_rgb(r, g, b));
         painter.rect_stroke(swatch, 2.0, Stroke::new(1.0, Color32::from_gray(70)), StrokeKind::Inside);
         let color = ui.visuals().text_color();
-        let numbers = painter.layout_no_wrap(stored, FontId::monospace(10.5), color);
+        let numbers = painter.layout_no_wrap(stored, small_mono_font(), color);
         let left_of_numbers = rect.max.x - 4.0 - numbers.size().x;
         painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
         let left = rect.min.x + SWATCH + 7.0;
-        let mut job = LayoutJob::simple_singleline(slot, FontId::proportional(11.5), color);
+        let mut job = LayoutJob::simple_singleline(slot, small_font(), color);
         job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));
         let name = painter.layout_job(job);
         painter.galley(pos2(left, middle - 0.5 * name.size().y), name, color);

@@ -1,10 +1,10 @@
 //! The values of a pixel: a row for each mode, in groups. A click on a row shows its mode in the picture.
 
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::super::rows::option_text;
-use super::super::theme::{ACCENT, EDGE, ERROR, QUIET};
+use super::super::theme::{ACCENT, EDGE, ERROR, QUIET, small_font, small_mono_font};
 use crate::app::inspector::{Reading, text};
 use crate::app::panels::modes::text_of;
 use crate::app::panels::search::Words;
@@ -106,13 +106,13 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
         () if is_old => QUIET.color(),
         () => ui.visuals().text_color(),
     };
-    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), FontId::proportional(10.5), QUIET.color());
+    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), small_font(), QUIET.color());
     painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET.color());
-    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), FontId::monospace(10.5), color);
+    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), small_mono_font(), color);
     let left_of_numbers = rect.max.x - UNIT - numbers.size().x;
     painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
     let name_color = if is_current { ACCENT.color() } else { ui.visuals().text_color() };
-    let mut job = LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.5), name_color);
+    let mut job = LayoutJob::simple_singleline(mode.name.clone(), small_font(), name_color);
     let left = rect.min.x + SWATCH + 7.0;
     job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));
     let name = painter.layout_job(job);
@@ -137,7 +137,7 @@ fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: 
     let painter = ui.painter();
     if value.not_finite {
         painter.rect_filled(rect, 2.0, ERROR);
-        painter.text(rect.center(), Align2::CENTER_CENTER, "!", FontId::proportional(10.0), Color32::BLACK);
+        painter.text(rect.center(), Align2::CENTER_CENTER, "!", small_font(), Color32::BLACK);
         return;
     }
     // The color of a number is that of the picture.

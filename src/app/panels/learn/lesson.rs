@@ -6,7 +6,7 @@ use super::mark;
 use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
-use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING};
+use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
 
 /// Shows the exercise. `is_broken`: the newest edit does not compile.
@@ -20,7 +20,7 @@ pub(super) fn show(
     let record = learning.progress.of(exercise);
     let mut ask = |command| commands.push(Command::Learn(command));
     ui.add_space(4.0);
-    ui.label(RichText::new(&exercise.title).strong().size(17.0));
+    ui.label(RichText::new(&exercise.title).strong());
     ui.label(RichText::new(&exercise.idea).color(ACCENT));
     ui.add_space(4.0);
     text(ui, &exercise.text);
@@ -180,7 +180,7 @@ fn solution(ui: &mut Ui, learning: &Learning) -> bool {
                     Kind::Added => GOOD.color(),
                     Kind::Same => TEXT.color(),
                 };
-                let text = RichText::new(&line.text).font(egui::FontId::monospace(11.0)).color(color);
+                let text = small_mono(&line.text).color(color);
                 ui.add(Label::new(text).extend());
             }
         });

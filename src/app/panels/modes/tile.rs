@@ -1,10 +1,10 @@
 //! A tile of the gallery of modes: a thumbnail with the mode's name below and its key as a badge.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use crate::app::gallery::GalleryState;
 use crate::app::panels::QUIET;
-use crate::app::panels::theme::{ACCENT, EDGE, LINE};
+use crate::app::panels::theme::{ACCENT, EDGE, LINE, small_font, small_mono_font};
 use crate::shader::Mode;
 
 /// The smallest width of a tile, points.
@@ -56,7 +56,7 @@ pub(super) fn show(
             image.paint_at(ui, picture);
         }
         None => {
-            let font = FontId::proportional(11.0);
+            let font = small_font();
             painter.text(picture.center(), Align2::CENTER_CENTER, without_thumbnail(mode), font, QUIET.color());
         }
     }
@@ -71,7 +71,7 @@ pub(super) fn show(
     }
     let visuals = ui.visuals();
     let color = if is_current { ACCENT.color() } else { visuals.text_color() };
-    let mut job = egui::text::LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.0), color);
+    let mut job = egui::text::LayoutJob::simple_singleline(mode.name.clone(), small_font(), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(size.x);
     let name = ui.painter().layout_job(job);
     let left = picture.center().x - 0.5 * name.size().x;
@@ -83,7 +83,7 @@ pub(super) fn show(
 fn badge(ui: &Ui, picture: Rect, key: char) {
     let at = Rect::from_min_size(pos2(picture.max.x - 19.0, picture.min.y + 4.0), vec2(15.0, 15.0));
     ui.painter().rect_filled(at, CornerRadius::same(3), Color32::from_black_alpha(170));
-    let font = FontId::monospace(11.0);
+    let font = small_mono_font();
     ui.painter().text(at.center(), Align2::CENTER_CENTER, key, font, Color32::from_gray(225));
 }
 

@@ -1,10 +1,11 @@
 //! The border between the picture and the one that it is compared with, and the names of both.
 
 use egui::{
-    Align2, Area, Color32, CursorIcon, FontId, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2,
+    Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2,
 };
 
 use crate::app::panels::ACCENT;
+use crate::app::panels::theme::small_font;
 use crate::app::viewer::{Compare, Difference, Viewer};
 
 /// Width of the strip that the mouse takes hold of, in points.
@@ -65,7 +66,7 @@ fn map(painter: &Painter, compare: &mut Compare, picture: Rect) {
 
 /// Writes the name of one of the pictures.
 fn name(painter: &Painter, at: Pos2, corner: Align2, text: &str) {
-    let text = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.0), Color32::from_gray(220));
+    let text = painter.layout_no_wrap(text.to_owned(), small_font(), Color32::from_gray(220));
     let inner = corner.anchor_size(at, text.size() + 2.0 * MARGIN);
     painter.rect_filled(inner, 4.0, Color32::from_black_alpha(200));
     painter.galley(inner.min + MARGIN, text, Color32::WHITE);

@@ -1,12 +1,10 @@
 //! Handles of the lights in the picture. They are shown while a light is selected. A drag turns a light around the model; with Ctrl it
 //! changes the distance.
 
-use egui::{
-    Align2, Area, Color32, CursorIcon, FontId, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2,
-};
+use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use crate::app::panels::theme::SELECTION;
+use crate::app::panels::theme::{SELECTION, small_font, small_mono_font};
 use crate::app::selection::{LightId, Selected};
 use crate::app::viewer::Viewer;
 use crate::scene::{Bounds, CameraView, light_direction, ray};
@@ -220,7 +218,7 @@ fn handle(
         LightId::Orbit(index) => (index + 1).to_string(),
         _ => "R".to_owned(),
     };
-    painter.text(at, Align2::CENTER_CENTER, name, FontId::proportional(11.0), Color32::BLACK);
+    painter.text(at, Align2::CENTER_CENTER, name, small_font(), Color32::BLACK);
     let is_held = response.dragged();
     if is_held {
         // Towards the camera is on its side of the sphere.
@@ -238,7 +236,7 @@ fn handle(
         gizmo.keep(light, *place.distance, drag.radius);
         gizmo.drag = Some(drag);
         let text = format!("{:.0}° {:.0}°  {:.2} R", *place.azimuth, *place.polar, *place.distance);
-        let label = painter.layout_no_wrap(text, FontId::monospace(11.0), Color32::WHITE);
+        let label = painter.layout_no_wrap(text, small_mono_font(), Color32::WHITE);
         let size = label.size() + vec2(8.0, 4.0);
         // On the side that has room.
         let left = if at.x + 14.0 + size.x <= frame.rect.max.x { at.x + 14.0 } else { at.x - 14.0 - size.x };

@@ -1,10 +1,10 @@
 //! The names of the modes that the picture shows side by side, and a frame around the selected one.
 
-use egui::{Align2, FontId, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
 use crate::app::grid::places;
 use crate::app::panels::PanelState;
-use crate::app::panels::theme::{ACCENT, CARD, PANEL, STRONG};
+use crate::app::panels::theme::{ACCENT, CARD, PANEL, STRONG, small_font};
 use crate::app::screen::PictureRect;
 use crate::session::Session;
 
@@ -34,7 +34,7 @@ pub(super) fn show(egui: &egui::Context, session: &Session, state: &PanelState, 
         // The selected one previews the mode that the mouse rests on.
         let slug = state.gallery.preview().filter(|_| is_selected).unwrap_or(slug);
         let name = shaders.modes.iter().find(|mode| mode.slug == slug).map_or(slug, |mode| &mode.name);
-        let text = painter.layout_no_wrap(name.to_owned(), FontId::proportional(11.0), STRONG.color());
+        let text = painter.layout_no_wrap(name.to_owned(), small_font(), STRONG.color());
         let card = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(6.0, -6.0), text.size() + vec2(14.0, 6.0));
         painter.rect_filled(card, 4.0, CARD.color().gamma_multiply(0.9));
         painter.galley(card.min + vec2(7.0, 3.0), text, STRONG.color());

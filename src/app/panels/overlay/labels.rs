@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use egui::{Align2, FontId, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
+use egui::{Align2, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use crate::app::panels::theme::{CARD, TEXT};
+use crate::app::panels::theme::{CARD, TEXT, small_font};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
 use crate::settings::CameraSettings;
 
@@ -116,7 +116,7 @@ struct Label {
 impl Label {
     fn new(painter: &Painter, name: &str, foot: Pos2, width: f32, picture: Rect) -> Self {
         let text = name.replace(", ", "\n");
-        let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), (0.7 * width).max(48.0));
+        let text = painter.layout(text, small_font(), TEXT.color(), (0.7 * width).max(48.0));
         let rect = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
         // At the edge of the picture it moves inwards.
         let inside = picture.shrink(2.0);

@@ -9,7 +9,7 @@ use egui::{Button, Color32, Galley, Mesh, Rect, RichText, Sense, Stroke, TextSty
 use super::wrapped;
 use crate::app::panels::rows::choice_name;
 use crate::app::panels::spoken::named;
-use crate::app::panels::theme::{QUIET, icon};
+use crate::app::panels::theme::{QUIET, icon, small_mono};
 use crate::app::panels::{LegendOf, Readout};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
@@ -217,7 +217,7 @@ fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &m
         (Channels::B, "B", "The third channel: blue, or z"),
         (Channels::A, "A", "Coverage: 1 where the model covers the whole pixel"),
     ] {
-        let button = Button::selectable(view.channels == channel, RichText::new(name).small().monospace());
+        let button = Button::selectable(view.channels == channel, small_mono(name));
         let response = ui.add(button);
         if response.on_hover_text(format!("{doc}\n--set view.channels={}", choice_name(&channel))).clicked() {
             view.channels = channel;

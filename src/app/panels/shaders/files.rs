@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{Align2, Color32, CursorIcon, FontId, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
-use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
+use super::super::theme::{ACCENT, ERROR, QUIET, WARNING, body_font, small_font};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::panels::search::{self, Words};
@@ -175,13 +175,7 @@ fn show_row(
             arrow(ui, x, rect, *is_open);
             text(ui, x + INDENT, rect, name, ui.visuals().text_color(), response.hovered());
             let count = pos2(rect.right() - 4.0, rect.center().y);
-            ui.painter().text(
-                count,
-                Align2::RIGHT_CENTER,
-                files.to_string(),
-                FontId::proportional(11.0),
-                QUIET.color(),
-            );
+            ui.painter().text(count, Align2::RIGHT_CENTER, files.to_string(), small_font(), QUIET.color());
             if response.on_hover_text(format!("{path}/: {files} files")).clicked() && !state.closed.remove(path) {
                 state.closed.insert(path.clone());
             }
@@ -256,7 +250,7 @@ fn arrow(ui: &Ui, x: f32, rect: Rect, is_open: bool) {
 fn text(ui: &Ui, x: f32, rect: Rect, words: &str, color: Color32, is_hovered: bool) {
     let color = if is_hovered { ui.visuals().strong_text_color() } else { color };
     let clip = ui.painter().with_clip_rect(rect.with_max_x(rect.right() - 16.0).intersect(ui.clip_rect()));
-    clip.text(pos2(x + 2.0, rect.center().y), Align2::LEFT_CENTER, words, FontId::proportional(12.0), color);
+    clip.text(pos2(x + 2.0, rect.center().y), Align2::LEFT_CENTER, words, body_font(), color);
 }
 
 /// Opens the file, as displayed, on a click. A file in the program has no place to open; its name is copied.

@@ -1,8 +1,8 @@
 //! Graphs of the last frames, one column for each.
 
-use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use super::super::theme::{EDGE, QUIET, WARNING};
+use super::super::theme::{EDGE, QUIET, WARNING, small_font};
 use crate::app::timing::{FRAMES, Timing};
 
 /// Heights of the graphs, in points.
@@ -68,7 +68,7 @@ fn area(ui: &mut Ui, height: f32, top: f64) -> (Rect, Response, Painter) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, EDGE);
     let text = format!("{top} ms");
-    painter.text(rect.left_top() + vec2(3.0, 1.0), Align2::LEFT_TOP, text, FontId::proportional(10.0), QUIET.color());
+    painter.text(rect.left_top() + vec2(3.0, 1.0), Align2::LEFT_TOP, text, small_font(), QUIET.color());
     (rect, response, painter)
 }
 
@@ -102,7 +102,7 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
     edits(&painter, rect, timing);
     if pictures.is_empty() {
         let text = "no device times yet";
-        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.0), QUIET.color());
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, small_font(), QUIET.color());
     }
     let at = hovered(&response, rect, pictures.len());
     let text = at.and_then(|index| pictures.get(index)).map(|sample| {
