@@ -123,8 +123,10 @@ pub(super) struct Layout {
     is_light: bool,
     /// Whether this arrangement belongs to an exercise or a single file, so the next window does not get it.
     is_temporary: bool,
-    /// The arrangement before a temporary one, and whether the user had made it.
-    before: Option<(Tree<Panel>, bool)>,
+    /// The preset that was chosen last.
+    preset: Preset,
+    /// The arrangement before a temporary one, whether the user had made it, and the preset before.
+    before: Option<(Tree<Panel>, bool, Preset)>,
 }
 
 impl Default for Layout {
@@ -137,11 +139,11 @@ impl Default for Layout {
 impl Layout {
     /// The arrangement of the last run, or the first preset.
     pub(super) fn restored() -> Self {
-        let Some(store::Stored { mut tree, is_own, own, is_light }) = store::load() else {
+        let Some(store::Stored { mut tree, is_own, own, is_light, preset }) = store::load() else {
             return Self { is_changed: true, ..Self::of_tree(Preset::Debug.tree()) };
         };
         repair(&mut tree);
-        Self { is_own, own, is_light, ..Self::of_tree(tree) }
+        Self { is_own, own, is_light, preset, ..Self::of_tree(tree) }
     }
 
     fn of_tree(tree: Tree<Panel>) -> Self {
@@ -155,6 +157,7 @@ impl Layout {
             free: Rect::ZERO,
             is_light: false,
             is_temporary: false,
+            preset: Preset::default(),
             before: None,
         }
     }
@@ -165,21 +168,30 @@ impl Layout {
             self.own = Some(self.fit.measured(&self.tree));
         }
         let own = self.own.take();
-        *self = Self { own, is_changed: true, is_light: self.is_light, ..Self::of_tree(preset.tree()) };
+        *self = Self { own, is_changed: true, is_light: self.is_light, preset, ..Self::of_tree(preset.tree()) };
+    }
+
+    /// Shows the preset that was chosen last without the user's changes.
+    pub(super) fn reset(&mut self) {
+        let (is_temporary, before) = (self.is_temporary, self.before.take());
+        self.arrange(self.preset);
+        (self.is_temporary, self.before) = (is_temporary, before);
     }
 
     /// Shows a preset until the user chooses another arrangement, or [`Self::arrange_as_before`]. The next window is arranged as before.
     pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
-        let before = self.before.take().unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own));
+        let before = self.before.take();
+        let before = before.unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own, self.preset));
         self.arrange(preset);
         (self.is_temporary, self.before) = (true, Some(before));
     }
 
     /// Shows the arrangement before [`Self::arrange_temporarily`], unless the user has chosen another one since.
     pub(super) fn arrange_as_before(&mut self) {
-        let Some((tree, is_own)) = self.before.take().filter(|_| self.is_temporary && !self.is_own) else { return };
+        let before = self.before.take().filter(|_| self.is_temporary && !self.is_own);
+        let Some((tree, is_own, preset)) = before else { return };
         let own = self.own.take().filter(|_| !is_own);
-        *self = Self { own, is_own, is_changed: true, is_light: self.is_light, ..Self::of_tree(tree) };
+        *self = Self { own, is_own, is_changed: true, is_light: self.is_light, preset, ..Self::of_tree(tree) };
     }
 
     /// Whether there is an arrangement of the user's to go back to.
@@ -190,8 +202,8 @@ impl Layout {
     /// Shows the user's own arrangement again.
     pub(super) fn arrange_own(&mut self) {
         if let Some(tree) = self.own.take() {
-            let is_light = self.is_light;
-            *self = Self { is_own: true, is_changed: true, is_light, ..Self::of_tree(tree) };
+            let (is_light, preset) = (self.is_light, self.preset);
+            *self = Self { is_own: true, is_changed: true, is_light, preset, ..Self::of_tree(tree) };
         }
     }
 
@@ -323,18 +335,17 @@ impl Layout {
 
     /// The content of the file: this arrangement, or the one before it if it is temporary. The theme is stored in both cases.
     fn stored(&self) -> store::Stored {
-        let is_light = self.is_light;
+        let Self { is_light, is_own, preset, .. } = *self;
         if !self.is_temporary {
-            return store::Stored {
-                tree: self.fit.measured(&self.tree),
-                is_own: self.is_own,
-                own: self.own.clone(),
-                is_light,
-            };
+            let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
+            return store::Stored { tree, is_own, own, is_light, preset };
         }
         match store::load() {
             Some(before) => store::Stored { is_light, ..before },
-            None => store::Stored { tree: Preset::Debug.tree(), is_own: false, own: None, is_light },
+            None => {
+                let preset = Preset::default();
+                store::Stored { tree: preset.tree(), is_own: false, own: None, is_light, preset }
+            }
         }
     }
 

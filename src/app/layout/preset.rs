@@ -1,6 +1,7 @@
 //! The arrangements that Specula offers.
 
 use egui_tiles::{Linear, LinearDir, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
 
 use super::Panel;
 
@@ -13,9 +14,10 @@ const LESSON: f32 = 400.0;
 const BELOW: f32 = 190.0;
 
 /// An arrangement that Specula offers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(in crate::app) enum Preset {
     /// All panels. The first one.
+    #[default]
     Debug,
     /// The panels of light, camera and parameters, and a larger picture.
     Look,

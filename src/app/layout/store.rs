@@ -4,7 +4,7 @@
 use egui_tiles::{Tile, Tree};
 use serde::{Deserialize, Serialize};
 
-use super::Panel;
+use super::{Panel, Preset};
 use crate::app::state;
 
 const FILE: &str = "layout.json";
@@ -21,6 +21,9 @@ pub(super) struct Stored {
     /// Whether the light theme is shown.
     #[serde(default)]
     pub(super) is_light: bool,
+    /// The preset that was chosen last.
+    #[serde(default)]
+    pub(super) preset: Preset,
 }
 
 /// The stored arrangement.
@@ -56,13 +59,13 @@ pub(super) fn save(stored: &Stored) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Preset;
     use super::*;
 
     #[test]
     fn an_arrangement_is_read_as_it_was_written() {
         for preset in Preset::ALL {
-            let stored = Stored { tree: preset.tree(), is_own: true, own: Some(Preset::Look.tree()), is_light: true };
+            let own = Some(Preset::Look.tree());
+            let stored = Stored { tree: preset.tree(), is_own: true, own, is_light: true, preset };
             let value = serde_json::to_value(&stored).unwrap();
             let read = parse(&value.to_string()).unwrap();
             assert_eq!(serde_json::to_value(read).unwrap(), value);
@@ -71,7 +74,8 @@ mod tests {
 
     #[test]
     fn what_is_no_arrangement_counts_as_absent() {
-        let stored = Stored { tree: Preset::Debug.tree(), is_own: false, own: None, is_light: false };
+        let preset = Preset::Debug;
+        let stored = Stored { tree: preset.tree(), is_own: false, own: None, is_light: false, preset };
         let whole = serde_json::to_string(&stored).unwrap();
         let broken = ["", "{}", "[1]", &whole[..whole.len() / 2]];
         assert!(broken.iter().all(|text| parse(text).is_none()));

@@ -105,6 +105,25 @@ fn a_preset_keeps_the_arrangement_that_the_user_made() {
 }
 
 #[test]
+fn a_reset_shows_the_preset_that_was_chosen_last() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let size = Vec2::new(1280.0, 720.0);
+    shown(&mut layout, &egui, size);
+    layout.close(Panel::Modes);
+    layout.reset();
+    assert!(layout.is_open(Panel::Modes) && layout.has_own(), "the first preset, and a way back");
+    layout.arrange(Preset::Compare);
+    layout.close(Panel::Timeline);
+    layout.reset();
+    assert!(layout.is_open(Panel::Timeline));
+    // A reset of a temporary arrangement leaves it temporary.
+    layout.arrange_temporarily(Preset::Toy);
+    layout.reset();
+    layout.arrange_as_before();
+    assert!(layout.is_open(Panel::Timeline));
+}
+
+#[test]
 fn a_panel_on_the_picture_moves_beside_it() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
     let size = Vec2::new(1280.0, 720.0);

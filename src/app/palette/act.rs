@@ -31,6 +31,10 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
             viewer.panels.visible = true;
             viewer.panels.layout.arrange(preset);
         }
+        Action::ResetLayout => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.reset();
+        }
         Action::ArrangeOwn => {
             viewer.panels.visible = true;
             viewer.panels.layout.arrange_own();

@@ -40,6 +40,7 @@ pub(super) enum Action {
     Pass(String, bool),
     Open(Panel),
     Arrange(Preset),
+    ResetLayout,
     /// Shows the user's own arrangement of the panels.
     ArrangeOwn,
     /// Asks in the timeline whether to write a version to the files.
@@ -51,7 +52,6 @@ pub(super) enum Action {
     /// Asks whether to write the values of parameters to the files.
     WriteDefaults,
     TogglePanels,
-    /// Change between the light and the dark theme.
     ToggleTheme,
     ShowKeys,
 }
@@ -286,7 +286,7 @@ pub(super) fn commands() -> Vec<Entry> {
         ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
         ("Keys", "shortcuts help", "F1", Action::ShowKeys),
         ("Show or hide the histogram", "distribution values", "", Action::ToggleHistogram),
-        ("Reset the arrangement of the panels", "default layout restore tiles", "", Action::Arrange(Preset::Debug)),
+        ("Reset the arrangement of the panels", "default layout restore tiles", "", Action::ResetLayout),
         ("Hide or show the panels", "", "H", Action::TogglePanels),
         ("Light or dark theme", "colors appearance", "", Action::ToggleTheme),
         ("Hide the selection", "scene node primitive", "Ctrl+H", Action::Do(Command::HideSelected)),

@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::spoken::named;
-use super::theme::{BAR, QUIET, icon};
+use super::theme::{BAR, QUIET, icon, small_mono};
 use super::{PanelState, theme};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
@@ -52,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
                 if width > 120.0 {
                     let text = RichText::new(format!("{}  Find a mode, setting or command", icon::MAGNIFYING_GLASS))
                         .color(QUIET);
-                    let keys = RichText::new("Ctrl+P").small().monospace().color(QUIET);
+                    let keys = small_mono("Ctrl+P").color(QUIET);
                     let button = Button::new(text).right_text(keys).min_size(vec2(width, 20.0)).truncate();
                     if named(ui.add(button), "Command palette").on_hover_text("Command palette").clicked() {
                         state.palette.open();
@@ -113,7 +113,7 @@ fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
     named(menu.response, "Open").on_hover_text("Open a model, an environment or shaders");
 }
 
-/// The menu that opens and closes panels.
+/// The menu that opens and closes panels, and resets their arrangement.
 fn panels(ui: &mut Ui, layout: &mut Layout) {
     ui.menu_button(format!("{}  Panels", icon::LAYOUT), |ui| {
         for (index, group) in Panel::GROUPS.into_iter().enumerate() {
@@ -129,6 +129,12 @@ fn panels(ui: &mut Ui, layout: &mut Layout) {
                     }
                 }
             }
+        }
+        ui.separator();
+        let hint = "Show the panels as the chosen arrangement has them. \"Own\" returns to yours";
+        if ui.button("Reset this arrangement").on_hover_text(hint).clicked() {
+            layout.reset();
+            ui.close();
         }
     });
 }
