@@ -65,7 +65,11 @@ fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
 /// A mark before a goal or an exercise: a ring, a check in green or a cross in red.
 fn mark(ui: &mut Ui, state: Option<bool>) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, 18.0), egui::Sense::hover());
-    let (center, painter) = (rect.center(), ui.painter());
+    paint_mark(ui.painter(), rect.center(), state);
+}
+
+/// Draws the mark around a point.
+fn paint_mark(painter: &egui::Painter, center: egui::Pos2, state: Option<bool>) {
     let line = |points: &[(f32, f32)], color| {
         let points = points.iter().map(|(x, y)| center + egui::vec2(*x, *y)).collect();
         painter.add(egui::Shape::line(points, egui::Stroke::new(2.0, color)));

@@ -1,42 +1,31 @@
 //! The list of all exercises.
 
-use egui::{Button, RichText, Ui};
+use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
 
-use super::mark;
+use super::paint_mark;
 use crate::app::command::Command;
 use crate::app::learn::{LearnCommand, Learning};
-use crate::app::panels::theme::{ACCENT, QUIET};
-use crate::learn::{Level, exercises};
+use crate::app::panels::spoken;
+use crate::app::panels::theme::{ACCENT, QUIET, body_font, small_font};
+use crate::learn::{Exercise, Level, exercises};
+
+/// Height of a row, in points.
+const HEIGHT: f32 = 22.0;
+/// Width of the mark before a title, with its gap, in points.
+const MARK: f32 = 24.0;
 
 /// Shows the list.
 pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     ui.add_space(4.0);
-    ui.label(RichText::new("Learn shading by repairing it").strong().size(17.0));
+    ui.label(RichText::new("Learn shading by repairing it").strong());
     let text = "Each exercise is a folder of shaders in which something is wrong or missing. You edit it in your own editor. Specula \
         measures the result after every save and tells you what it found.";
     ui.label(RichText::new(text).color(QUIET));
     ui.add_space(6.0);
     let next = learning.progress.next().map(|exercise| exercise.number);
     for exercise in exercises() {
-        let record = learning.progress.of(exercise);
-        let mut open = false;
-        ui.horizontal(|ui| {
-            mark(ui, record.solved.then_some(true));
-            let title = RichText::new(format!("{}  {}", exercise.number, exercise.title));
-            let title = if next == Some(exercise.number) { title.color(ACCENT).strong() } else { title };
-            let button = Button::new(title).frame(false);
-            let hover = format!("Open the exercise: {}", exercise.idea);
-            open |= ui.add(button).on_hover_text(hover).clicked();
-            let level = match exercise.level {
-                Level::Easy => "easy",
-                Level::Medium => "medium",
-                Level::Hard => "hard",
-            };
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(level).small().color(QUIET)).on_hover_text("Difficulty");
-            });
-        });
-        if open {
+        let is_solved = learning.progress.of(exercise).solved;
+        if row(ui, exercise, is_solved, next == Some(exercise.number)).clicked() {
             commands.push(Command::Learn(LearnCommand::Open(exercise.number)));
         }
     }
@@ -45,4 +34,62 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
     let text = format!("Exercises are stored in {}", folder.display());
     ui.label(RichText::new(text).small().color(QUIET))
         .on_hover_text("`specula learn --dir FOLDER` chooses another folder");
+}
+
+/// Shows an exercise as one button: its mark, number and title, and its difficulty at the right.
+fn row(ui: &mut Ui, exercise: &Exercise, is_solved: bool, is_next: bool) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let level = match exercise.level {
+        Level::Easy => "easy",
+        Level::Medium => "medium",
+        Level::Hard => "hard",
+    };
+    let title = format!("{}  {}", exercise.number, exercise.title);
+    let state = if is_solved { ", solved" } else { "" };
+    spoken::button(&response, &format!("{title}, {level}{state}"));
+    if ui.is_rect_visible(rect) {
+        let visuals = ui.style().interact(&response);
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        if response.hovered() || response.has_focus() {
+            painter.rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+        }
+        let middle = rect.center().y;
+        paint_mark(&painter, pos2(rect.min.x + 0.5 * MARK, middle), is_solved.then_some(true));
+        let right = pos2(rect.max.x - 6.0, middle);
+        let level = painter.text(right, Align2::RIGHT_CENTER, level, small_font(), QUIET.color());
+        let color = if is_next { ACCENT.color() } else { visuals.text_color() };
+        let left = rect.min.x + MARK;
+        let painter = painter.with_clip_rect(rect.with_max_x(level.min.x - 6.0).intersect(painter.clip_rect()));
+        painter.text(pos2(left, middle), Align2::LEFT_CENTER, title, body_font(), color);
+    }
+    let hover = format!("Open the exercise: {}\nDifficulty: {level}", exercise.idea);
+    response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hover)
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::accesskit::Role;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+
+    #[test]
+    fn the_whole_row_is_one_button() {
+        let exercise = &exercises()[0];
+        let show = |ui: &mut Ui, clicks: &mut usize| {
+            *clicks += usize::from(row(ui, exercise, false, true).clicked());
+        };
+        let mut harness = Harness::new_ui_state(show, 0);
+        harness.run();
+        let button = harness.get_by_role(Role::Button);
+        let rect = button.rect();
+        assert!(rect.width() > 100.0 && (rect.height() - HEIGHT).abs() < 1.0, "{rect:?}");
+        // At the right end, beside the title.
+        harness.hover_at(pos2(rect.max.x - 2.0, rect.center().y));
+        harness.drag_at(pos2(rect.max.x - 2.0, rect.center().y));
+        harness.drop_at(pos2(rect.max.x - 2.0, rect.center().y));
+        harness.run();
+        assert_eq!(*harness.state(), 1);
+    }
 }
