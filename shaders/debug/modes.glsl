@@ -4,6 +4,7 @@
 //
 //   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=debug]
 //         [range=LOW..HIGH] [colormap=viridis|magma|turbo|coolwarm|heat] [numbers=index|"NAME|NAME"]
+//         [colors="#rrggbb|-"]
 //         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [needs=FEATURES] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
@@ -17,6 +18,7 @@
 //   colormap  colors that stand for a number, in a mode with one component
 //   numbers   the picture shows a color for each number (`number_or_color`). Where a single pixel is read, the shader returns the
 //             number: an index (index), or a place in a list of names ("front|back": 0 is front, 1 is back)
+//   colors    sRGB colors of these names, which the legend shows; - for a color that follows the picture
 //   draw      lines: the edges of triangles; layers: the sum of all fragments, hidden or not
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
@@ -56,7 +58,7 @@ const uint MODE_FACET_NORMAL = 204u;
 const uint MODE_TANGENT = 205u;
 //@mode bitangent "Bitangent" group="Geometry" encode=vector doc="cross(normal, tangent) times the sign, world space."
 const uint MODE_BITANGENT = 206u;
-//@mode tangent-sign "Tangent sign" group="Geometry" encode=color numbers="-1|+1" doc="Green +1, red -1 (mirrored UVs)."
+//@mode tangent-sign "Tangent sign" group="Geometry" encode=color numbers="-1|+1" colors="#e74530|#3fbc59" doc="Green +1, red -1 (mirrored UVs)."
 const uint MODE_TANGENT_SIGN = 207u;
 //@mode uv0 "UV 0" group="Geometry" encode=data components=2 doc="TEXCOORD_0."
 const uint MODE_UV0 = 208u;
@@ -64,7 +66,7 @@ const uint MODE_UV0 = 208u;
 const uint MODE_UV1 = 209u;
 //@mode vertex-color "Vertex color" group="Geometry" encode=color needs=vertex-color doc="COLOR_0, linear RGB."
 const uint MODE_VERTEX_COLOR = 210u;
-//@mode face-orientation "Face orientation" group="Geometry" encode=color numbers="front|back" doc="Green front faces, red back faces."
+//@mode face-orientation "Face orientation" group="Geometry" encode=color numbers="front|back" colors="#3fbc59|#e74530" doc="Green front faces, red back faces."
 const uint MODE_FACE_ORIENTATION = 211u;
 //@mode triangle-id "Triangle" group="Geometry" encode=color numbers=index doc="A color for each triangle of a mesh."
 const uint MODE_TRIANGLE_ID = 212u;
@@ -234,17 +236,17 @@ const uint MODE_MEASURED_SPLIT = 601u;
 //@mode measured-error "Error" group="Measured" encode=color doc="Against the measured BRDF: blue too dark, red too bright."
 const uint MODE_MEASURED_ERROR = 602u;
 
-//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" key=x doc="NaN magenta, Inf yellow, negative cyan."
+//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" colors="-|#ff00ff|#ffff00|#00ffff" key=x doc="NaN magenta, Inf yellow, negative cyan."
 const uint MODE_NAN = 500u;
-//@mode negative "Negative" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" doc="Channels below 0; valid pixels are dimmed."
+//@mode negative "Negative" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" doc="Channels below 0; valid pixels are dimmed."
 const uint MODE_NEGATIVE = 501u;
-//@mode clipped "Clipped" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" doc="Channels above 1 after exposure, before tone mapping."
+//@mode clipped "Clipped" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" doc="Channels above 1 after exposure, before tone mapping."
 const uint MODE_CLIPPED = 502u;
 //@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat doc="Stops from middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
-//@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
+//@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" colors="-|#3f6cff|#ff4530" doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
 const uint MODE_ALBEDO_RANGE = 504u;
-//@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
+//@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" colors="-|#3f6cff|#ff4530" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
 const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
 //@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths doc="The picture with an exact integral of the unoccluded environment."

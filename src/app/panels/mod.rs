@@ -13,7 +13,7 @@ mod model;
 mod modes;
 pub(super) mod open_gallery;
 mod output;
-mod overlay;
+pub(super) mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
 pub(super) mod rows;
@@ -162,6 +162,8 @@ pub(super) struct LegendOf {
     /// Factor from luminance to the display's 0..1.
     pub(super) exposure: f32,
 }
+    /// The colors that stand for single numbers.
+    pub(super) swatches: Vec<overlay::swatches::Swatch>,
 
 /// Where the picture is, in points.
 #[derive(Clone, Copy)]

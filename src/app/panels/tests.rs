@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::output::range;
 use super::overlay::legend::{self, Legend, LegendState};
 use super::timeline::comparison;
+use super::overlay::swatches::swatches;
 use super::{LegendOf, Readout};
 use super::{camera, capture, rows, theme};
 use crate::app::command::{Command, CompareWith};
@@ -17,7 +18,7 @@ use crate::app::viewer::Compare;
 use crate::control::{Request, Timeline, Turntable};
 use crate::scene::Model;
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
-use crate::shader::{Encode, Mode};
+use crate::shader::{Encode, Mode, Numbers, ShaderSet};
 
 fn harness<'a, T: 'a>(state: T, mut show: impl FnMut(&mut egui::Ui, &mut T) + 'a) -> Harness<'a, T> {
     let mut has_theme = false;
@@ -35,7 +36,14 @@ fn harness<'a, T: 'a>(state: T, mut show: impl FnMut(&mut egui::Ui, &mut T) + 'a
 #[test]
 fn the_legend_names_the_mode_and_its_switches() {
     let mode = Mode { name: "Depth".into(), unit: "m".into(), encode: Encode::Data, components: 1, ..Mode::default() };
-    let of = LegendOf { mode, limits: Some((2.9, 4.2)), survey: None, colormap: Colormap::None, exposure: 1.0 };
+    let of = LegendOf {
+        mode,
+        limits: Some((2.9, 4.2)),
+        survey: None,
+        colormap: Colormap::None,
+        exposure: 1.0,
+        swatches: Vec::new(),
+    };
     let state = (Settings::of_window().view, LegendState::default());
     let mut harness = harness(state, move |ui, (view, state)| {
         let readout = Readout { value: "3.01758".into(), unit: "m".into(), at: (12, 34) };
@@ -55,6 +63,25 @@ fn the_legend_names_the_mode_and_its_switches() {
 }
 
 #[test]
+#[test]
+fn the_legend_names_the_colors_of_numbers() {
+    let numbers = Some(Numbers::Names(["front", "back"].map(str::to_owned).to_vec()));
+    let number_colors = vec![Some([0x3f, 0xbc, 0x59]), Some([0xe7, 0x45, 0x30])];
+    let mode = Mode { name: "Face orientation".into(), numbers, number_colors, components: 3, ..Mode::default() };
+    let swatches = swatches(&mode, None, &ShaderSet::default());
+    let of = LegendOf { mode, limits: None, survey: None, colormap: Colormap::None, exposure: 1.0, swatches };
+    let state = (Settings::of_window().view, LegendState::default());
+    let mut harness = harness(state, move |ui, (view, state)| {
+        let legend = Legend { title: None, of: &of, value: None };
+        legend::show(ui, &legend, view, state, 600.0);
+    });
+    assert!(["front", "back"].iter().all(|name| harness.query_by_label(name).is_some()));
+    // A single channel is gray.
+    harness.get_by_role_and_label(Role::Button, "R").click();
+    harness.run();
+    assert!(harness.query_by_label("front").is_none());
+}
+
 fn rows_are_named_and_follow_the_keyboard() {
     let mut harness = harness(Settings::of_window(), |ui, settings| {
         rows::number(ui, settings, &EXPOSURE);

@@ -2,6 +2,7 @@
 
 use super::number::Pointed;
 use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::panels::overlay::swatches::swatches;
 use crate::app::panels::{LegendOf, Readout};
 use crate::app::viewer::{Viewer, readout};
 use crate::frame::FrameState;
@@ -89,8 +90,11 @@ impl Screen {
     pub(super) fn legend(&self, viewer: &Viewer) -> Option<LegendOf> {
         let state = self.pointed_at(viewer)?;
         let view = self.cells.iter().find(|cell| cell.view.probe.is_some()).map_or(&self.view, |cell| &cell.view);
+        let mode = state.mode()?.clone();
+        let scene = viewer.session.scene();
         Some(LegendOf {
-            mode: state.mode()?.clone(),
+            swatches: swatches(&mode, scene.as_ref(), &state.shaders),
+            mode,
             limits: view.limits(),
             survey: view.survey().cloned(),
             colormap: state.display.colormap(),

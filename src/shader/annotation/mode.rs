@@ -110,6 +110,9 @@ pub struct Mode {
     /// The meaning of its numbers, if the picture shows a color for each.
     #[serde(skip)]
     pub numbers: Option<Numbers>,
+    /// The sRGB colors of named numbers, in the order of their names; `None` where the color follows the picture.
+    #[serde(skip)]
+    pub number_colors: Vec<Option<[u8; 3]>>,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
     /// Whether its values are those of the display, after the tone map.
@@ -209,9 +212,10 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         }
         "colormap" => mode.colormap = colormap(cursor)?,
         "numbers" => mode.numbers = Some(numbers(cursor)?),
+        "colors" => mode.number_colors = number_colors(cursor, mode.numbers.as_ref())?,
         other => {
             let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, needs=, \
-                range=, colormap=, numbers=, key= or doc=";
+                range=, colormap=, numbers=, colors=, key= or doc=";
             return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
         }
     }
@@ -245,6 +249,31 @@ fn numbers(cursor: &mut Cursor<'_>) -> Result<Numbers, Box<Diagnostic>> {
         return Err(cursor.error(bytes, message));
     }
     Ok(Numbers::Names(names))
+}
+
+/// Reads the value of `colors=`: `#rrggbb` for each name of `numbers`, or `-` for one without a color of its own.
+fn number_colors(cursor: &mut Cursor<'_>, numbers: Option<&Numbers>) -> Result<Vec<Option<[u8; 3]>>, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("colors")?;
+    let color = |text: &str| match text.trim() {
+        "-" => Some(None),
+        text => {
+            let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+            let hex = u32::from_str_radix(digits, 16).ok()?;
+            let [_, r, g, b] = hex.to_be_bytes();
+            Some(Some([r, g, b]))
+        }
+    };
+    let colors: Option<Vec<Option<[u8; 3]>>> = value.split('|').map(color).collect();
+    match (colors, numbers) {
+        (Some(colors), Some(Numbers::Names(names))) if colors.len() == names.len() => Ok(colors),
+        _ => {
+            let message = format!(
+                "expected a color for each name of the numbers= before it, as numbers=\"front|back\" \
+                 colors=\"#3fbc59|-\", found `{value}`"
+            );
+            Err(cursor.error(bytes, message))
+        }
+    }
 }
 
 /// Reads the value of `needs=`: names of `FEATURE_*` constants in small letters, with `-` for `_`.

@@ -81,6 +81,23 @@ fn numbers_of_modes_have_a_meaning() {
 }
 
 #[test]
+fn named_numbers_have_colors() {
+    let text = |options: &str| format!("const uint MODE_A = 1u; //@mode a \"A\" {options}");
+    let found = read_text(&text("numbers=\"front|back\" colors=\"#3fbc59|-\"")).unwrap();
+    assert_eq!(found.modes[0].number_colors, [Some([0x3f, 0xbc, 0x59]), None]);
+    let expected = "expected a color for each name of the numbers= before it, as numbers=\"front|back\" \
+                    colors=\"#3fbc59|-\"";
+    for (options, column, value) in [
+        ("colors=\"#3fbc59\"", 46, "#3fbc59"),
+        ("numbers=index colors=\"-\"", 60, "-"),
+        ("numbers=\"a|b\" colors=\"-\"", 60, "-"),
+        ("numbers=\"a|b\" colors=\"-|red\"", 60, "-|red"),
+    ] {
+        refused(&text(options), &format!("m.frag:3:{column}: error: {expected}, found `{value}`"));
+    }
+}
+
+#[test]
 fn constants_and_parameters() {
     let found = read_text(&format!(
         "layout(constant_id = USER_CONSTANTS + 1) const uint NDF_MODEL = 1u; //@ui \"NDF\" choice GGX=0 Beckmann=1\n\
@@ -170,7 +187,7 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
-         needs=, range=, colormap=, numbers=, key= or doc=, found `colour`",
+         needs=, range=, colormap=, numbers=, colors=, key= or doc=, found `colour`",
     );
     let errors = read_text("const uint M = 1u; //@mode d \"D\" needs=sheen,clearcot").unwrap_err();
     let needs =

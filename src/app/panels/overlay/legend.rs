@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::ValueEnum as _;
 use egui::{Button, Color32, Galley, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
-use super::wrapped;
+use super::{swatches, wrapped};
 use crate::app::panels::rows::choice_name;
 use crate::app::panels::spoken::named;
 use crate::app::panels::theme::{QUIET, icon, small_mono};
@@ -103,6 +103,9 @@ pub(in crate::app) fn show(
         // Colors that stand for numbers have no range.
         if legend.of.mode.numbers.is_none() {
             ui.horizontal(|ui| range(ui, legend, view));
+        } else if view.channels == Channels::Rgb {
+            // A single channel is gray.
+            ui.scope(|ui| swatches::show(ui, &legend.of.swatches));
         }
         ui.horizontal(|ui| channels(ui, legend, view, state));
         if state.shows_histogram {

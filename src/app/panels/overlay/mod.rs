@@ -8,6 +8,7 @@ mod hint;
 mod labels;
 pub(in crate::app) mod legend;
 mod restore;
+pub(in crate::app) mod swatches;
 mod version;
 
 use std::sync::Arc;
@@ -136,8 +137,8 @@ fn label(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture
     if legend.value.is_none() && !legend.is_whole(view, state) {
         return;
     }
-    // An area keeps its first size: one with a histogram is another.
-    let id = Id::new(("mode", legend.is_whole(view, state), state.shows_histogram));
+    // An area keeps its first size: one with a histogram or other swatches is another.
+    let id = Id::new(("mode", legend.is_whole(view, state), state.shows_histogram, of.swatches.len()));
     area(id, Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, state, picture.width()));
     });
