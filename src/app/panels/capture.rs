@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use egui::{Align, Button, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
+use egui::{Align, Button, Checkbox, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
 use super::QUIET;
+use super::check_box;
 use super::rows::{Row, elided, heading};
 use crate::app::command::Command;
 use crate::app::control::Captures;
@@ -93,7 +94,8 @@ fn picture(ui: &mut Ui, state: &mut CaptureState, shown: (u32, u32)) -> Option<C
     });
     let is_plain = !state.is_exr && state.size.is_none();
     row(ui, "With panels", "The whole window, as it is on screen: a PNG of the window's size", |ui| {
-        ui.add_enabled(is_plain, egui::Checkbox::without_text(&mut state.with_panels))
+        let show = |ui: &mut Ui| check_box::show(ui, Checkbox::without_text(&mut state.with_panels));
+        ui.add_enabled_ui(is_plain, show).inner
     });
     let about = "Write the picture as specula-N (F12 writes it as it is on screen)";
     button(ui, "Capture picture", about).then(|| Capture {

@@ -7,8 +7,9 @@ mod solid;
 mod texels;
 mod values;
 
-use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
+use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
+use super::check_box;
 use super::rows::{choose, elided};
 use super::search::{self, Words};
 use super::theme::{ACCENT, QUIET};
@@ -81,7 +82,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             copy(ui, state, modes);
-            let follow = ui.checkbox(&mut state.follows, "Follow mouse");
+            let follow = check_box::show(ui, Checkbox::new(&mut state.follows, "Follow mouse"));
             follow.on_hover_text("While no pixel is pinned, read the pixel under the mouse when the mouse stops");
         });
     });

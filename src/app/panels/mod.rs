@@ -3,6 +3,7 @@
 
 mod camera;
 mod capture;
+mod check_box;
 mod environment;
 pub(super) mod expression;
 mod inspector;

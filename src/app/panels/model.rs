@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
+use super::check_box;
 use super::rows::{Row, check, choose, color, heading, number, setting};
 use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
@@ -90,7 +91,8 @@ fn override_material(ui: &mut Ui, settings: &mut Settings) {
 fn channel(ui: &mut Ui, settings: &mut Settings, of: MaterialChannel, row: impl FnOnce(&mut Ui, &mut Settings)) {
     ui.horizontal(|ui| {
         let mut is_on = settings.material.replaces(of);
-        let switch = ui.add_enabled(!settings.material.enabled, Checkbox::without_text(&mut is_on));
+        let show = |ui: &mut Ui| check_box::show(ui, Checkbox::without_text(&mut is_on));
+        let switch = ui.add_enabled_ui(!settings.material.enabled, show).inner;
         let hint = format!(
             "Replace this channel and its texture in all materials. Everything else stays\n--set material.override={}",
             of.name()

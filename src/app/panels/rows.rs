@@ -8,6 +8,7 @@ use egui::{
     Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
 };
 
+use super::check_box;
 use super::spoken::named;
 use super::theme::{ACCENT, QUIET, small_mono};
 use crate::app::numbers::{Number, Scale};
@@ -302,7 +303,7 @@ pub(super) fn choose(
 
 /// A check box.
 pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
-    let response = ui.add(Checkbox::without_text(on));
+    let response = check_box::show(ui, Checkbox::without_text(on));
     // egui gives a box without text an empty name, which would hide that of the row.
     ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
     response

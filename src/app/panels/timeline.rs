@@ -2,11 +2,11 @@
 
 pub(super) mod comparison;
 
-use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
+use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 
 use super::rows::elided;
 use super::search::{self, Words};
-use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT, small_mono};
+use super::theme::{ACCENT, GOOD, QUIET, TEXT, small_mono};
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
@@ -18,6 +18,10 @@ pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 const IN_LIST: f32 = 0.625;
 /// What the panel lists, in words.
 const WHAT: &str = "versions";
+/// Widest entry of a list, points.
+const WIDEST: f32 = 320.0;
+/// Opacity of the accent behind the chosen entry.
+const FAINT: f32 = 0.1;
 /// Most lines of a difference in the hover text.
 const MOST_LINES: usize = 40;
 
@@ -128,7 +132,8 @@ impl Entry<'_> {
     /// In a list: the picture on the left, the texts on the right.
     fn row(&self, ui: &mut Ui) -> Response {
         let size = IN_LIST * THUMBNAIL;
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), size.y + 6.0), Sense::click());
+        let width = ui.available_width().min(WIDEST);
+        let (rect, response) = ui.allocate_exact_size(vec2(width, size.y + 6.0), Sense::click());
         let picture = Rect::from_min_size(rect.shrink(3.0).min, size);
         self.paint(ui, &response, picture);
         self.texts(ui, rect.shrink(3.0).with_min_x(picture.max.x + 8.0));
@@ -150,10 +155,12 @@ impl Entry<'_> {
 
     /// The background, and the picture in small.
     fn paint(&self, ui: &Ui, response: &Response, picture: Rect) {
-        if self.is_chosen() || response.hovered() {
-            let widgets = &ui.visuals().widgets;
-            let fill = if self.is_chosen() { ui.visuals().selection.bg_fill } else { widgets.hovered.weak_bg_fill };
-            ui.painter().rect_filled(response.rect, 3.0, fill);
+        if response.hovered() {
+            ui.painter().rect_filled(response.rect, 3.0, ui.visuals().widgets.hovered.weak_bg_fill);
+        }
+        if self.is_chosen() {
+            ui.painter().rect_filled(response.rect, 3.0, ACCENT.color().gamma_multiply(FAINT));
+            ui.painter().rect_stroke(response.rect, 3.0, Stroke::new(1.5, ACCENT), StrokeKind::Inside);
         }
         match &self.version.thumbnail {
             Some(thumbnail) => egui::Image::new(thumbnail).corner_radius(2).paint_at(ui, picture),
@@ -169,12 +176,11 @@ impl Entry<'_> {
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         ui.set_clip_rect(rect.intersect(ui.clip_rect()));
         ui.spacing_mut().item_spacing.y = 2.0;
-        let quiet = if self.is_chosen() { STRONG } else { QUIET };
         ui.add(elided(RichText::new(self.title()).strong()).selectable(false));
         let times = format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
         let gpu = device_ms.map_or_else(String::new, |ms| format!(" {ms:.0} ms GPU"));
         for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
-            ui.add(elided(monospace(line).color(quiet)).selectable(false));
+            ui.add(elided(monospace(line).color(QUIET)).selectable(false));
         }
     }
 

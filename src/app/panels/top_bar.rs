@@ -1,7 +1,8 @@
 //! The bar above the picture: arrangements of the panels, the command palette and the list of keys.
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, Checkbox, RichText, Ui, vec2};
 
+use super::check_box;
 use super::spoken::named;
 use super::theme::{BAR, QUIET, icon, small_mono};
 use super::{PanelState, theme};
@@ -86,7 +87,7 @@ fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
         }
         let mut always = last_sessions.is_always();
         let hint = "When Specula starts in this folder without arguments, continue its last session";
-        if ui.checkbox(&mut always, "Restore at start").on_hover_text(hint).changed() {
+        if check_box::show(ui, Checkbox::new(&mut always, "Restore at start")).on_hover_text(hint).changed() {
             commands.push(Command::RestoreAlways(always));
         }
         for (kind, title) in
@@ -122,7 +123,7 @@ fn panels(ui: &mut Ui, layout: &mut Layout) {
             }
             for panel in group {
                 let mut is_open = layout.is_in_sight(*panel);
-                if ui.checkbox(&mut is_open, panel.title()).changed() {
+                if check_box::show(ui, Checkbox::new(&mut is_open, panel.title())).changed() {
                     match is_open {
                         true => layout.open(*panel),
                         false => layout.close(*panel),

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
+use egui::{Checkbox, Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
+use super::super::check_box;
 use super::super::rows::elided;
 use super::super::theme::{ERROR, GOOD, QUIET, WARNING};
 use crate::app::stages::{StageRow, StageState};
@@ -27,7 +28,8 @@ pub(super) struct StagesState {
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
     ui.horizontal(|ui| {
         let count = viewer.stages.rows().len();
-        ui.checkbox(&mut state.shows_all, RichText::new(format!("All {count}")).small()).on_hover_text(
+        let all = Checkbox::new(&mut state.shows_all, RichText::new(format!("All {count}")).small());
+        check_box::show(ui, all).on_hover_text(
             "Also list the stages that the current picture does not use: bakes, other modes, disabled passes",
         );
         ask(ui, viewer);
@@ -75,8 +77,8 @@ fn ask(ui: &mut Ui, viewer: &mut Viewer) {
              SPIR-V word counts below are exact"
         }
     };
-    let asks = egui::Checkbox::new(&mut viewer.shader.asks_driver, RichText::new("Ask the driver").small());
-    let response = ui.add_enabled(tells, asks);
+    let asks = Checkbox::new(&mut viewer.shader.asks_driver, RichText::new("Ask the driver").small());
+    let response = ui.add_enabled_ui(tells, |ui| check_box::show(ui, asks)).inner;
     if response.changed() {
         viewer.shader.told = None;
     }
