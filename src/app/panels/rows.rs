@@ -16,8 +16,10 @@ use crate::settings::{LightSource, Settings, Tonemap};
 
 /// Height of a row, in points.
 const HEIGHT: f32 = 18.0;
-/// Width of the names, in points. Names become narrower before the controls do.
-const NAME: std::ops::RangeInclusive<f32> = 84.0..=120.0;
+/// Smallest width of the names, in points. Names become narrower before the controls do.
+const NAME: f32 = 84.0;
+/// Largest share of a row that its name takes.
+const SHARE: f32 = 0.45;
 /// Points by which the name of an indented row moves.
 const INDENT: f32 = 10.0;
 /// Points that names leave to the controls while they can.
@@ -76,8 +78,7 @@ impl Row<'_> {
     fn title(&self, ui: &mut Ui) -> Response {
         let text = RichText::new(self.name);
         let text = if self.is_changed { text.color(ACCENT) } else { text };
-        let room = ui.available_width() - CONTROL - ui.spacing().item_spacing.x;
-        let size = vec2(room.clamp(*NAME.start(), *NAME.end()), HEIGHT);
+        let size = vec2(name_width(ui.available_width(), ui.spacing().item_spacing.x), HEIGHT);
         let label = |ui: &mut Ui| {
             ui.set_min_size(size);
             if self.is_indented {
@@ -116,6 +117,11 @@ impl Row<'_> {
         }
         resets
     }
+}
+
+/// The width of the names in rows of this width, with this gap before the controls.
+fn name_width(row: f32, gap: f32) -> f32 {
+    (row - CONTROL - gap).min(SHARE * row).max(NAME)
 }
 
 /// An option of the command line. The font of the other texts shows two hyphens as one dash.
@@ -330,6 +336,11 @@ mod tests {
         assert_eq!(set_option("view.ev", "-1.5"), "--set view.ev=-1.5");
         assert_eq!(set_option("environment.name", "my sky's.hdr"), r"--set environment.name='my sky'\''s.hdr'");
         assert_eq!([0.45_f32, 1.0, 0.0].text(), "0.45,1,0");
+    }
+
+    #[test]
+    fn names_grow_with_the_panel() {
+        assert_eq!([184.0, 302.0, 600.0].map(|width| name_width(width, 6.0).round()), [84.0, 136.0, 270.0]);
     }
 
     /// Shows rows in a column of this width, and returns how far they reach.
