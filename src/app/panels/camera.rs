@@ -1,16 +1,33 @@
-//! The panel Camera: field of view, framing, and the cameras in the model.
+//! The panel Camera: field of view, position, views from the sides, framing, and the cameras in the model.
 
-use egui::{Button, Label, RichText, Ui};
+use egui::{Button, Label, Response, RichText, Ui};
 
-use super::rows::{heading, number, option_text};
+use super::rows::{Row, Value as _, drag, heading, number, option_text, set_option};
+use super::spoken::named;
 use super::{ACCENT, QUIET};
-use crate::app::command::Command;
-use crate::app::numbers::FIELD_OF_VIEW;
-use crate::scene::Model;
-use crate::settings::Settings;
+use crate::app::command::{Command, Side};
+use crate::app::numbers::{FIELD_OF_VIEW, Scale};
+use crate::scene::{CameraView, Model};
+use crate::settings::{CameraSettings, Settings};
 
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands: &mut Vec<Command>) {
+/// Farthest position that the panel sets, meters.
+const FARTHEST: f64 = 1e6;
+/// Gap between the numbers of a position, points.
+const GAP: f32 = 3.0;
+
+/// Shows the panel. `view`: the camera of the picture.
+pub(super) fn show(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    view: Option<&CameraView>,
+    model: &Model,
+    commands: &mut Vec<Command>,
+) {
     number(ui, settings, &FIELD_OF_VIEW);
+    if let Some(view) = view {
+        place(ui, &mut settings.camera, view);
+    }
+    sides(ui, commands);
     bookmarks(ui, settings, commands);
     let settings = &mut settings.camera;
     if ui.button("Frame the model").on_hover_text("Show the whole model (R or Home)").clicked() {
@@ -33,6 +50,83 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands
     let help = "Drag to orbit, Shift+drag to pan, wheel to zoom, Alt+drag to turn the environment.\n\
                 Hold the right button and W A S D Q E to fly.";
     ui.label(RichText::new(help).small().color(QUIET));
+}
+
+/// The rows of position and target. A change of one keeps the other where it is in the picture.
+fn place(ui: &mut Ui, settings: &mut CameraSettings, view: &CameraView) {
+    let [before, target] =
+        [settings.eye.unwrap_or(view.eye.to_array()), settings.target.unwrap_or(view.target.to_array())];
+    // A drag over 200 points is as long as the distance to the target.
+    let distance = f64::from(view.eye.distance(view.target));
+    let scale = Scale {
+        slider: Some((0.0, distance)),
+        limits: (-FARTHEST, FARTHEST),
+        suffix: String::new(),
+        decimals: 3,
+        is_logarithmic: false,
+        is_squared: false,
+        is_signed: false,
+    };
+    let rows = [
+        (
+            "Position",
+            "Position of the camera in meters: x, y, z. Without it, the camera frames the model",
+            "camera.eye",
+        ),
+        ("Target", "The point that the camera looks at and orbits around, in meters: x, y, z", "camera.target"),
+    ];
+    let is_set = [settings.eye.is_some(), settings.target.is_some()];
+    let mut points = [before, target];
+    let mut is_changed = false;
+    for (at, (name, doc, path)) in rows.into_iter().enumerate() {
+        let point = &mut points[at];
+        let option = set_option(path, &point.text());
+        let row = Row { name, doc, option, is_changed: is_set[at], is_indented: false };
+        if row.show(ui, |ui| edit_point(ui, name, point, &scale, &mut is_changed)) {
+            (settings.eye, settings.target) = (None, None);
+            return;
+        }
+    }
+    if is_changed {
+        (settings.eye, settings.target) = (Some(points[0]), Some(points[1]));
+    }
+}
+
+/// Three numbers side by side. Notes a change in `is_changed`.
+fn edit_point(ui: &mut Ui, name: &str, point: &mut [f32; 3], scale: &Scale, is_changed: &mut bool) -> Response {
+    ui.spacing_mut().item_spacing.x = GAP;
+    let width = (ui.available_width() - 2.0 * GAP) / 3.0;
+    let [x, y, z] = point.each_mut();
+    let mut edit = |axis: &str, number: &mut f32| {
+        let mut edited = f64::from(*number);
+        let response = named(drag(ui, &mut edited, scale, width), &format!("{name} {axis}"));
+        if response.changed() {
+            *number = edited as f32;
+            *is_changed = true;
+        }
+        response
+    };
+    edit("x", x).union(edit("y", y)).union(edit("z", z))
+}
+
+/// The views from the six sides.
+fn sides(ui: &mut Ui, commands: &mut Vec<Command>) {
+    heading(ui, "View from");
+    ui.horizontal_wrapped(|ui| {
+        for side in Side::ALL {
+            let (name, key) = side.words();
+            let hint = format!("View from the {name} ({key})");
+            if named(ui.button(capitalized(name)), &hint).on_hover_text(&hint).clicked() {
+                commands.push(Command::ViewFrom(side));
+            }
+        }
+    });
+}
+
+/// A word with a capital.
+fn capitalized(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }
 
 /// The cameras that the user has kept.

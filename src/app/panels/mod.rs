@@ -162,9 +162,9 @@ pub(super) struct LegendOf {
     pub(super) colormap: Colormap,
     /// Factor from luminance to the display's 0..1.
     pub(super) exposure: f32,
-}
     /// The colors that stand for single numbers.
     pub(super) swatches: Vec<overlay::swatches::Swatch>,
+}
 
 /// Where the picture is, in points.
 #[derive(Clone, Copy)]
@@ -280,6 +280,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let model = viewer.session.placed_model().unwrap_or_default();
     let is_animated = viewer.is_animated();
     let features = viewer.session.features();
+    let view = viewer.shown().map(|state| state.camera);
     let session = &mut viewer.session;
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
@@ -304,7 +305,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         }
         Panel::Lights => lights::show(ui, settings, model.lights.len(), commands),
         Panel::Output => output::show(ui, settings, &mut viewer.panels.legend.shows_histogram, commands),
-        Panel::Camera => camera::show(ui, settings, &model, commands),
+        Panel::Camera => camera::show(ui, settings, view.as_ref(), &model, commands),
     }
 }
 

@@ -3,20 +3,21 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use glam::Vec3;
 
 use super::output::range;
 use super::overlay::legend::{self, Legend, LegendState};
-use super::timeline::comparison;
 use super::overlay::swatches::swatches;
+use super::timeline::comparison;
 use super::{LegendOf, Readout};
 use super::{camera, capture, rows, theme};
-use crate::app::command::{Command, CompareWith};
+use crate::app::command::{Command, CompareWith, Side};
 use crate::app::control::Captures;
 use crate::app::dialog::Dialog;
 use crate::app::numbers::EXPOSURE;
 use crate::app::viewer::Compare;
 use crate::control::{Request, Timeline, Turntable};
-use crate::scene::Model;
+use crate::scene::{Bounds, CameraView, Model};
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
 use crate::shader::{Encode, Mode, Numbers, ShaderSet};
 
