@@ -64,7 +64,6 @@ fn the_legend_names_the_mode_and_its_switches() {
 }
 
 #[test]
-#[test]
 fn the_legend_names_the_colors_of_numbers() {
     let numbers = Some(Numbers::Names(["front", "back"].map(str::to_owned).to_vec()));
     let number_colors = vec![Some([0x3f, 0xbc, 0x59]), Some([0xe7, 0x45, 0x30])];
@@ -83,6 +82,7 @@ fn the_legend_names_the_colors_of_numbers() {
     assert!(harness.query_by_label("front").is_none());
 }
 
+#[test]
 fn rows_are_named_and_follow_the_keyboard() {
     let mut harness = harness(Settings::of_window(), |ui, settings| {
         rows::number(ui, settings, &EXPOSURE);
@@ -129,7 +129,7 @@ fn a_turntable_has_the_format_that_was_chosen() {
 fn cameras_are_kept_and_found_by_their_number() {
     let state = (Settings::default(), Vec::<Command>::new());
     let mut harness = harness(state, |ui, (settings, commands)| {
-        camera::show(ui, settings, &Model::default(), commands);
+        camera::show(ui, settings, None, &Model::default(), commands);
     });
     harness.get_by_role_and_label(Role::Button, "3").click();
     harness.run();
@@ -140,6 +140,27 @@ fn cameras_are_kept_and_found_by_their_number() {
     harness.get_by_role_and_label(Role::Button, "3").click();
     harness.run();
     assert_eq!(harness.state().1.last(), Some(&Command::RecallCamera(3)));
+}
+
+#[test]
+fn the_camera_is_placed_by_numbers_and_from_the_sides() {
+    let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+    let view = CameraView::new(Vec3::new(1.0, 2.0, 4.0), Vec3::ZERO, 0.7, 1.5, &bounds);
+    let state = (Settings::default(), Vec::<Command>::new());
+    let mut harness = harness(state, move |ui, (settings, commands)| {
+        camera::show(ui, settings, Some(&view), &Model::default(), commands);
+    });
+    assert_eq!(harness.state().0.camera.eye, None, "the panel changes nothing by itself");
+    harness.get_by_label("Position y").focus();
+    harness.run();
+    harness.key_press(egui::Key::ArrowUp);
+    harness.run();
+    let camera = harness.state().0.camera.clone();
+    let eye = camera.eye.expect("a position");
+    assert!(eye[1] > 2.0 && [eye[0], eye[2]] == [1.0, 4.0] && camera.target == Some([0.0; 3]), "{camera:?}");
+    harness.get_by_role_and_label(Role::Button, "View from the top (Numpad 7)").click();
+    harness.run();
+    assert_eq!(harness.state().1, [Command::ViewFrom(Side::Top)]);
 }
 
 #[test]
@@ -161,4 +182,22 @@ fn a_comparison_begins_with_a_picture_or_a_second_tree() {
         Command::Choose(Dialog::SecondTree),
     ];
     assert_eq!(commands.as_slice(), expected);
+}
+
+#[test]
+fn the_buttons_of_a_comparison_fit_a_narrow_column() {
+    let column = egui::vec2(180.0, 300.0);
+    let mut harness = harness((Compare::default(), 0.0), move |ui, (compare, reach)| {
+        let column = egui::Rect::from_min_size(ui.min_rect().min, column);
+        ui.scope_builder(egui::UiBuilder::new().max_rect(column), |ui| {
+            comparison::show(ui, compare, None, &mut Vec::new());
+            *reach = ui.min_rect().width();
+        });
+    });
+    harness.run();
+    assert!(harness.state().1 <= column.x, "{}", harness.state().1);
+    for name in ["Keep this picture", "Compare with…"] {
+        let height = harness.get_by_role_and_label(Role::Button, name).rect().height();
+        assert!(height < 26.0, "`{name}` is in one line: {height}");
+    }
 }

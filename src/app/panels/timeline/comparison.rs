@@ -1,10 +1,11 @@
 //! The other side of the comparison, and how much both sides differ: the first lines of the panel Timeline.
 
-use egui::{Label, RichText, Ui};
+use egui::{Label, RichText, TextWrapMode, Ui};
 
 use crate::app::command::{Command, CompareWith};
 use crate::app::dialog::Dialog;
 use crate::app::panels::search;
+use crate::app::panels::spoken::named;
 use crate::app::panels::theme::QUIET;
 use crate::app::panels::timeline::{WHAT, monospace};
 use crate::app::viewer::{Compare, Difference};
@@ -24,14 +25,19 @@ pub(in crate::app::panels) fn show(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal_wrapped(|ui| {
+        // What does not fit into a row goes to the next one as a whole.
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
         if compare.is_on() {
-            if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {
+            let stop = named(ui.button("Stop"), "Stop comparing");
+            if stop.on_hover_text("Stop comparing, and show the newest picture alone (Ctrl+K)").clicked() {
                 commands.push(Command::Compare(CompareWith::Nothing));
             }
             ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
                 "Show the FLIP of each pixel over the picture: black is equal, white is the largest difference",
             );
-            ui.label(monospace(difference_text(compare.difference.as_ref()))).on_hover_text(FLIP);
+            for number in numbers(compare.difference.as_ref()) {
+                ui.label(monospace(number)).on_hover_text(FLIP);
+            }
         } else {
             let hint = "Keep the current picture with all its settings, and compare later pictures with it (Ctrl+K)";
             if ui.button("Keep this picture").on_hover_text(hint).clicked() {
@@ -64,9 +70,11 @@ pub(in crate::app::panels) fn show(
 }
 
 /// How much both pictures differ.
-fn difference_text(difference: Option<&Difference>) -> String {
+fn numbers(difference: Option<&Difference>) -> Vec<String> {
     match difference {
-        Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}  largest {:.0}/255", largest * 255.0),
-        None => "FLIP …".to_owned(),
+        Some(Difference { flip, largest, .. }) => {
+            vec![format!("FLIP {flip:.4}"), format!("largest {:.0}/255", largest * 255.0)]
+        }
+        None => vec!["FLIP …".to_owned()],
     }
 }
