@@ -59,7 +59,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, comm
         }
         Page::Lobe => {
             let chosen = viewer.session.settings.lights.chosen;
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            // Its place is not that of the list of values.
+            egui::ScrollArea::vertical().id_salt("BRDF").auto_shrink(false).show(ui, |ui| {
                 lobe::show(ui, reading, state.curves.as_ref(), state.asked.as_ref(), chosen, &mut state.turn_deg);
             });
         }
