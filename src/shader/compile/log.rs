@@ -1,8 +1,10 @@
 //! Parses the compiler's log. glslang reports lines but no columns, so the caret goes under the token that the message names.
 
+use std::cell::LazyCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::names::Names;
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
 use crate::shader::source::TreePath;
@@ -18,6 +20,10 @@ pub fn parse(
     dependencies: &BTreeSet<TreePath>,
 ) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let mut out: Vec<Diagnostic> = Vec::new();
+    let names = LazyCell::new(|| {
+        let text = |path: &TreePath| snapshot.read(path).ok().map(|text| text.to_string());
+        Names::of(dependencies.iter().filter_map(|path| Some((path, text(path)?))))
+    });
     for row in log.lines() {
         let Some((severity, place, message)) = split(row) else {
             // Linker messages continue on the next lines: "FILE:     f(f1; calling g(f1;".
@@ -36,6 +42,12 @@ pub fn parse(
         let diagnostic = Diagnostic { severity, ..diagnostic };
         let with_pass = message.contains("overlapping use of location 0") && dependencies.iter().any(is_pass_glsl);
         let diagnostic = if with_pass { diagnostic.with_help(OVERLAPPING) } else { diagnostic };
+        let suggested =
+            path.zip(line).and_then(|(path, line)| nearest_name(message, &diagnostic, path, line, || &names));
+        let diagnostic = match suggested {
+            Some(name) => diagnostic.with_help(format!("did you mean `{name}`?")),
+            None => diagnostic,
+        };
         if !out.last().is_some_and(|last| is_consequence(last, &diagnostic)) {
             out.push(diagnostic);
         }
@@ -49,6 +61,27 @@ const OVERLAPPING: &str = "pass.glsl declares `in vec2 uv` and `out vec4 color` 
 
 fn is_pass_glsl(path: &TreePath) -> bool {
     path.as_str() == "pass.glsl"
+}
+
+/// The declared name nearest to the unknown one of a message. Reads `names` only if the message has such a name.
+fn nearest_name<'a>(
+    message: &str,
+    diagnostic: &Diagnostic,
+    file: &TreePath,
+    line: u32,
+    names: impl FnOnce() -> &'a Names,
+) -> Option<&'a str> {
+    let (unknown, said) = split_token(message);
+    if said.starts_with("undeclared identifier") || said.starts_with("no matching overloaded function found") {
+        return names().nearest(unknown, file, line);
+    }
+    if !said.starts_with("no such field in structure") {
+        return None;
+    }
+    let excerpt = diagnostic.excerpt.as_deref().unwrap_or_default();
+    let tokens: Vec<&str> = tokens(excerpt).into_iter().map(|(_, token)| token).collect();
+    let base = tokens.windows(3).find(|three| three[1] == "." && three[2] == unknown).map_or("", |three| three[0]);
+    names().nearest_member(unknown, base)
 }
 
 /// `PLACE: error: MESSAGE`

@@ -135,3 +135,22 @@ fn warnings_do_not_fail() {
     let lines: Vec<String> = compiled.warnings.iter().map(Diagnostic::one_line).collect();
     assert_eq!(lines, ["m.frag:2:1: warning: '#extension' : extension not supported: GL_FOO_bar"]);
 }
+
+#[test]
+fn an_unknown_name_is_answered_with_the_nearest() {
+    let head = "#version 460\n#include \"a.glsl\"\nlayout(location=0) out vec4 o;\nvoid main() {\n    Hit hit;\n";
+    let library = "struct Hit { vec3 normal_ws; };\nfloat gain_of(float x) { return x; }\n";
+    for (line, expected) in [
+        ("o = vec4(hti.normal_ws, 1.0);", Some("did you mean `hit`?")),
+        ("o = vec4(gain_fo(1.0));", Some("did you mean `gain_of`?")),
+        ("o = vec4(smothstep(0.0, 1.0, 0.5));", Some("did you mean `smoothstep`?")),
+        ("o = vec4(hit.nrmal_ws, 1.0);", Some("did you mean `normal_ws`?")),
+        ("o = vec4(entirely_different);", None),
+        // The name is right, but not its arguments.
+        ("o = vec4(mix(vec3(1.0), 2, 3), 1.0);", None),
+    ] {
+        let text = format!("{head}    {line}\n}}\n");
+        let errors = compile(&[("m.frag", &text), ("a.glsl", library)]).result.expect_err("must not compile");
+        assert_eq!(errors[0].help.as_deref(), expected, "{line}: {}", errors[0]);
+    }
+}

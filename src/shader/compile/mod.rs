@@ -3,6 +3,7 @@
 mod balance;
 pub mod include;
 pub mod log;
+mod names;
 mod unbound;
 mod uniform;
 
