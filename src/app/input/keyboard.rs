@@ -28,6 +28,10 @@ pub(super) fn on_keyboard(
     {
         return true;
     }
+    // A release always counts, so that nothing stays held.
+    if pressed && viewer.panels.defaults.is_open() {
+        return false;
+    }
     let reads_keys = viewer.reads_keys();
     let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
     if is_space && !pressed && viewer.hold_reference(false) {

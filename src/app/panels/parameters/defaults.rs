@@ -19,6 +19,11 @@ impl Asked {
     pub(in crate::app) fn ask(&mut self, only: Option<String>) {
         self.about = Some(only);
     }
+
+    /// Whether the dialog is open. The keys are its own then.
+    pub(in crate::app) fn is_open(&self) -> bool {
+        self.about.is_some()
+    }
 }
 
 /// Where rows leave their wish, so that panels need not hand it on.
