@@ -40,6 +40,11 @@ impl Selected {
         }
     }
 
+    /// What a click on an instance selects: that instance, or nothing if it was selected already.
+    pub(super) fn clicked(self, instance: Option<usize>) -> Self {
+        instance.map(Self::Instance).filter(|selected| *selected != self).unwrap_or_default()
+    }
+
     /// The name by which settings hide and isolate it.
     pub(super) fn key(self, model: &Model) -> Option<String> {
         match self {
@@ -97,6 +102,14 @@ impl Selected {
     }
 }
 
+/// Whether an outline of these instances tells something: others are drawn, too, or they are of several nodes.
+pub(super) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
+    let nodes: Vec<(usize, usize)> =
+        scene.numbered_instances().map(|(index, instance)| (index, instance.node)).collect();
+    let is_other = |(index, node): &(usize, usize)| *node != nodes[0].1 || instances.get(*index) != Some(&true);
+    nodes.iter().any(is_other)
+}
+
 /// The material that all of these instances have.
 pub(super) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize> {
     let selected = scene.model().instances.iter().zip(instances).filter(|(_, is)| **is);
@@ -115,7 +128,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BUILT_IN, built_in};
+    use crate::scene::{BUILT_IN, Instance, built_in};
     use crate::settings::Settings;
 
     #[test]
@@ -133,6 +146,30 @@ mod tests {
         }
         assert!(Selected::Nothing.instances(&scene).is_empty());
         assert_eq!(common_material(&scene, &[]), None);
+    }
+
+    #[test]
+    fn a_second_click_selects_nothing() {
+        let selected = Selected::Nothing.clicked(Some(2));
+        assert_eq!(selected, Selected::Instance(2));
+        assert_eq!(selected.clicked(Some(1)), Selected::Instance(1));
+        assert_eq!(selected.clicked(Some(2)), Selected::Nothing);
+        assert_eq!(selected.clicked(None), Selected::Nothing);
+    }
+
+    #[test]
+    fn a_model_of_one_node_gets_no_outline() {
+        let mut model = built_in(BUILT_IN[0]).unwrap().unwrap();
+        let outlined = |model: &Model, selected: Selected| {
+            let scene = Scene::new(&Arc::new(model.clone()), &Settings::default());
+            stands_out(&scene, &selected.instances(&scene))
+        };
+        assert!(outlined(&model, Selected::Instance(0)), "a part of several");
+        model.instances.truncate(1);
+        assert!(!outlined(&model, Selected::Instance(0)));
+        let other = Instance { node: model.instances[0].node + 1, ..model.instances[0].clone() };
+        model.instances.push(other);
+        assert!(outlined(&model, Selected::Instance(0)));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Screen;
 use crate::app::panels::theme::SELECTION;
+use crate::app::selection::stands_out;
 use crate::app::viewer::Viewer;
 use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
@@ -14,7 +15,7 @@ const WIDTH: f32 = 2.0;
 
 impl Screen {
     /// Draws the outline of the selected instances of `frame` over its picture in `target`, which is in [`crate::gpu::Use::Color`] before
-    /// and after. Without a selection it does nothing and has no targets.
+    /// and after. Without a selection, or if that is all of a single node, it does nothing and has no targets.
     pub(super) fn draw_outline(
         &mut self,
         encoder: &mut Encoder,
@@ -23,7 +24,10 @@ impl Screen {
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
         let selected = viewer.selected_instances();
-        let frame = frame.filter(|frame| frame.state.pipelines.draws_model && !selected.is_empty());
+        let stands_out =
+            |frame: &BoundFrame| frame.state.scene.as_ref().is_some_and(|scene| stands_out(scene, &selected));
+        let frame =
+            frame.filter(|frame| frame.state.pipelines.draws_model && !selected.is_empty() && stands_out(frame));
         let Some((frame, tools)) = frame.and_then(|frame| Some((frame, viewer.tools()?))) else {
             self.outline = None;
             return Ok(());

@@ -9,12 +9,12 @@ use crate::scene::{CameraController, CameraView, Model, pick};
 use crate::settings::LightSource;
 
 impl Viewer {
-    /// Selects what a pixel of the picture on screen shows, or nothing.
+    /// Selects what a pixel of the picture on screen shows, or nothing, also if that is selected already.
     pub(super) fn select_at(&mut self, [x, y]: [u32; 2]) {
         let Some(state) = self.shown().filter(|state| state.pipelines.draws_model) else { return };
         let Some(scene) = state.scene.clone() else { return };
         let hit = pick(scene.model(), &state.camera, state.size, (x, y), |instance| scene.sides(instance));
-        self.select(hit.map_or(Selected::Nothing, |hit| Selected::Instance(hit.instance)));
+        self.select(self.selected.clicked(hit.map(|hit| hit.instance)));
         self.panels.scene.follow();
     }
 
