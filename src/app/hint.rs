@@ -1,8 +1,10 @@
-//! The hint of the first start: which folder to edit. Once dismissed it does not come back.
+//! The hint of the first start: which folder to edit. Once dismissed it does not come back. The first save that reaches the picture
+//! dismisses it, too.
 
 use std::path::{Path, PathBuf};
 
 use super::dialog::{self, Dialog};
+use crate::events::ReloadEvent;
 use crate::shader::embedded;
 use crate::state;
 
@@ -36,6 +38,18 @@ impl Hint {
         self.is_shown = false;
         state::save(FILE, DISMISSED);
     }
+
+    /// Dismisses it if a save of the user's own files has changed the picture: the user has done what it says.
+    pub(super) fn saved(&mut self, reload: &ReloadEvent) {
+        if self.is_shown && reaches_picture(reload) {
+            self.dismiss();
+        }
+    }
+}
+
+/// Whether changed files were compiled and are on screen. The first compilation of a tree has no changed files.
+fn reaches_picture(reload: &ReloadEvent) -> bool {
+    reload.ok && !reload.changed.is_empty() && !reload.stages.is_empty()
 }
 
 /// `shaders`, which the next start without `--shaders` opens, or another name if that is taken.
@@ -81,6 +95,24 @@ mod tests {
         assert_eq!(standard(), Path::new("shaders"), "an empty folder may be used");
         std::fs::write(working.path().join("shaders/mine.txt"), "").unwrap();
         assert_eq!(standard(), Path::new("specula-shaders"));
+    }
+
+    #[test]
+    fn only_a_save_that_reaches_the_picture_counts() {
+        let reload = |ok, changed: &[&str], stages: &[&str]| ReloadEvent {
+            ok,
+            changed: changed.iter().map(|file| (*file).to_owned()).collect(),
+            stages: stages.iter().map(|stage| (*stage).to_owned()).collect(),
+            ..ReloadEvent::default()
+        };
+        assert!(reaches_picture(&reload(true, &["user.glsl"], &["pbr.frag"])));
+        for other in [
+            reload(false, &["user.glsl"], &["pbr.frag"]),
+            reload(true, &[], &["pbr.frag"]),
+            reload(true, &["user.glsl"], &[]),
+        ] {
+            assert!(!reaches_picture(&other), "{other:?}");
+        }
     }
 
     #[test]

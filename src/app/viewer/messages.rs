@@ -218,6 +218,10 @@ impl Viewer {
         self.stages_changed();
         // No file has changed if only another expression is watched.
         let is_watch = event.changed.is_empty() && event.stages == [expression::STAGE];
+        // Numbers that are dragged, and an older version in place of the newest, are no saves.
+        if self.has_folder() && self.edits.draft().is_none() && self.edits.restored.is_none() {
+            self.panels.hint.saved(&event);
+        }
         let changed = if is_watch { vec![expression::MODE.to_owned()] } else { event.changed.clone() };
         self.shader.last = Some(ReloadEvent { changed, ..event });
     }
