@@ -41,18 +41,18 @@
 
 //@mode final "Final" group="Picture" encode=color unit="cd/m^2" tonemap stage=pbr key=p doc="The final picture: all lights, environment and emission."
 const uint MODE_FINAL = 0u;
-//@mode clay "Clay" group="Picture" encode=color unit="cd/m^2" tonemap key=c doc="Matte gray of albedo 0.5 with the model's normals."
+//@mode clay "Clay" group="Picture" encode=color unit="cd/m^2" tonemap key=c words="white matte untextured" doc="Matte gray of albedo 0.5 with the model's normals."
 const uint MODE_CLAY = 1u;
 
 //@mode position "Position" group="Geometry" encode=data unit="m" doc="World-space position, meters."
 const uint MODE_POSITION = 200u;
-//@mode depth "Depth" group="Geometry" encode=data components=1 unit="m" key=z doc="Distance from the eye along the view direction, meters."
+//@mode depth "Depth" group="Geometry" encode=data components=1 unit="m" key=z words="distance z" doc="Distance from the eye along the view direction, meters."
 const uint MODE_DEPTH = 201u;
-//@mode geometric-normal "Geometric normal" group="Geometry" encode=vector doc="The mesh's interpolated normal, world space."
+//@mode geometric-normal "Geometric normal" group="Geometry" encode=vector words="normals vertex" doc="The mesh's interpolated normal, world space."
 const uint MODE_GEOMETRIC_NORMAL = 202u;
-//@mode shading-normal "Shading normal" group="Geometry" encode=vector key=n doc="The normal used for shading, world space."
+//@mode shading-normal "Shading normal" group="Geometry" encode=vector key=n words="normals bump" doc="The normal used for shading, world space."
 const uint MODE_SHADING_NORMAL = 203u;
-//@mode facet-normal "Facet normal" group="Geometry" encode=vector doc="The triangle's normal, world space."
+//@mode facet-normal "Facet normal" group="Geometry" encode=vector words="normals flat" doc="The triangle's normal, world space."
 const uint MODE_FACET_NORMAL = 204u;
 //@mode tangent "Tangent" group="Geometry" encode=vector key=t doc="The mesh's tangent, world space."
 const uint MODE_TANGENT = 205u;
@@ -60,44 +60,44 @@ const uint MODE_TANGENT = 205u;
 const uint MODE_BITANGENT = 206u;
 //@mode tangent-sign "Tangent sign" group="Geometry" encode=color numbers="-1|+1" colors="#e74530|#3fbc59" doc="Green +1, red -1 (mirrored UVs)."
 const uint MODE_TANGENT_SIGN = 207u;
-//@mode uv0 "UV 0" group="Geometry" encode=data components=2 doc="TEXCOORD_0."
+//@mode uv0 "UV 0" group="Geometry" encode=data components=2 words="texture coordinates" doc="TEXCOORD_0."
 const uint MODE_UV0 = 208u;
-//@mode uv1 "UV 1" group="Geometry" encode=data components=2 needs=uv1 doc="TEXCOORD_1."
+//@mode uv1 "UV 1" group="Geometry" encode=data components=2 needs=uv1 words="texture coordinates" doc="TEXCOORD_1."
 const uint MODE_UV1 = 209u;
 //@mode vertex-color "Vertex color" group="Geometry" encode=color needs=vertex-color doc="COLOR_0, linear RGB."
 const uint MODE_VERTEX_COLOR = 210u;
-//@mode face-orientation "Face orientation" group="Geometry" encode=color numbers="front|back" colors="#3fbc59|#e74530" doc="Green front faces, red back faces."
+//@mode face-orientation "Face orientation" group="Geometry" encode=color numbers="front|back" colors="#3fbc59|#e74530" words="facing backface winding culling" doc="Green front faces, red back faces."
 const uint MODE_FACE_ORIENTATION = 211u;
 //@mode triangle-id "Triangle" group="Geometry" encode=color numbers=index doc="A color for each triangle of a mesh."
 const uint MODE_TRIANGLE_ID = 212u;
 //@mode mesh-id "Mesh" group="Geometry" encode=color numbers=index doc="A color for each primitive."
 const uint MODE_MESH_ID = 213u;
-//@mode node-id "Node" group="Geometry" encode=color numbers=index doc="A color for each node of the scene."
+//@mode node-id "Node" group="Geometry" encode=color numbers=index words="object" doc="A color for each node of the scene."
 const uint MODE_NODE_ID = 214u;
 //@mode material-id "Material" group="Geometry" encode=color numbers=index doc="A color for each material."
 const uint MODE_MATERIAL_ID = 215u;
 //@mode mip-level "Mip level" group="Geometry" encode=color components=1 unit="level" range=0..8 colormap=heat doc="Of the base color texture: blue level 0, red 8 and up."
 const uint MODE_MIP_LEVEL = 216u;
-//@mode texel-density "Texel density" group="Geometry" encode=color components=1 unit="log2 texels/m" range=4..14 colormap=heat doc="Base color texels per meter, as a power of 2: blue 16, red 16384."
+//@mode texel-density "Texel density" group="Geometry" encode=color components=1 unit="log2 texels/m" range=4..14 colormap=heat words="resolution" doc="Base color texels per meter, as a power of 2: blue 16, red 16384."
 const uint MODE_TEXEL_DENSITY = 217u;
-//@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w doc="Edges of the triangles."
+//@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w words="edges triangles topology" doc="Edges of the triangles."
 const uint MODE_WIREFRAME = 218u;
-//@mode overdraw "Overdraw" group="Geometry" encode=color components=1 unit="layers" range=0..10 draw=layers doc="Number of fragments, hidden or not; white 10."
+//@mode overdraw "Overdraw" group="Geometry" encode=color components=1 unit="layers" range=0..10 draw=layers words="layers" doc="Number of fragments, hidden or not; white 10."
 const uint MODE_OVERDRAW = 219u;
 
-//@mode base-color "Base color" group="Material" encode=color key=b doc="Texture times factor times vertex color, linear RGB."
+//@mode base-color "Base color" group="Material" encode=color key=b words="albedo diffuse" doc="Texture times factor times vertex color, linear RGB."
 const uint MODE_BASE_COLOR = 100u;
-//@mode alpha "Alpha" group="Material" encode=data components=1 doc="Coverage before the cutoff; 1 for opaque materials."
+//@mode alpha "Alpha" group="Material" encode=data components=1 words="opacity coverage transparency" doc="Coverage before the cutoff; 1 for opaque materials."
 const uint MODE_ALPHA = 101u;
-//@mode metallic "Metallic" group="Material" encode=data components=1 key=m doc="0 dielectric, 1 metal."
+//@mode metallic "Metallic" group="Material" encode=data components=1 key=m words="metalness" doc="0 dielectric, 1 metal."
 const uint MODE_METALLIC = 102u;
 //@mode roughness "Roughness" group="Material" encode=data components=1 key=u doc="Perceptual roughness, with specular antialiasing if selected."
 const uint MODE_ROUGHNESS = 103u;
 //@mode ggx-alpha "Alpha of the NDF" group="Material" encode=data components=1 doc="Width of the selected NDF: roughness^2, at least 0.0025."
 const uint MODE_GGX_ALPHA = 104u;
-//@mode occlusion "Occlusion" group="Material" encode=data components=1 doc="1 is unoccluded. Affects only environment light."
+//@mode occlusion "Occlusion" group="Material" encode=data components=1 words="AO ambient" doc="1 is unoccluded. Affects only environment light."
 const uint MODE_OCCLUSION = 105u;
-//@mode emissive "Emissive" group="Material" encode=color unit="cd/m^2" doc="Texture times factor, linear RGB, without exposure."
+//@mode emissive "Emissive" group="Material" encode=color unit="cd/m^2" words="emission glow" doc="Texture times factor, linear RGB, without exposure."
 const uint MODE_EMISSIVE = 106u;
 //@mode normal-texture "Normal texture" group="Material" encode=vector needs=normal-texture doc="Tangent-space normal, scaled and normalized."
 const uint MODE_NORMAL_TEXTURE = 107u;
@@ -107,7 +107,7 @@ const uint MODE_DIFFUSE_COLOR = 108u;
 const uint MODE_F0 = 109u;
 //@mode f90 "F90" group="Material" encode=color components=1 doc="Reflectance at grazing angles: 1, or the specular factor."
 const uint MODE_F90 = 110u;
-//@mode ior "Index of refraction" group="Material" encode=data components=1 doc="Index of refraction of the dielectric; default 1.5."
+//@mode ior "Index of refraction" group="Material" encode=data components=1 words="IOR refractive" doc="Index of refraction of the dielectric; default 1.5."
 const uint MODE_IOR = 111u;
 //@mode clearcoat "Clearcoat" group="Material" encode=data components=1 needs=clearcoat doc="Clearcoat factor: 0 none, 1 full."
 const uint MODE_CLEARCOAT = 112u;
@@ -131,7 +131,7 @@ const uint MODE_SPECULAR_COLOR = 120u;
 const uint MODE_IRIDESCENCE = 121u;
 //@mode iridescence-thickness "Iridescence thickness" group="Material" encode=data components=1 unit="um" needs=iridescence doc="Thickness of the thin film, micrometers."
 const uint MODE_IRIDESCENCE_THICKNESS = 122u;
-//@mode transmission "Transmission" group="Material" encode=data components=1 needs=transmission doc="Fraction of entering light that is transmitted."
+//@mode transmission "Transmission" group="Material" encode=data components=1 needs=transmission words="glass refraction" doc="Fraction of entering light that is transmitted."
 const uint MODE_TRANSMISSION = 123u;
 //@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume, world space, meters."
 const uint MODE_THICKNESS = 124u;
@@ -145,9 +145,9 @@ const uint MODE_DIFFUSE_TRANSMISSION = 127u;
 const uint MODE_DIFFUSE_TRANSMISSION_COLOR = 128u;
 
 // D to V dot H are for the selected light, or for light 1 if all are selected.
-//@mode d "Normal distribution D" group="BRDF terms" encode=data components=1 unit="1/sr" key=d doc="The selected NDF, 1/sr; GGX by default (Walter et al. 2007, eq. 33)."
+//@mode d "Normal distribution D" group="BRDF terms" encode=data components=1 unit="1/sr" key=d words="NDF microfacet" doc="The selected NDF, 1/sr; GGX by default (Walter et al. 2007, eq. 33)."
 const uint MODE_D = 300u;
-//@mode g "Masking-shadowing G" group="BRDF terms" encode=data components=1 key=g doc="The selected masking; by default height-correlated Smith (Heitz 2014, eq. 99)."
+//@mode g "Masking-shadowing G" group="BRDF terms" encode=data components=1 key=g words="geometry shadowing" doc="The selected masking; by default height-correlated Smith (Heitz 2014, eq. 99)."
 const uint MODE_G = 301u;
 //@mode v "Visibility V" group="BRDF terms" encode=data components=1 key=v doc="G / (4 NoL NoV), of the selected masking."
 const uint MODE_V = 302u;
@@ -236,26 +236,26 @@ const uint MODE_MEASURED_SPLIT = 601u;
 //@mode measured-error "Error" group="Measured" encode=color doc="Against the measured BRDF: blue too dark, red too bright."
 const uint MODE_MEASURED_ERROR = 602u;
 
-//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" colors="-|#ff00ff|#ffff00|#00ffff" key=x doc="NaN magenta, Inf yellow, negative cyan."
+//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" colors="-|#ff00ff|#ffff00|#00ffff" key=x words="not finite infinity invalid" doc="NaN magenta, Inf yellow, negative cyan."
 const uint MODE_NAN = 500u;
 //@mode negative "Negative" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" doc="Channels below 0; valid pixels are dimmed."
 const uint MODE_NEGATIVE = 501u;
-//@mode clipped "Clipped" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" doc="Channels above 1 after exposure, before tone mapping."
+//@mode clipped "Clipped" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" words="clipping overexposed burnt saturated" doc="Channels above 1 after exposure, before tone mapping."
 const uint MODE_CLIPPED = 502u;
-//@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat doc="Stops from middle gray: blue -6, red +6."
+//@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat words="exposure stops zebra" doc="Stops from middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
 //@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" colors="-|#3f6cff|#ff4530" doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
 const uint MODE_ALBEDO_RANGE = 504u;
 //@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" colors="-|#3f6cff|#ff4530" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
 const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
-//@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths doc="The picture with an exact integral of the unoccluded environment."
+//@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths words="reference random samples" doc="The picture with an exact integral of the unoccluded environment."
 const uint MODE_MONTE_CARLO = 506u;
 //@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Exact integral of the unoccluded environment minus the picture's: by split sum or by samples."
 const uint MODE_IBL_ERROR = 507u;
-//@mode energy "Energy" group="Truth" encode=data stage=paths doc="Albedo under uniform white light; red above 1.005."
+//@mode energy "Energy" group="Truth" encode=data stage=paths words="furnace conservation" doc="Albedo under uniform white light; red above 1.005."
 const uint MODE_ENERGY = 508u;
-//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces doc="The picture with shadows, occlusion and reflections between surfaces."
+//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces words="reference ground truth ray" doc="The picture with shadows, occlusion and reflections between surfaces."
 const uint MODE_PATH_TRACED = 509u;
 //@mode path-error "Error of the picture" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Path traced minus the picture: the sum of the five errors below."
 const uint MODE_PATH_ERROR = 510u;

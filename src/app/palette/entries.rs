@@ -318,7 +318,7 @@ fn of_mode(index: usize, mode: &Mode) -> Entry {
     let keys: Vec<String> =
         mode.key.map(|key| key.to_ascii_uppercase()).into_iter().chain(digit).map(String::from).collect();
     Entry {
-        words: format!("{} {}", mode.slug, mode.group),
+        words: format!("{} {} {}", mode.slug, mode.group, mode.words),
         key: keys.join(" "),
         is_minor: mode.pass.is_some(),
         ..Entry::new("Mode", mode.name.clone(), Action::Mode(mode.slug.clone()))

@@ -1,5 +1,6 @@
 //! Finds entries by words of their names, also by words with a typing error.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::entries::{Action, Entry};
@@ -19,7 +20,7 @@ const TYPO: usize = 4;
 const TYPO_IN_PREFIX: usize = 5;
 
 /// How an entry matches. The first is the best.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Class {
     Name,
     Prefix,
@@ -29,21 +30,46 @@ enum Class {
     Typo,
 }
 
-/// The entries that have all words of the query, the best first. Of equally good ones, those that `is_minor` come last.
+/// The place of an entry in the list: whether the query gives it a value, whether only typing errors match, whether it is an inner
+/// part of an effect that is not named as a whole, its class, and whether it `is_minor`.
+type Place = (bool, bool, bool, Class, bool);
+
+/// The entries that have all words of the query, the best first. Those that `is_minor` come last, with the entries of one pass
+/// together, unless the query is their whole name.
 pub(super) fn find<'a>(entries: &'a [Entry], query: &'a str) -> Vec<Found<'a>> {
     let whole = query.trim();
-    let mut found: Vec<(bool, Class, bool, Found<'a>)> = Vec::new();
+    let mut found: Vec<(Place, Found<'a>)> = Vec::new();
+    let place = |has_value, class, entry: &Entry| {
+        let is_inner = entry.is_minor && class != Class::Name;
+        (has_value, class >= Class::TypoInTitle, is_inner, class, entry.is_minor)
+    };
     for entry in entries {
         if let Some((class, marks)) = compare(entry, whole) {
-            found.push((false, class, entry.is_minor, Found { entry, marks, typed: None }));
+            found.push((place(false, class, entry), Found { entry, marks, typed: None }));
         } else if let (Action::Number(_), Some((name, value))) = (&entry.action, value(whole))
             && let Some((class, marks)) = compare(entry, name)
         {
-            found.push((true, class, entry.is_minor, Found { entry, marks, typed: Some(value) }));
+            found.push((place(true, class, entry), Found { entry, marks, typed: Some(value) }));
         }
     }
-    found.sort_by_key(|(has_value, class, is_minor, _)| (*has_value, *class, *is_minor));
-    found.into_iter().map(|(.., found)| found).collect()
+    found.sort_by_key(|(place, _)| *place);
+    group_inner(found)
+}
+
+/// Moves the inner entries of one pass, its switch and its images, together: to the first of them.
+fn group_inner<'a>(found: Vec<(Place, Found<'a>)>) -> Vec<Found<'a>> {
+    let mut firsts: HashMap<(Place, String), usize> = HashMap::new();
+    let keys: Vec<usize> = found
+        .iter()
+        .enumerate()
+        .map(|(at, (place, found))| match place.2 {
+            true => *firsts.entry((*place, name(&found.entry.title).to_owned())).or_insert(at),
+            false => at,
+        })
+        .collect();
+    let mut found: Vec<(usize, Found<'a>)> = keys.into_iter().zip(found.into_iter().map(|(_, found)| found)).collect();
+    found.sort_by_key(|(key, _)| *key);
+    found.into_iter().map(|(_, found)| found).collect()
 }
 
 /// Splits `exposure 1.5 EV` into the words and the value.
@@ -173,6 +199,30 @@ mod tests {
         let entries = [entry("Bloom", true), entry("Bloom: blur", true), entry("Bloom: turn on", false)];
         assert_eq!(titles(&entries, "bloom"), ["Bloom: turn on", "Bloom", "Bloom: blur"]);
         assert_eq!(titles(&entries, "bloom: blur")[0], "Bloom: blur");
+    }
+
+    #[test]
+    fn inner_entries_come_after_the_others_with_those_of_one_pass_together() {
+        let entries = [
+            entry("Depth of field: circles: turn on", true),
+            entry("Depth of field: light: turn on", true),
+            entry("Scene depth", false),
+            entry("Depth of field: turn on", false),
+            entry("Depth of field: circles", true),
+            entry("Depth of field: light", true),
+            entry("Depth", false),
+        ];
+        let expected = [
+            "Depth",
+            "Depth of field: turn on",
+            "Scene depth",
+            "Depth of field: circles: turn on",
+            "Depth of field: circles",
+            "Depth of field: light: turn on",
+            "Depth of field: light",
+        ];
+        assert_eq!(titles(&entries, "depth"), expected);
+        assert_eq!(titles(&entries, "Depth of field: light")[..2], expected[5..]);
     }
 
     #[test]

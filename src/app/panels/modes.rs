@@ -179,5 +179,5 @@ fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize
 
 /// The text that a search looks into.
 pub(super) fn text_of(mode: &Mode) -> String {
-    format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc)
+    format!("{} {} {} {} {}", mode.name, mode.slug, mode.group, mode.words, mode.doc)
 }

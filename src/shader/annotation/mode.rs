@@ -138,6 +138,9 @@ pub struct Mode {
     pub needs: u32,
     /// A description of the mode.
     pub doc: String,
+    /// More words by which a search finds it.
+    #[serde(skip)]
+    pub words: String,
     /// File as printed.
     #[serde(skip)]
     pub file: String,
@@ -192,6 +195,7 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         "through" => mode.through = true,
         "group" => mode.group = cursor.value(key)?.1,
         "doc" => mode.doc = cursor.value(key)?.1,
+        "words" => mode.words = cursor.value(key)?.1,
         "unit" => mode.unit = cursor.value(key)?.1,
         "components" => mode.components = cursor.one_of(key, &[("1", 1), ("2", 2), ("3", 3)])?,
         "encode" => {
@@ -215,7 +219,7 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         "colors" => mode.number_colors = number_colors(cursor, mode.numbers.as_ref())?,
         other => {
             let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, needs=, \
-                range=, colormap=, numbers=, colors=, key= or doc=";
+                range=, colormap=, numbers=, colors=, key=, words= or doc=";
             return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
         }
     }

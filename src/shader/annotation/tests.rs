@@ -63,6 +63,12 @@ fn units_and_components_of_modes() {
 }
 
 #[test]
+fn modes_have_words_for_searches() {
+    let found = read_text("const uint MODE_A = 1u; //@mode a \"A\" words=\"facing culling\" doc=\"B\"").unwrap();
+    assert_eq!((&*found.modes[0].words, &*found.modes[0].doc), ("facing culling", "B"));
+}
+
+#[test]
 fn numbers_of_modes_have_a_meaning() {
     let numbers = |text: &str| {
         let found = read_text(&format!("const uint MODE_A = 1u; //@mode a \"A\" {text}")).unwrap();
@@ -187,7 +193,7 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
-         needs=, range=, colormap=, numbers=, colors=, key= or doc=, found `colour`",
+         needs=, range=, colormap=, numbers=, colors=, key=, words= or doc=, found `colour`",
     );
     let errors = read_text("const uint M = 1u; //@mode d \"D\" needs=sheen,clearcot").unwrap_err();
     let needs =
