@@ -144,6 +144,8 @@ pub(super) struct Readings {
 
 /// The text of a value in the picture.
 pub(super) struct Readout {
+    /// Name of the side of a comparison that has the pixel; `None` without a comparison.
+    pub(super) side: Option<String>,
     /// Its numbers, or what they mean.
     pub(super) value: String,
     /// Unit, and whether the value is before exposure.

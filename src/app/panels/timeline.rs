@@ -110,6 +110,12 @@ impl Entry<'_> {
         self.viewer.versions.can_show(self.version, self.newest)
     }
 
+    /// Whether a click on the version on screen ends a comparison, or shows the newest version in place of an older one.
+    fn ends_something(&self) -> bool {
+        let is_now = self.version.number == self.newest;
+        is_now && (self.viewer.compare.is_on() || self.viewer.edits.restored.is_some())
+    }
+
     /// Number and files.
     fn title(&self) -> String {
         let now = if self.version.number == self.newest { " (now)" } else { "" };
@@ -155,7 +161,7 @@ impl Entry<'_> {
 
     /// The background, and the picture in small.
     fn paint(&self, ui: &Ui, response: &Response, picture: Rect) {
-        if response.hovered() {
+        if response.hovered() && (self.can_show() || self.ends_something()) {
             ui.painter().rect_filled(response.rect, 3.0, ui.visuals().widgets.hovered.weak_bg_fill);
         }
         if self.is_chosen() {
@@ -184,7 +190,7 @@ impl Entry<'_> {
         }
     }
 
-    /// A click compares the picture with the version, a double click shows it alone; the menu copies what it changed, or writes it to the
+    /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
     /// files.
     fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
         let Self { viewer, version, newest } = self;
@@ -196,6 +202,8 @@ impl Entry<'_> {
             commands.push(Command::Compare(with));
         } else if response.clicked() && viewer.compare.is_on() {
             commands.push(Command::Compare(CompareWith::Nothing));
+        } else if response.clicked() && self.ends_something() {
+            commands.push(Command::ShowVersion(None));
         }
         response.context_menu(|ui| {
             let lines = viewer.versions.difference(version);
@@ -219,6 +227,10 @@ impl Entry<'_> {
         let hint = match (can_show, version.number == *newest) {
             (true, _) if is_chosen => "Click to stop comparing, double click to show it alone",
             (true, _) => "Click to compare the picture with this version, double click to show it alone",
+            (false, true) if viewer.compare.is_on() => "The picture on screen. Click to stop comparing",
+            (false, true) if viewer.edits.restored.is_some() => {
+                "The picture on screen. Click to go back to the newest version"
+            }
             (false, true) => "The picture on screen",
             (false, false) => "A loop did not end in this version, so it is not shown again",
         };

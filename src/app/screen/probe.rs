@@ -67,7 +67,10 @@ impl Screen {
         let state = reference.or_else(|| self.pointed_at(viewer))?;
         let number = self.pointed_number(viewer).filter(|_| !is_of_reference);
         let number = number.filter(|pointed| (pointed.at[0], pointed.at[1]) == pixel.at);
-        readout(state, &pixel, number.and_then(|pointed| self.number.value(&pointed)))
+        let sides = self.reference.as_ref().and_then(|_| viewer.side_names());
+        let side = sides.map(|[earlier, now]| if is_of_reference { earlier } else { now });
+        let readout = readout(state, &pixel, number.and_then(|pointed| self.number.value(&pointed)))?;
+        Some(Readout { side, ..readout })
     }
 
     /// The pixel under the mouse, if its mode shows colors for numbers.

@@ -2,6 +2,7 @@
 //! shader tree, or a picture from a file.
 
 mod file;
+mod labels;
 mod tree;
 mod write;
 
@@ -63,8 +64,8 @@ pub(in crate::app) struct Difference {
 enum With {
     /// A version of the shaders, by its number.
     Version(u64),
-    /// A picture with all its settings, and how it is called.
-    Kept(Box<LastComplete>, String),
+    /// A picture with all its settings, and the number of its version.
+    Kept(Box<LastComplete>, u64),
     /// A picture from a file.
     File(PictureFile),
     /// The picture of another shader tree.
@@ -194,9 +195,8 @@ impl Viewer {
                 let Some(shown) = self.shown.as_ref().filter(|shown| is_whole && shown.scene.is_some()) else {
                     return self.say("There is no complete picture to keep");
                 };
-                let mode = shown.frame.state.mode().map_or("", |mode| mode.name.as_str());
-                let label = format!("{mode}, kept");
-                Some(With::Kept(Box::new(shown.clone()), label))
+                let restored = self.edits.restored.as_ref().map(|restored| restored.number);
+                Some(With::Kept(Box::new(shown.clone()), restored.unwrap_or_else(|| self.shown_generation())))
             }
         };
         self.compare.opening = None;
@@ -229,10 +229,10 @@ impl Viewer {
     }
 
     /// Label of the earlier picture; `None` if no comparison is shown.
-    pub(in crate::app) fn reference_label(&self) -> Option<String> {
+    fn reference_label(&self) -> Option<String> {
         let before = self.version_before();
         let number = match &self.compare.with {
-            Some(With::Kept(_, label)) => return Some(label.clone()),
+            Some(With::Kept(..)) => return Some("kept".to_owned()),
             Some(With::File(file)) => return Some(file.label()),
             Some(With::Tree(tree)) => return Some(tree.label()),
             Some(With::Version(number)) => *number,

@@ -236,7 +236,7 @@ pub(in crate::app) fn readout(
         Some(None) => ["…".to_owned(), String::new()],
         None => value.parts_in_picture(mode),
     };
-    Some(Readout { value, unit, at: *at })
+    Some(Readout { side: None, value, unit, at: *at })
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.

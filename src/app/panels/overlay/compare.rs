@@ -17,14 +17,12 @@ const MARGIN: Vec2 = vec2(8.0, 4.0);
 
 /// Shows the border over the picture, and moves it with the mouse. It lies below messages and errors.
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
-    let Some(earlier) = viewer.reference_label() else { return };
+    let Some([earlier, now]) = viewer.comparison_labels() else { return };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("compare"))).with_clip_rect(picture);
     let bottom = picture.center_bottom() - vec2(0.0, 12.0);
     if viewer.compare.is_held() {
         return name(&painter, bottom, Align2::CENTER_BOTTOM, &earlier);
     }
-    let restored = viewer.edits.restored.as_ref();
-    let now = restored.map_or_else(|| "now".to_owned(), |restored| format!("version {}", restored.number));
     let compare = &mut viewer.compare;
     if compare.shows_map {
         map(&painter, compare, picture);

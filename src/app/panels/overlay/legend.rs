@@ -112,7 +112,8 @@ pub(in crate::app) fn show(
             histogram(ui, legend, view, state);
         }
     }
-    if let Some(Readout { value, unit, at: (x, y) }) = legend.value {
+    if let Some(Readout { side, value, unit, at: (x, y) }) = legend.value {
+        let value = side.as_ref().map_or_else(|| value.clone(), |side| format!("{side}: {value}"));
         let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
         // The position of the pixel goes to the next line as a whole, and so does the unit where numbers and unit do not fit.
         let with_unit = |gap: &str| if unit.is_empty() { value.clone() } else { format!("{value}{gap}{unit}") };
