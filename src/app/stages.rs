@@ -55,7 +55,7 @@ pub(super) struct StageRow {
 #[derive(Default)]
 pub(super) struct StageTable {
     rows: Vec<StageRow>,
-    /// Path of the stage that draws the model.
+    /// Path of the stage that draws the model, or the pass that covers it.
     main: String,
     made_of: Option<(Arc<PipelineSet>, PipelineRequest)>,
 }
@@ -66,7 +66,7 @@ impl StageTable {
         &self.rows
     }
 
-    /// The stage that draws the model.
+    /// The stage that draws the model, or the pass that covers it.
     pub(super) fn main(&self) -> Option<&StageRow> {
         self.rows.iter().find(|row| row.path == self.main)
     }
@@ -98,11 +98,18 @@ impl StageTable {
             StageRow { state, compile_ms: log.compile_ms(&path), path, now, before, figures }
         };
         self.rows = set.report(request).into_iter().map(row).collect();
-        let is_main = |row: &StageRow| row.path == request.stage;
+        let main = main_stage(request);
+        let is_main = |row: &StageRow| row.path == main;
         self.rows.sort_by_key(|row| (row.state, !is_main(row)));
-        self.main.clone_from(&request.stage);
+        main.clone_into(&mut self.main);
         self.made_of = Some((set.clone(), request.clone()));
     }
+}
+
+/// The stage that draws what is seen: that of the model, or of the last pass that covers it, such as a shader without a model.
+fn main_stage(request: &PipelineRequest) -> &str {
+    let covering = request.passes.iter().rev().filter(|pass| !request.draws_model && pass.covers());
+    covering.map(|pass| pass.note.stage.as_str()).next().unwrap_or(&request.stage)
 }
 
 fn state(path: &str, shaders: &ShaderSet, on_screen: &BTreeSet<String>, log: &ShaderLog) -> StageState {

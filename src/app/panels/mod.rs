@@ -299,7 +299,10 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
             let recent = viewer.panels.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);
         }
-        Panel::Parameters => parameters::show(ui, &declared, &mut settings.shader),
+        Panel::Parameters => {
+            let is_of_file = viewer.shader.is_single_file;
+            parameters::show(ui, &declared, &mut settings.shader, is_of_file);
+        }
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);

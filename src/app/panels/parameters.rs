@@ -19,16 +19,22 @@ use crate::shader::{Constant, Parameter, ShaderSet};
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;
 
-/// Shows the panel: all constants and parameters apart from those of passes, which stand with them.
-pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
+/// Shows the panel: all constants and parameters apart from those of passes, which stand with them. With `is_of_file`, the shaders are
+/// a single file without a model, and only what that file and those beside it declare is shown.
+pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_file: bool) {
     let is_wanted = |parameter: &&Parameter| {
         let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
-        !is_of_pass(shaders, parameter) && switch.is_none_or(|switch| is_true(switch, values))
+        let is_here = if is_of_file { is_own(&parameter.file) } else { !is_of_pass(shaders, parameter) };
+        is_here && switch.is_none_or(|switch| is_true(switch, values))
     };
     let parameters: Vec<&Parameter> = shaders.parameters.iter().filter(is_wanted).collect();
     let switches: Vec<u32> = super::passes::switches(shaders).map(|switch| switch.id).collect();
-    let constants: Vec<&Constant> = shaders.constants.iter().filter(|c| !switches.contains(&c.id)).collect();
+    let is_wanted = |constant: &&Constant| !switches.contains(&constant.id) && (!is_of_file || is_own(&constant.file));
+    let constants: Vec<&Constant> = shaders.constants.iter().filter(is_wanted).collect();
     if constants.is_empty() && parameters.is_empty() {
+        if is_of_file {
+            ui.label(RichText::new("This shader declares no parameters").small().color(QUIET));
+        }
         return;
     }
     let all: Vec<&String> = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name)).collect();
@@ -67,6 +73,11 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     if resets {
         set.iter().for_each(|name| drop(values.remove(name)));
     }
+}
+
+/// Whether a file, as displayed, is the author's, and not one of the tree in the program.
+fn is_own(file: &str) -> bool {
+    !file.starts_with("embedded:")
 }
 
 /// Shows the row of a constant.

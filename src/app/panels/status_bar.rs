@@ -23,7 +23,7 @@ pub(super) struct Status<'a> {
     pub(super) diagnostics: &'a [Diagnostic],
     /// Device time of the last frame that drew the picture, milliseconds.
     pub(super) frame_ms: Option<f64>,
-    /// The stage that draws the model.
+    /// The stage that draws the picture.
     pub(super) stage: Option<&'a StageRow>,
     pub(super) device: &'a str,
 }
@@ -73,7 +73,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
 /// The numbers of a stage with their change: `pbr.frag 4,469 words -212 · 96 registers -8`.
 fn stage(ui: &mut Ui, row: &StageRow) {
     ui.spacing_mut().item_spacing.x = 4.0;
-    ui.label(RichText::new(&row.path).small().color(QUIET)).on_hover_text("The stage that draws the model");
+    ui.label(RichText::new(&row.path).small().color(QUIET)).on_hover_text("The stage that draws the picture");
     shaders::short_figures(ui, &row.figures);
 }
 
