@@ -175,7 +175,7 @@ pub enum Tonemap {
 pub struct ViewSettings {
     /// Tone map.
     pub tonemap: Tonemap,
-    /// EV100: exposure is 1 / (1.2 * 2^ev).
+    /// EV100: exposure is 1 / (1.2 * 2^ev), so a larger value is darker. The window shows it with the other sign.
     pub ev: f32,
     /// `none`, `env` or `#rrggbb`.
     pub background: String,

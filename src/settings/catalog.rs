@@ -55,7 +55,7 @@ const DESCRIBED: &[(&str, &str, &str)] = &[
     ("lights.rect.polar", "degrees", "Angle from +Y"),
     ("material.enabled", "", "Whether this material replaces all of the model's"),
     ("material.override", "", "Channels that it replaces alone: base_color, metallic, roughness, anisotropy"),
-    ("material.base_color", "linear RGB", "Base color"),
+    ("material.base_color", "linear RGB", "Base color: 0.5 is half the light, which a picture stores as 188 of 255"),
     ("material.metallic", "", "0 dielectric, 1 metal"),
     ("material.roughness", "", "Perceptual roughness"),
     ("material.anisotropy", "", "Strength of the anisotropy"),
@@ -70,7 +70,7 @@ const DESCRIBED: &[(&str, &str, &str)] = &[
     ("environment.intensity", "", "Factor on the map, whose values are cd/m^2"),
     ("environment.blur", "", "Blur behind the model, as a roughness"),
     ("view.tonemap", "", "Tone map"),
-    ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100)"),
+    ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100), so +1 is half as bright; Exposure in the window is -EV100"),
     ("view.channels", "", "Channels that the picture shows; a is coverage"),
     ("view.colormap", "", "Colors that stand for a number, in modes with one component and for a single channel"),
     (

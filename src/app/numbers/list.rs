@@ -11,7 +11,8 @@ const RADII: &str = " R";
 pub(in crate::app) static EXPOSURE: Number = Number::new(
     ("view.ev", "Exposure"),
     ((-16.0, 16.0), 1, " EV"),
-    "Exposure compensation in stops: +1 is twice as bright. It is -EV100: light in cd/m² is multiplied by 1 / (1.2 × 2^EV100)",
+    "Exposure compensation in stops: +1 is twice as bright. It is -EV100, so `--ev` and `--set view.ev` take it with the other sign: light \
+     in cd/m² is multiplied by 1 / (1.2 × 2^EV100)",
     |settings, _| &mut settings.view.ev,
 )
 .negated();

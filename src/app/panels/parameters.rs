@@ -4,8 +4,9 @@ pub(in crate::app) mod defaults;
 
 use std::collections::BTreeMap;
 
-use egui::{Response, Ui};
+use egui::{Response, RichText, Ui};
 
+use super::QUIET;
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
 use super::search;

@@ -55,7 +55,7 @@ pub struct Common {
     /// Tone map
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     tonemap: Option<Tonemap>,
-    /// Exposure value (EV100), -30 to 30: exposure is 1 / (1.2 * 2^N) [default: 0]
+    /// Exposure value (EV100), -30 to 30: exposure is 1 / (1.2 * 2^N), so +1 is half as bright. Exposure in the window is -N [default: 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = ev)]
     ev: Option<f32>,
     /// Background: none (transparent), env (the environment) or #rrggbb
@@ -70,7 +70,7 @@ pub struct Common {
     /// Show the value of a shader expression, such as brdf/ndf.glsl:20:a2, as the mode `expression`. FILE:LINE:COLUMN:NAME names one of several on a line
     #[arg(long, value_name = "FILE:LINE:NAME")]
     watch_expr: Option<String>,
-    /// Change a setting, such as view.msaa=1, or a shader parameter, such as NDF=Beckmann; may be repeated. `specula help set` lists all
+    /// Change a setting, such as view.msaa=1, or a shader parameter, such as NDF=Beckmann; may be repeated. Colors are linear RGB. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// Read settings from a look file: TOML, or a PNG that Specula has written, which also names the model and the shader tree. Other options override it
