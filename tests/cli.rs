@@ -335,6 +335,21 @@ fn render_mode_all_writes_each_file() {
 }
 
 #[test]
+fn render_takes_a_list_of_modes() {
+    let directory = directory();
+    fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let render = |more: &[&str]| render(directory.path(), "quad.glb", more);
+    render(&["--mode", "roughness, final"]).expect(0, &[]);
+    let has = |file: &str| directory.path().join(file).exists();
+    assert_eq!(["out.roughness.png", "out.final.png", "out.png", "out.d.png"].map(has), [true, true, false, false]);
+    assert_eq!(open_image(&directory.path().join("out.roughness.png")).into_rgba8().dimensions(), (48, 32));
+    // A wrong name leaves no files.
+    render(&["--mode", "d,metal-ness"]).expect(2, &["metal-ness", "Did you mean `metal"]);
+    assert!(!has("out.d.png"));
+    render(&["--mode", "final,d", "--sheet", "modes"]).expect(2, &["--sheet final,d"]);
+}
+
+#[test]
 fn an_exr_holds_raw_floats() {
     let directory = directory();
     let mesh = glb::sphere(16, 32);

@@ -384,6 +384,13 @@ pub fn check_mode(shaders: &ShaderSet, slug: &str) -> Result<(), Failure> {
         let message = format!("the mode '{slug}' is the picture itself, to which that pass draws: use --mode final");
         return Err(Failure::Usage(message));
     }
+    if slug.contains(',') {
+        let message = format!(
+            "'{slug}' is a list, but this shows one mode. `render --mode {slug} --out FILE.png` writes a file for each, \
+             `render --sheet {slug}` one picture of all"
+        );
+        return Err(Failure::Usage(message));
+    }
     let hint = did_you_mean(slug, slugs());
     Err(Failure::Usage(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))
 }

@@ -1,6 +1,7 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
 mod many;
+mod modes;
 mod warnings;
 mod watch;
 
@@ -22,6 +23,7 @@ use super::common::parse::size;
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_diagnostics, tell_left_out};
+use modes::Modes;
 use warnings::Warnings;
 use watch::{Changes, Watch};
 
@@ -30,7 +32,7 @@ use watch::{Changes, Watch};
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// File to write, .png or .exr (raw values). With `--mode all`: FILE.<mode>.png for each mode, except modes of random paths
+    /// File to write, .png or .exr (raw values). With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     out: PathBuf,
     /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
@@ -61,10 +63,12 @@ pub struct Args {
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     args.common.take_files(&mut args.model)?;
     let mut settings = args.common.settings()?;
-    let all = settings.mode == "all";
-    if all {
-        "final".clone_into(&mut settings.mode);
+    let modes = Modes::of(&mut settings.mode);
+    if matches!(modes, Modes::Named(_)) && many::is_asked(&args) {
+        let message = "`--mode` takes one mode here; --sheet takes a list itself, as --sheet final,d";
+        return Err(Failure::Usage(message.into()));
     }
+    let all = modes == Modes::All;
     match many::is_asked(&args) {
         true => many::check(&args)?,
         false => check_out(&args.out)?,
@@ -94,7 +98,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     }
     let mut warnings = Warnings::default();
     warnings.tell(&headless.shaders().warnings);
-    match write(&mut headless, &args, all) {
+    match write(&mut headless, &args, &modes) {
         Err(Failure::Shaders(diagnostics)) if watch.is_some() => {
             tell(&args, &diagnostics);
             message::tell("no picture yet; waiting for the next save");
@@ -114,7 +118,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     if let Some(mut watch) = watch {
         message::tell(format_args!("wrote {}; watching, Ctrl+C ends", args.out.display()));
         while let Some(changes) = watch.next() {
-            again(&mut headless, &args, all, &mut watch, &changes, &mut warnings)?;
+            again(&mut headless, &args, &modes, &mut watch, &changes, &mut warnings)?;
             check_validation(&gpu)?;
         }
     }
@@ -157,7 +161,7 @@ fn first_picture(
 fn again(
     headless: &mut Headless,
     args: &Args,
-    all: bool,
+    modes: &Modes,
     watch: &mut Watch,
     changes: &Changes,
     warnings: &mut Warnings,
@@ -173,7 +177,7 @@ fn again(
         let drawn = headless.draw().map_err(Failure::from);
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
         // Continue after a wrong value, mode or folder, since the next edit may correct it.
-        match drawn.and_then(|()| write(headless, args, all)) {
+        match drawn.and_then(|()| write(headless, args, modes)) {
             Err(Failure::Input(message) | Failure::Usage(message)) => message::tell(message),
             // A loop that does not end.
             Err(Failure::Shaders(diagnostics)) => {
@@ -308,12 +312,12 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
 }
 
 /// Writes the picture, or a picture of each mode.
-fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure> {
+fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Failure> {
     let out = args.out.as_path();
     if many::is_asked(args) {
         return many::write(headless, args);
     }
-    if !all {
+    if *modes == Modes::One {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
         let capture = capture(headless, args, &Progress::new(!args.common.emits()), (0, 1))?;
@@ -327,13 +331,13 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     }
     let frames = headless.settings_mut().view.frames;
     let shaders = headless.shaders();
-    let modes: Vec<&Mode> = shaders.modes.iter().filter(|mode| args.paths || !mode.follows_paths()).collect();
-    for (number, mode) in modes.iter().enumerate() {
+    let written = modes.in_shaders(&shaders, args.paths)?;
+    for (number, mode) in written.iter().enumerate() {
         let settings = headless.settings_mut();
         settings.mode.clone_from(&mode.slug);
         // A frame of a mode that traces the model takes seconds on a software device.
-        settings.view.frames = if mode.traces { 1 } else { frames };
-        let capture = capture(headless, args, &progress, (number, modes.len()))?;
+        settings.view.frames = if mode.traces && *modes == Modes::All { 1 } else { frames };
+        let capture = capture(headless, args, &progress, (number, written.len()))?;
         let path = picture::path_of_mode(out, &mode.slug);
         write_picture(headless, args, &capture, &path)?;
     }
