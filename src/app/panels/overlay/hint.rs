@@ -30,7 +30,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                 Some(folder) => {
                     ui.label(RichText::new("Edit a shader and save it: the picture updates").strong());
                     ui.label(RichText::new(folder.display().to_string()).monospace().small().color(ACCENT));
-                    ui.label(RichText::new("user.glsl is the file to start with.").color(QUIET));
+                    ui.label(RichText::new("Begin with brdf/ndf.glsl, the shape of the highlights. user.glsl is for your own additions.").color(QUIET));
                     buttons(ui, commands, &mut is_done, |ui| {
                         let hover = "Opens the folder with $SPECULA_EDITOR, $VISUAL, $EDITOR or an installed editor";
                         let is_clicked = ui.button("Open in the editor").on_hover_text(hover).clicked();
