@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
+use super::inspector::Page;
 use super::layout::Panel;
 use super::learn::LearnCommand;
 use super::selection::Selected;
@@ -96,6 +97,8 @@ pub(super) enum Command {
     ShowAll,
     /// Open a panel, or show its tab.
     OpenPanel(Panel),
+    /// Open the inspector at a page.
+    OpenInspector(Page),
     /// Look through a camera of the model.
     LookThrough(usize),
     /// Switch the rectangular light on and select it.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
+use crate::app::inspector::Page;
 use crate::app::layout::{Panel, Preset};
 use crate::app::learn::LearnCommand;
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
@@ -308,8 +309,17 @@ pub(super) fn commands() -> Vec<Entry> {
         let entry = Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
         Entry { words: panel.words().to_owned(), ..entry }
     };
+    let page = |(page, title, words): (Page, &str, &str)| {
+        let entry = Entry::new("Panel", title.to_owned(), Action::Do(Command::OpenInspector(page)));
+        Entry { words: words.to_owned(), ..entry }
+    };
+    let pages = [
+        (Page::Values, "Panel: Inspector, values", "pixel numbers of every mode"),
+        (Page::Lobe, "Panel: Inspector, BRDF", "pixel lobe polar plot albedo curves furnace"),
+    ];
     let presets = Preset::ALL.into_iter().map(preset);
-    commands.into_iter().map(command).chain(presets).chain(Panel::GROUPS.concat().into_iter().map(panel)).collect()
+    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(pages.into_iter().map(page));
+    commands.into_iter().map(command).chain(presets).chain(panels).collect()
 }
 
 /// A mode with its keys.

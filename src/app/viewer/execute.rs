@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::Viewer;
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
+use crate::app::layout::Panel;
 use crate::app::{dialog, editor, hint};
 use crate::picture::read_checked_look;
 use crate::scene::LoadOptions;
@@ -53,6 +54,10 @@ impl Viewer {
             Command::IsolateSelected => self.isolate_selected(),
             Command::ShowAll => self.show_all(),
             Command::OpenPanel(panel) => self.panels.layout.open(panel),
+            Command::OpenInspector(page) => {
+                self.panels.inspector.page = page;
+                self.panels.layout.open(Panel::Inspector);
+            }
             Command::LookThrough(camera) => self.look_through(camera),
             Command::PlaceRectangle => self.place_rectangle(),
             Command::Quit => self.quit = true,

@@ -1,15 +1,13 @@
 //! The legend over the picture: the mode's name and unit, the range of values and the colors that stand for them, the channels, a
 //! histogram, and the value under the mouse.
 
-use std::sync::Arc;
-
 use clap::ValueEnum as _;
-use egui::{Button, Color32, Galley, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
+use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::{swatches, wrapped};
 use crate::app::panels::rows::choice_name;
 use crate::app::panels::spoken::named;
-use crate::app::panels::theme::{QUIET, icon, small_mono};
+use crate::app::panels::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::app::panels::{LegendOf, Readout};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
@@ -112,19 +110,18 @@ pub(in crate::app) fn show(
             histogram(ui, legend, view, state);
         }
     }
-    if let Some(Readout { side, value, unit, at: (x, y) }) = legend.value {
-        let value = side.as_ref().map_or_else(|| value.clone(), |side| format!("{side}: {value}"));
-        let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
-        // The position of the pixel goes to the next line as a whole, and so does the unit where numbers and unit do not fit.
-        let with_unit = |gap: &str| if unit.is_empty() { value.clone() } else { format!("{value}{gap}{unit}") };
-        let one_line = format!("{}   at {x}, {y}", with_unit(" "));
-        let [at_below, unit_below] = [" ", "\n"].map(|gap| format!("{}\nat {x}, {y}", with_unit(gap)));
-        let lines = |text: &str| (text.lines().count(), wrapped(ui, text, mono.clone(), color, width));
-        let fits = |(count, galley): &(usize, Arc<Galley>)| galley.rows.len() == *count;
-        let mut forms = [&*one_line, &*at_below].into_iter().map(lines);
-        let (_, galley) = forms.find(fits).unwrap_or_else(|| lines(&unit_below));
-        ui.label(galley);
+    if let Some(readout) = legend.value {
+        value(ui, readout, width);
     }
+}
+
+/// The value under the mouse, and below it the side of a comparison, the unit and the pixel.
+fn value(ui: &mut Ui, Readout { side, value, unit, at: (x, y) }: &Readout, width: f32) {
+    let mono = TextStyle::Monospace.resolve(ui.style());
+    ui.label(wrapped(ui, value, mono, ui.visuals().text_color(), width));
+    let parts = [side.clone().unwrap_or_default(), unit.trim().to_owned(), format!("at {x}, {y}")];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    ui.label(wrapped(ui, &parts.join("  ·  "), small_mono_font(), QUIET.color(), width));
 }
 
 /// The name of the mode with its unit.
