@@ -14,6 +14,9 @@ const MOST: usize = 40;
 /// A chart has at least this many objects with a number in their name.
 const FEWEST: usize = 4;
 
+/// Part of an object that its name may hide.
+const MOST_HIDDEN: f32 = 0.4;
+
 /// Where each named object of a chart is. Empty for other models.
 #[derive(Default)]
 pub(in crate::app::panels) struct Labels {
@@ -67,6 +70,7 @@ pub(super) fn show(
     }
     let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
+    let pointer = egui.pointer_hover_pos();
     let mut shown: Vec<Rect> = Vec::new();
     for (name, bounds) in nearest_first(&labels.objects, camera.eye) {
         let corners = bounds.corners().map(|corner| project(camera, corner, picture));
@@ -74,11 +78,12 @@ pub(super) fn show(
         let around = Rect::from_points(&corners);
         let (center, low) = (bounds.center(), bounds.min.y);
         let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
-        // A name on a much smaller object would hide it.
-        if around.width() < 30.0 {
+        let label = Label::new(&painter, name, foot, around.width(), picture);
+        // A name would hide a small object, so there it comes with the mouse.
+        let is_pointed = || pointer.is_some_and(|at| around.contains(at));
+        if label.rect.area() > MOST_HIDDEN * around.area() && !is_pointed() {
             continue;
         }
-        let label = Label::new(&painter, name, foot, around.width(), picture);
         if is_free(label.rect, &shown) {
             shown.push(label.rect);
             label.show(&painter);
