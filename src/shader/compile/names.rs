@@ -362,7 +362,7 @@ mod tests {
             ("scael", 9, Some("scale")),
             ("cuont", 9, Some("count")),
             ("cornr", 10, Some("corner")),
-            ("weigth", 12, None),
+            ("scael", 12, None),
             ("roughnes", 12, None),
             ("mix", 12, None),
             ("q", 12, None),
