@@ -1,13 +1,13 @@
 //! Handles of the lights in the picture. They are shown while a light is selected. A drag turns a light around the model; with Ctrl it
-//! changes the distance.
+//! changes the distance. A light of the model's file has a mark that selects it.
 
 use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use crate::app::panels::theme::{SELECTION, small_font, small_mono_font};
-use crate::app::selection::{LightId, Selected};
+use crate::app::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
-use crate::scene::{Bounds, CameraView, light_direction, ray};
+use crate::scene::{Bounds, CameraView, Light, light_direction, ray};
 use crate::settings::{LightSettings, LightSource};
 
 /// Radius of a handle, points.
@@ -18,6 +18,9 @@ const MARGIN: f32 = 16.0;
 const SMALLEST: f32 = 0.3;
 /// Points of a drag that double the distance.
 const DOUBLE: f32 = 120.0;
+
+/// Most marks of a file's lights beside that of the selected one.
+const MOST_MARKS: usize = 64;
 
 /// State of the light handles: the drag in progress, and where earlier drags have left handles.
 #[derive(Default)]
@@ -156,12 +159,6 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
     let Some(model) = state.scene.as_ref().map(|scene| scene.model().clone()) else { return };
     let frame = Frame { view: state.camera, bounds: model.bounds, rect, size: state.size };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("gizmo"))).with_clip_rect(rect);
-    if let LightId::Model(index) = selected {
-        if let Some(light) = model.lights.get(index) {
-            mark(&painter, &frame, light.position, light.direction);
-        }
-        return;
-    }
     viewer.panels.gizmo.follow(&frame.view);
     let lights = &mut viewer.session.settings.lights;
     let mut shown = Vec::new();
@@ -172,6 +169,12 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
         shown.push(LightId::Rectangle);
     }
     let mut chosen = None;
+    for index in marks(lights.source, model.lights.len(), selected) {
+        let (light, of) = (&model.lights[index], LightId::Model(index));
+        if mark(egui, &painter, &frame, light, of, of == selected) {
+            chosen = Some(of);
+        }
+    }
     for light in shown {
         if handle(egui, &painter, &frame, lights, light, light == selected, &mut viewer.panels.gizmo) {
             chosen = Some(light);
@@ -265,17 +268,33 @@ fn outline(painter: &Painter, frame: &Frame, lights: &LightSettings, color: Colo
     }
 }
 
-/// A light of the file, which does not move: a ring at its place, and where it shines.
-fn mark(painter: &Painter, frame: &Frame, position: Vec3, direction: Vec3) {
-    let Some(at) = frame.project(position) else { return };
-    painter.circle_stroke(at, HANDLE, Stroke::new(2.0, SELECTION));
-    let ahead = frame.project(position + direction * 0.25 * frame.bounds.radius());
+/// The lights of the file that have a mark: the selected one, and the first of the others if they shine.
+fn marks(source: LightSource, count: usize, selected: LightId) -> Vec<usize> {
+    let is_selected = |index: &usize| selected == LightId::Model(*index);
+    let shining = (0..count).filter(|index| source == LightSource::Model && !is_selected(index)).take(MOST_MARKS);
+    shining.chain((0..count).filter(is_selected)).collect()
+}
+
+/// A light of the file, which does not move: a ring at its place, and where it shines. Returns whether the user clicks it.
+fn mark(egui: &egui::Context, painter: &Painter, frame: &Frame, light: &Light, id: LightId, is_selected: bool) -> bool {
+    let Some(at) = frame.project(light.position).filter(|at| frame.rect.contains(*at)) else { return false };
+    let color = if is_selected { SELECTION } else { Color32::from_gray(200) };
+    painter.circle_stroke(at, HANDLE, Stroke::new(2.0, color));
+    let ahead = frame.project(light.position + light.direction * 0.25 * frame.bounds.radius());
     if let Some(ahead) = ahead.filter(|ahead| ahead.distance(at) > HANDLE) {
         let start = at + (ahead - at).normalized() * HANDLE;
-        painter.arrow(start, ahead - start, Stroke::new(1.5, SELECTION));
+        painter.arrow(start, ahead - start, Stroke::new(1.5, color));
     } else {
-        painter.circle_filled(pos2(at.x, at.y), 2.0, SELECTION);
+        painter.circle_filled(at, 2.0, color);
     }
+    let side = vec2(2.5 * HANDLE, 2.5 * HANDLE);
+    let area = Area::new(Id::new(("light", id))).order(Order::Middle).fade_in(false).constrain(false);
+    let area = area.fixed_pos(at - 0.5 * side);
+    let response = area.show(egui, |ui| ui.allocate_response(side, Sense::click())).inner;
+    let is_clicked = response.clicked();
+    let name = name_or(&light.name, || "A light".to_owned());
+    response.on_hover_text(format!("{name}, of the model's file, which says where it is. Esc hides the marks"));
+    is_clicked
 }
 
 #[cfg(test)]
@@ -305,6 +324,16 @@ mod tests {
         // Beside the sphere, its edge.
         let edge = frame.direction_at(pos2(101.0, 51.0), 0.5, true);
         assert!((edge.length() - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_lights_of_a_file_have_marks_while_they_shine() {
+        let selected = LightId::Model(1);
+        assert_eq!(marks(LightSource::Model, 3, selected), [0, 2, 1], "the selected one lies over the others");
+        assert_eq!(marks(LightSource::Orbit, 3, selected), [1]);
+        assert_eq!(marks(LightSource::Model, 3, LightId::Rectangle), [0, 1, 2]);
+        assert_eq!(marks(LightSource::Orbit, 3, LightId::Orbit(0)), [0; 0]);
+        assert_eq!(marks(LightSource::Model, 200, LightId::Model(199)).len(), MOST_MARKS + 1);
     }
 
     #[test]
