@@ -641,6 +641,30 @@ fn the_ground_is_dark_under_the_model_alone() {
     assert_validated();
 }
 
+/// The shadow of the sun lies on the side away from it.
+#[test]
+fn the_suns_shadow_on_the_ground_turns_with_the_environment() {
+    let chosen = ["environment.name=sky", "lights.source=none", "view.background=#ffffff", "passes.ground=true"];
+    let mut session = stage(&chosen);
+    // Darkness left of the middle over that right of it, when the environment is turned by so many degrees.
+    let mut ratio = |degrees: i32| {
+        session.set(&format!("environment.rotation={degrees}"));
+        let with = session.render();
+        session.set("passes.ground=false");
+        let without = session.render();
+        session.set("passes.ground=true");
+        let taken = |columns: std::ops::Range<u32>| -> f32 {
+            let pixels = (0..SIZE.1).flat_map(|y| columns.clone().map(move |x| (y * SIZE.0 + x) as usize * 4));
+            pixels.map(|at| f32::from(without.rgba8[at]) - f32::from(with.rgba8[at])).sum()
+        };
+        taken(0..SIZE.0 / 2) / taken(SIZE.0 / 2..SIZE.0).max(1.0)
+    };
+    let ratios = [0, 90, 180, -90].map(&mut ratio);
+    let (least, most) = ratios.iter().fold((f32::MAX, 0.0_f32), |(least, most), r| (least.min(*r), most.max(*r)));
+    assert!(least < 0.67 && most > 1.5, "{ratios:?}");
+    assert_validated();
+}
+
 /// One pass draws several images, each with a name, a format and, with `mips` and `keep`, levels and the frame before.
 #[test]
 fn a_pass_draws_several_images() {

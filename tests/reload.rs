@@ -87,7 +87,7 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
             &["debug.frag", "paths.frag", "pbr.frag", "pbr.vert"],
         ),
         ("common/color.glsl", "0.0031308", "0.0031309", &["debug.frag", "paths.frag", "pbr.frag", "tonemap.frag"]),
-        ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
+        ("lighting/environment_map.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
         // An annotation is no code.
         ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", &[]),
         ("ibl/maps/half.glsl", "65504.0", "65503.0", ROUNDING),

@@ -1,4 +1,4 @@
-// Looks up light from the environment, as baked by ibl/*.comp: unfiltered, diffuse, and prefiltered for rough surfaces.
+// Looks up light from the environment, prefiltered for rough surfaces as baked by ibl/*.comp. environment_map.glsl has it unfiltered.
 // Directions are in world space and need not be unit.
 #ifndef LIGHTING_ENVIRONMENT_GLSL
 #define LIGHTING_ENVIRONMENT_GLSL
@@ -8,40 +8,10 @@
 #include "ibl/maps/levels.glsl"
 #include "ibl/maps/octahedral.glsl"
 #include "ibl/sampling/lobe_weight.glsl"
+#include "lighting/environment_map.glsl"
 
-layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform sampler2D prefiltered_levels;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
-layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform sampler2D irradiance_map;
-
-// Rotates a direction from the world into the map. The map turns by an angle around +Y, counterclockwise from above:
-// the camera sees its center column when it looks down -Z at 0 degrees, down -X at 90.
-vec3 map_from_world(vec3 d) {
-    float cosine = frame.environment_rotation.x;
-    float sine = frame.environment_rotation.y;
-    return vec3(cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z);
-}
-
-vec3 world_from_map(vec3 d) {
-    float cosine = frame.environment_rotation.x;
-    float sine = frame.environment_rotation.y;
-    return vec3(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x);
-}
-
-// Level `lod` of the unfiltered cube.
-vec3 environment_radiance(vec3 direction, float lod) {
-    return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
-}
-
-// Without an environment, the ambient light of the settings arrives from everywhere.
-const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
-
-// E / pi: the radiance that a white Lambertian surface with the normal n reflects.
-vec3 irradiance_over_pi(vec3 n) {
-    if (!HAS_ENVIRONMENT) return frame.ambient;
-    vec2 place = place_in_tile(octahedral_point(map_from_world(n)), irradiance_tile());
-    return frame.environment_intensity * textureLod(irradiance_map, place / float(IRRADIANCE_SIDE), 0.0).rgb;
-}
 
 // The prefiltered radiance of one level, without the environment's intensity.
 vec3 prefiltered_at(vec2 p, Tile tile) {

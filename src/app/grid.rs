@@ -6,7 +6,7 @@ use crate::shader::{Mode, PATHS_STAGE};
 /// Most modes at once.
 const MOST: usize = 9;
 /// Pixels between two modes.
-const GAP: u32 = 3;
+pub(super) const GAP: u32 = 3;
 
 /// The modes that are shown side by side.
 #[derive(Default)]

@@ -2,7 +2,7 @@
 #version 460
 #include "pass.glsl"
 #include "common/math.glsl"
-#include "lighting/environment.glsl"
+#include "lighting/environment_map.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/shadows/ground.glsl"
 #include "lighting/shadows/shadow.glsl"
@@ -16,6 +16,19 @@ uniform sampler2D ground_sky;
 
 const vec3 UP = vec3(0.0, 1.0, 0.0);
 
+// The part of the sky's irradiance that comes from the sun.
+vec3 sun_irradiance() {
+    if ((FEATURES & FEATURE_SUN) == 0u) return vec3(0.0);
+    return frame.environment_intensity * frame.sun_intensity * max(frame.sun_direction.y, 0.0);
+}
+
+// Part of the sun that is below the elevation up to which its direction is free, sin^2. The edge is soft, as the model is known in a
+// few steps only.
+float sun_visibility(float open) {
+    float elevation = frame.sun_direction.y * frame.sun_direction.y;
+    return 1.0 - smoothstep(0.7 * open, 1.3 * open + 0.05, elevation);
+}
+
 // Adds the irradiance by light `i`, and what is left of it in the light's shadow.
 void add_light(inout vec3 whole, inout vec3 left, uint i, vec3 position_ws) {
     Illumination light = illuminate(light_at(i, position_ws), position_ws);
@@ -26,9 +39,10 @@ void add_light(inout vec3 whole, inout vec3 left, uint i, vec3 position_ws) {
 
 // Part of the irradiance of a point of the ground that reaches it.
 vec3 lit_part_of(vec3 position_ws) {
-    vec3 sky = PI * irradiance_over_pi(UP);
-    vec3 whole = sky;
-    vec3 left = sky * texture(ground_sky, uv).r;
+    vec2 open = texture(ground_sky, uv).rg;
+    vec3 whole = PI * irradiance_over_pi(UP);
+    vec3 sun = min(sun_irradiance(), whole);
+    vec3 left = (whole - sun) * open.r + sun * sun_visibility(open.g);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) add_light(whole, left, i, position_ws);
     } else {

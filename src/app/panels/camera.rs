@@ -47,7 +47,7 @@ pub(super) fn show(
             ui.ctx().copy_text(text);
         }
     }
-    let help = "Drag to orbit, Shift+drag to pan, wheel to zoom, Alt+drag to turn the environment.\n\
+    let help = "Drag to orbit, Ctrl+drag to pan, wheel to zoom, Shift+drag to turn the environment.\n\
                 Hold the right button and W A S D Q E to fly.";
     ui.label(RichText::new(help).small().color(QUIET));
 }

@@ -232,7 +232,7 @@ pub(in crate::app) fn readout(
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
     let mode = state.mode().filter(|_| covered)?;
     let [value, unit] = match number {
-        Some(Some(number)) => [number.text(mode), String::new()],
+        Some(Some(number)) => [number.text(mode).trim().to_owned(), String::new()],
         Some(None) => ["…".to_owned(), String::new()],
         None => value.parts_in_picture(mode),
     };

@@ -2,9 +2,9 @@
 
 use egui::{Align2, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use crate::app::grid::places;
+use crate::app::grid::{GAP, places};
 use crate::app::panels::PanelState;
-use crate::app::panels::theme::{ACCENT, CARD, PANEL, STRONG, small_font};
+use crate::app::panels::theme::{ACCENT, CARD, EDGE, PANEL, STRONG, small_font};
 use crate::app::screen::PictureRect;
 use crate::session::Session;
 
@@ -25,7 +25,13 @@ pub(super) fn show(egui: &egui::Context, session: &Session, state: &PanelState, 
     let places = places(count, whole).into_iter().map(|PictureRect { at, size }| {
         Rect::from_min_size(pos2(at.0 as f32, at.1 as f32) / scale, vec2(size.0 as f32, size.1 as f32) / scale)
     });
-    let (rects, empty) = places.enumerate().partition::<Vec<_>, _>(|(index, _)| *index < count);
+    // Between the pictures, and beyond the last column and row, is the color between panels.
+    let gap = Stroke::new(GAP as f32 / scale, EDGE);
+    let places: Vec<Rect> = places.collect();
+    for rect in &places {
+        painter.rect_stroke(*rect, 0.0, gap, StrokeKind::Outside);
+    }
+    let (rects, empty) = places.into_iter().enumerate().partition::<Vec<_>, _>(|(index, _)| *index < count);
     for (_, rect) in empty {
         painter.rect_filled(rect, 0.0, PANEL.color());
     }
