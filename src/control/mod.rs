@@ -3,6 +3,7 @@
 
 mod client;
 mod described;
+mod fields;
 mod reader;
 mod reply;
 mod request;
@@ -16,10 +17,9 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 pub use client::{Client, Clients};
 pub use described::{COMMANDS, Described};
+pub(crate) use fields::{Camera, Capture, Compare, Playback, Probe, Run, Sheet, Timeline, Turntable};
 pub(crate) use reply::Reply;
-pub(crate) use request::{
-    Camera, Capture, Compare, Open, Playback, Probe, Request, Run, Sheet, Timeline, Turntable, VersionsRequest,
-};
+pub(crate) use request::{Open, Request, VersionsRequest};
 pub use socket::{Socket, socket_path};
 
 /// A command, and who waits for its answer.

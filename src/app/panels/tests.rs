@@ -51,7 +51,7 @@ fn the_legend_names_the_mode_and_its_switches() {
         let legend = Legend { title: Some("Depth"), of: &of, value: Some(&readout) };
         legend::show(ui, &legend, view, state, 600.0);
     });
-    for text in ["Depth  ·  m", "2.9", "4.2", "kept: 3.01758 m   at 12, 34"] {
+    for text in ["Depth  ·  m", "2.9", "4.2", "3.01758", "kept  ·  m  ·  at 12, 34"] {
         harness.get_by_label(text);
     }
     harness.get_by_role_and_label(Role::Button, "auto");

@@ -1,6 +1,7 @@
 //! The options that every command takes: settings, shader tree, model, device.
 
 pub mod frames;
+mod look;
 pub mod names;
 pub mod parse;
 
@@ -12,13 +13,14 @@ use clap::ValueEnum;
 use specula::disk_cache::Pipelines;
 use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
-use specula::picture::{self, Look, ReadError};
+use specula::picture;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
 use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
 
 use super::Failure;
+use look::read_look;
 use names::{check_environment, check_model_path};
 use parse::{ev, fovy, size, vector};
 
@@ -213,38 +215,6 @@ impl Common {
         !options.contains(&true)
     }
 
-    /// Takes a shader file that stands where the model may stand for the shader tree. What the command line leaves open is that of
-    /// the look.
-    ///
-    /// # Errors
-    /// The look cannot be read, or a file that it names is gone.
-    pub fn take_files(&mut self, model: &mut Option<PathBuf>) -> Result<(), Failure> {
-        if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
-            self.shaders = model.take();
-        }
-        let Some(path) = self.look.as_deref() else { return Ok(()) };
-        let look = read_look(path)?;
-        let gone = |what: &str, file: &Path, option: &str| {
-            let (path, file) = (path.display(), file.display());
-            Err(Failure::Input(format!("{path}: its {what} {file} is not there; name it with {option}")))
-        };
-        match look.model {
-            Some(file) if model.is_none() => {
-                if !file.exists() && !scene::BUILT_IN.iter().any(|name| Path::new(name) == file) {
-                    return gone("model", &file, "MODEL");
-                }
-                *model = Some(file);
-            }
-            _ => {}
-        }
-        match look.shaders {
-            Some(tree) if self.shaders.is_none() && !tree.exists() => return gone("shader tree", &tree, "`--shaders`"),
-            Some(tree) if self.shaders.is_none() => self.shaders = Some(tree),
-            _ => {}
-        }
-        Ok(())
-    }
-
     /// The shader tree.
     pub fn source(&self) -> Result<Source, Failure> {
         source(self.shaders.as_deref())
@@ -407,17 +377,4 @@ pub fn check_validation(gpu: &Gpu) -> Result<(), Failure> {
 fn open(path: &Path) -> Result<Source, Failure> {
     let absolute = std::path::absolute(path);
     absolute.map(Source::open).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))
-}
-
-/// Reads a look. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
-fn read_look(path: &Path) -> Result<Look, Failure> {
-    picture::read_look(path).map_err(|error| match error {
-        ReadError::File(message) => Failure::Input(message),
-        ReadError::Text(error) => {
-            // As `file:line:column: message`, which editors parse.
-            let separator = if error.place.is_some() { ":" } else { ": " };
-            let message = format!("{}{separator}{error}", path.display());
-            if error.is_value { Failure::Usage(message) } else { Failure::Input(message) }
-        }
-    })
 }
