@@ -189,7 +189,7 @@ fn an_older_version_is_shown_in_place_of_the_newest() {
 
 #[test]
 fn clicks_grids_defaults_and_looks_are_commands() {
-    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--validate"]);
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let first = capture(&mut viewer, "first.png");
     let running = &mut viewer.running;

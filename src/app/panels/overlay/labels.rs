@@ -14,6 +14,8 @@ const MOST: usize = 40;
 /// A chart has at least this many objects with a number in their name.
 const FEWEST: usize = 4;
 
+/// Width of a name at least, points: no word is longer.
+const LEAST_WIDTH: f32 = 64.0;
 /// Part of an object that its name may hide.
 const MOST_HIDDEN: f32 = 0.4;
 
@@ -121,7 +123,7 @@ struct Label {
 impl Label {
     fn new(painter: &Painter, name: &str, foot: Pos2, width: f32, picture: Rect) -> Self {
         let text = name.replace(", ", "\n");
-        let text = painter.layout(text, small_font(), TEXT.color(), (0.7 * width).max(48.0));
+        let text = painter.layout(text, small_font(), TEXT.color(), (0.7 * width).max(LEAST_WIDTH));
         let rect = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
         // At the edge of the picture it moves inwards.
         let inside = picture.shrink(2.0);
