@@ -60,9 +60,9 @@ const uint MODE_TANGENT = 205u;
 const uint MODE_BITANGENT = 206u;
 //@mode tangent-sign "Tangent sign" group="Geometry" encode=color numbers="-1|+1" colors="#e74530|#3fbc59" doc="Green +1, red -1 (mirrored UVs)."
 const uint MODE_TANGENT_SIGN = 207u;
-//@mode uv0 "UV 0" group="Geometry" encode=data components=2 words="texture coordinates" doc="TEXCOORD_0."
+//@mode uv0 "UV 0" group="Geometry" encode=data components=2 range=0..1 words="texture coordinates" doc="TEXCOORD_0."
 const uint MODE_UV0 = 208u;
-//@mode uv1 "UV 1" group="Geometry" encode=data components=2 needs=uv1 words="texture coordinates" doc="TEXCOORD_1."
+//@mode uv1 "UV 1" group="Geometry" encode=data components=2 range=0..1 needs=uv1 words="texture coordinates" doc="TEXCOORD_1."
 const uint MODE_UV1 = 209u;
 //@mode vertex-color "Vertex color" group="Geometry" encode=color needs=vertex-color doc="COLOR_0, linear RGB."
 const uint MODE_VERTEX_COLOR = 210u;

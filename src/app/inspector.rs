@@ -140,9 +140,21 @@ impl Reading {
 
     /// The normal, and the directions to the eye and to the light of this number, from 1; 0 is light 1 too.
     pub(super) fn directions(&self, light: u32) -> Option<Directions> {
+        self.directions_to(self.light_of(light)?)
+    }
+
+    /// Index of the light that is meant: of all (0), the one nearest to the normal.
+    pub(super) fn light_of(&self, light: u32) -> Option<usize> {
+        if light > 0 {
+            return Some(light as usize - 1);
+        }
+        let angles = (0..self.lights.len()).filter_map(|index| Some((index, self.directions_to(index)?.light_deg)));
+        angles.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
+    }
+
+    fn directions_to(&self, light: usize) -> Option<Directions> {
         let (position, normal) = (self.numbers("position")?, self.numbers("shading-normal")?);
-        let light = self.lights.get(light.max(1) as usize - 1)?;
-        Directions::new(position.into(), normal.into(), self.camera.eye, light)
+        Directions::new(position.into(), normal.into(), self.camera.eye, self.lights.get(light)?)
     }
 
     /// The material at the pixel, lit by the light of this number.

@@ -131,6 +131,11 @@ pub(super) struct Screen {
 }
 
 impl Screen {
+    /// Whether a list or a menu of egui is open.
+    pub(super) fn has_open_popup(&self) -> bool {
+        egui::Popup::is_any_open(&self.egui)
+    }
+
     pub(super) fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, window: &Arc<Window>) -> Result<Self, GpuError> {
         let handles = window.display_handle().and_then(|d| Ok((d.as_raw(), window.window_handle()?.as_raw())));
         let (display, handle) = handles.map_err(|e| GpuError::NoDevice(format!("the window has no handle: {e}")))?;

@@ -162,7 +162,11 @@ impl Reloader {
             Update::Failed(diagnostics, report) => {
                 return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }
-            Update::Ready(shaders, report) => {
+            Update::Ready(shaders, mut report) => {
+                // A superseded edit shows with this one.
+                if let Some(before) = self.unbuilt.take() {
+                    report.changed = joined(before.changed, report.changed);
+                }
                 self.unbuilt = Some(report.clone());
                 (shaders, report)
             }
@@ -202,4 +206,11 @@ impl Reloader {
         };
         Reload { report, pipelines, pipeline_ms, outcome }
     }
+}
+
+/// The files of two edits, each once.
+fn joined(mut earlier: Vec<String>, later: Vec<String>) -> Vec<String> {
+    earlier.retain(|file| !later.contains(file));
+    earlier.extend(later);
+    earlier
 }

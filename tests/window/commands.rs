@@ -227,6 +227,7 @@ fn clicks_grids_defaults_and_looks_are_commands() {
     let changed: Vec<(&str, &str)> = before.lines().zip(after.lines()).filter(|(a, b)| a != b).collect();
     assert!(changed.len() == 1 && changed[0].1.contains("0.5"), "{changed:?}");
     let running = &mut viewer.running;
+    running.reload(true);
     assert!(running.refused(json!({"command": "write-defaults"})).contains("have these values already"));
     viewer.running.end_input();
     viewer.quit();

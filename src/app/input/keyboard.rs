@@ -32,6 +32,10 @@ pub(super) fn on_keyboard(
     if pressed && viewer.panels.defaults.is_open() {
         return false;
     }
+    // Escape closes an open list or menu, and nothing else.
+    if pressed && event.logical_key == Key::Named(NamedKey::Escape) && screen.has_open_popup() {
+        return false;
+    }
     let reads_keys = viewer.reads_keys();
     let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
     if is_space && !pressed && viewer.hold_reference(false) {

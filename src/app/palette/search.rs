@@ -23,6 +23,8 @@ const TYPO_IN_PREFIX: usize = 5;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Class {
     Name,
+    /// The title begins with its whole words.
+    FirstWords,
     Prefix,
     Title,
     Words,
@@ -94,6 +96,7 @@ fn compare(entry: &Entry, query: &str) -> Option<(Class, Vec<Range<usize>>)> {
     if words.iter().zip(&in_title).all(is_exact) {
         let class = match title.as_str() {
             title if name(title) == query => Class::Name,
+            title if begins_with_words(title, &query) => Class::FirstWords,
             title if title.starts_with(&query) => Class::Prefix,
             _ if in_title.iter().all(Option::is_some) => Class::Title,
             _ => Class::Words,
@@ -108,6 +111,11 @@ fn compare(entry: &Entry, query: &str) -> Option<(Class, Vec<Range<usize>>)> {
     let class = if in_title.iter().all(Option::is_some) { Class::TypoInTitle } else { Class::Typo };
     let all = words.iter().zip(&in_title).all(is_near);
     all.then(|| (class, in_title.into_iter().flatten().collect()))
+}
+
+/// Whether a title begins with the whole words of a query: "face" begins "face orientation", but not "facet normal".
+fn begins_with_words(title: &str, query: &str) -> bool {
+    title.strip_prefix(query).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
 }
 
 /// The title of a switch without its action, and of a panel without that word.

@@ -89,6 +89,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
     });
     let Some(reading) = &state.reading else { return };
     let about = match &reading.names {
+        Some([node, material]) if node == material => node.clone(),
         Some([node, material]) => format!("{node} · {material}"),
         None if reading.is_complete => "The model does not cover this pixel".to_owned(),
         None => String::new(),

@@ -35,6 +35,9 @@ pub(in crate::app) struct TimelineState {
     pub(in crate::app) is_visible: bool,
 }
 
+/// Height of a strip that shows anything of its cards, points.
+const ROOM_FOR_CARDS: f32 = 48.0;
+
 impl TimelineState {
     /// Asks the user whether to write a version to the files.
     pub(in crate::app) fn ask(&mut self, number: u64) {
@@ -59,6 +62,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
     };
     if let Some(number) = state.asked {
         ask(ui, viewer, number, &mut state.asked, commands);
+        // The scroll bar of a list without room would lie over the answers.
+        if is_strip && ui.available_height() < ROOM_FOR_CARDS {
+            return;
+        }
     }
     let viewer = &*viewer;
     let newest = viewer.shown_generation();

@@ -11,7 +11,7 @@ use crate::app::inspector::{Asked, Reading, Shown};
 use crate::measure::{Curves, Material};
 
 /// Height of the lobe in space, points.
-const TALL: f32 = 170.0;
+const TALL: f32 = 160.0;
 /// Controls of a plot.
 const MOVE: &str = "Drag moves the plot, Ctrl+wheel zooms, a double click shows all";
 
@@ -46,7 +46,7 @@ pub(super) fn show(
         ui.label(RichText::new(why_not(reading, light)).small().color(QUIET));
         return;
     };
-    about(ui, &material, &directions, reading);
+    about(ui, &material, &directions, reading, light);
     let Some(shown) = shown else {
         ui.label(RichText::new("Measuring…").small().color(QUIET));
         return;
@@ -59,13 +59,12 @@ pub(super) fn show(
         Err(message) => return drop(ui.label(RichText::new(message).small().color(ERROR))),
     };
     let before = shown.before.as_ref();
-    legend(ui, before.is_some());
     let title = |ui: &mut Ui, title: &str, doc: &str| {
         ui.label(RichText::new(title).small().color(QUIET)).on_hover_text(format!("{doc}. {MOVE}"));
     };
-    let doc = "The luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. The arrow of the eye has this \
+    let doc = "The plane of incidence: the luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. The arrow of the eye has this \
         pixel's angle; out of plane: the eye lies outside this plane";
-    title(ui, "Lobe in the plane of incidence", doc);
+    legend(ui, before.is_some(), &format!("{doc}. {MOVE}"));
     polar(ui, &Pair { now: curves, before }, &shown.of, &directions);
     let chart = |ui: &mut Ui, name: &str, doc: &str, of: fn(&Curves) -> &[[f32; 3]]| {
         title(ui, name, doc);
@@ -101,15 +100,16 @@ fn why_not(reading: &Reading, light: u32) -> String {
 }
 
 /// The material and the angles, and what the curves leave out.
-fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Reading) {
+fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Reading, light: u32) {
     let [r, g, b] = material.base_color;
     let Material { metallic, roughness, .. } = material;
     let text = format!("Base {r:.3} {g:.3} {b:.3}, metallic {metallic:.2}, roughness {roughness:.3}");
     let doc = "The curves are measured with the base color (linear RGB), metallic and roughness of this pixel";
     ui.label(RichText::new(text).small()).on_hover_text(doc);
     let Directions { light_deg, eye_deg, azimuth_deg } = directions;
-    let text = format!("Light {light_deg:.1}°, eye {eye_deg:.1}°, azimuth of the eye {azimuth_deg:.0}°");
-    let doc = "Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
+    let number = reading.light_of(light).map_or(1, |index| index + 1);
+    let text = format!("Light {number} at {light_deg:.1}°, eye {eye_deg:.1}°, azimuth of the eye {azimuth_deg:.0}°");
+    let doc = "Of all lights, the one nearest to the normal. Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
         would reflect the light, 180° on the side of the light";
     ui.label(RichText::new(text).small()).on_hover_text(doc);
     if *light_deg >= 90.0 {
@@ -134,8 +134,9 @@ fn left_out(reading: &Reading) -> Vec<&'static str> {
     LEFT_OUT.into_iter().filter(|(slug, _, default)| differs(slug, *default)).map(|(_, name, _)| name).collect()
 }
 
-fn legend(ui: &mut Ui, has_before: bool) {
+fn legend(ui: &mut Ui, has_before: bool, doc: &str) {
     ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new("Lobe").small().color(QUIET)).on_hover_text(doc);
         for part in &PARTS {
             ui.label(RichText::new(part.name).small().color(part.color)).on_hover_text(part.doc);
         }

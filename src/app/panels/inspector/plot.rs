@@ -11,7 +11,7 @@ use crate::measure::{Curves, Lobe, Material};
 /// Lines of the grid.
 pub(super) const GRID: Color32 = Color32::from_gray(52);
 /// Height of the polar plot, points.
-const TALL: f32 = 170.0;
+const TALL: f32 = 150.0;
 /// Height of the charts, points.
 const LOW: f32 = 110.0;
 /// Dashes of the values before the last edit.
@@ -166,7 +166,7 @@ fn values_of_lobe(response: &Response, curves: &Pair<'_, Curves>, at: Option<f64
 pub(super) fn albedo(ui: &mut Ui, name: &str, values: &Pair<'_, [[f32; 3]]>, eye_deg: f32) {
     let all = values.each().flat_map(|(values, _)| values).flatten().copied().filter(|value| value.is_finite());
     let most = all.fold(1.1, |most: f32, value| most.max(1.05 * value));
-    let plot = plain(name, LOW).include_x(0.0).include_x(90.0).include_y(0.0).include_y(most).y_axis_min_width(26.0);
+    let plot = plain(name, LOW).include_x(-3.0).include_x(95.0).include_y(0.0).include_y(most).y_axis_min_width(26.0);
     let marks = |_| [0.0, 30.0, 60.0, 90.0].map(|value| GridMark { value, step_size: 30.0 }).to_vec();
     let plot = plot.x_grid_spacer(marks).x_axis_formatter(|mark, _| format!("{:.0}°", mark.value));
     let shown = plot.set_margin_fraction(egui::Vec2::ZERO).grid_color(GRID).show(ui, |plot| {

@@ -72,7 +72,7 @@ pub(super) fn show(
     }
     let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
-    let pointer = egui.pointer_hover_pos();
+    let (pointer, mut has_pointed) = (egui.pointer_hover_pos(), false);
     let mut shown: Vec<Rect> = Vec::new();
     for (name, bounds) in nearest_first(&labels.objects, camera.eye) {
         let corners = bounds.corners().map(|corner| project(camera, corner, picture));
@@ -82,9 +82,11 @@ pub(super) fn show(
         let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
         let label = Label::new(&painter, name, foot, around.width(), picture);
         // A name would hide a small object, so there it comes with the mouse.
-        let is_pointed = || pointer.is_some_and(|at| around.contains(at));
-        if label.rect.area() > MOST_HIDDEN * around.area() && !is_pointed() {
-            continue;
+        if label.rect.area() > MOST_HIDDEN * around.area() {
+            let is_pointed = pointer.is_some_and(|at| around.contains(at));
+            if !is_pointed || std::mem::replace(&mut has_pointed, true) {
+                continue;
+            }
         }
         if is_free(label.rect, &shown) {
             shown.push(label.rect);

@@ -105,7 +105,10 @@ pub(in crate::app) fn show(
             // A single channel is gray.
             ui.scope(|ui| swatches::show(ui, &legend.of.swatches));
         }
-        ui.horizontal(|ui| channels(ui, legend, view, state));
+        // Nor do they have channels.
+        if legend.of.mode.numbers.is_none() || view.channels != Channels::Rgb {
+            ui.horizontal(|ui| channels(ui, legend, view, state));
+        }
         if state.shows_histogram {
             histogram(ui, legend, view, state);
         }
