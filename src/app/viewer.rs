@@ -157,6 +157,8 @@ pub(super) struct Viewer {
     is_complete: bool,
     /// Whether the last frame showed the settings, and lacked nothing but stages that it does not need.
     shows_settings: bool,
+    /// Since when pipelines have been built for the settings; `None` when the picture has them.
+    building_since: Option<Instant>,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.
     names_checked: bool,
@@ -229,6 +231,7 @@ impl Viewer {
             clock: Clock::default(),
             is_complete: false,
             shows_settings: false,
+            building_since: None,
             first_frame: None,
             names_checked: false,
             settled: None,

@@ -77,6 +77,8 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
             field.request_focus();
         }
         let height = (room.height() - AROUND).max(60.0);
+        // egui fades to the color of a panel, which is not that of this window.
+        ui.spacing_mut().scroll.fade.strength = 0.0;
         // The height does not follow the filter, so that the window stays in place.
         egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
             let found: Vec<_> = found(&list.filter).collect();

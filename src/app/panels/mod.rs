@@ -32,6 +32,7 @@ mod timing;
 mod top_bar;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use egui::{Ui, Vec2};
 
@@ -208,6 +209,9 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     picture
 }
 
+/// Pipelines that take longer are told of.
+const LONG: Duration = Duration::from_millis(250);
+
 /// The bars above and below the tiles.
 fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     top_bar::show(ui, &mut viewer.panels, commands);
@@ -216,7 +220,15 @@ fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     let diagnostics = &viewer.session.diagnostics;
     let frame_ms = viewer.timing.frame_ms();
     let stage = viewer.stages.main();
-    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, stage, device: &device });
+    let builds = viewer.builds_for().is_some_and(|time| match LONG.checked_sub(time) {
+        Some(left) => {
+            ui.ctx().request_repaint_after(left);
+            false
+        }
+        None => true,
+    });
+    let status = status_bar::Status { shader, builds, generation, diagnostics, frame_ms, stage, device: &device };
+    status_bar::show(ui, &status);
 }
 
 /// The name of the device and its version of Vulkan.

@@ -49,7 +49,7 @@ pub(super) fn show(
     let clicked = egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let (columns, size) = tile::columns(ui.available_width());
         gallery.size = size;
-        let mut list = List { current, scrolled_to, gallery, columns, clicked: None };
+        let mut list = List { current, beside: grid.modes(), scrolled_to, gallery, columns, clicked: None };
         for modes in found.chunk_by(|a, b| a.1.group == b.1.group) {
             let group = &modes[0].1.group;
             let (shown, folded): (Vec<_>, Vec<_>) = modes.iter().copied().partition(|(_, mode)| has_data(mode));
@@ -100,6 +100,8 @@ fn side_by_side(ui: &mut Ui, grid: &mut Grid) {
 struct List<'a, 'm> {
     /// Slug of the selected mode.
     current: &'a str,
+    /// Slugs of the modes that are shown side by side.
+    beside: &'a [String],
     scrolled_to: &'a mut String,
     gallery: &'a mut GalleryState,
     /// Tiles in a row of the gallery.
@@ -118,9 +120,10 @@ impl<'m> List<'_, 'm> {
 
     fn item(&mut self, ui: &mut Ui, (index, mode): (usize, &'m Mode)) {
         let is_current = self.current == mode.slug;
+        let is_shown = is_current || self.beside.contains(&mode.slug);
         let response = match self.gallery.is_on {
-            true => tile::show(ui, mode, keys(index, mode).first().copied(), is_current, self.gallery),
-            false => row(ui, index, mode, is_current),
+            true => tile::show(ui, mode, keys(index, mode).first().copied(), is_shown, self.gallery),
+            false => row(ui, index, mode, is_shown),
         };
         let hint = "Ctrl+click to show it beside the others";
         let response = response.on_hover_text(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));

@@ -18,6 +18,8 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
+    /// Whether pipelines for the settings take so long that the user should know.
+    pub(super) builds: bool,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
@@ -51,6 +53,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     let (color, text) = match (status.shader.compiling, errors, warnings) {
         (true, ..) => (WARNING, "compiling".to_owned()),
+        (_, 0, _) if status.builds => (WARNING, "building pipelines".to_owned()),
         (_, 0, _) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
         (_, 0, 0) => (GOOD, "watching".to_owned()),
         (_, 0, warnings) => (WARNING, plural(warnings, "warning")),

@@ -1,6 +1,7 @@
 //! The picture to draw: the one that the settings describe once it is complete, until then the last complete one.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::{LastComplete, Viewer};
 use crate::app::panels::Readout;
@@ -177,6 +178,7 @@ impl Viewer {
         let Some(set) = self.resources.pipelines() else { return false };
         let missing = self.resources.missing(state);
         let is_empty = missing.is_empty();
+        self.building_since = missing.pipelines.then(|| self.building_since.unwrap_or_else(Instant::now));
         if missing.pipelines {
             self.threads.worker.build(set, &state.pipelines);
         }
@@ -185,6 +187,11 @@ impl Viewer {
         self.threads.baker.read(missing.measured);
         self.threads.baker.trace(missing.traced);
         is_empty
+    }
+
+    /// How long pipelines have been built for the settings, while the picture is that of before.
+    pub(in crate::app) fn builds_for(&self) -> Option<Duration> {
+        self.building_since.map(|since| since.elapsed())
     }
 
     /// Whether the last frame shows the settings: no interim picture, no light from before, and the model if there is one.

@@ -34,6 +34,8 @@ const MARGIN: f32 = 12.0;
 const PADDING: f32 = 12.0;
 /// A passing message needs this many points above the diagnostics.
 const NOTICE: f32 = 60.0;
+/// Height of the names of what is compared, below the picture, points.
+const NAMES: f32 = 36.0;
 
 /// Shows what lies over the picture.
 pub(super) fn show(
@@ -116,8 +118,9 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
     let loading = viewer.model.loading.then_some("Loading the model…");
     let Some(text) = notice.map(|(text, _)| text).or(loading) else { return };
     // Where the diagnostics leave no room below, it stands at the top.
+    let above_names = if viewer.compare.is_on() { NAMES } else { 0.0 };
     let (corner, room) = match free.height() >= NOTICE {
-        true => (Align2::CENTER_BOTTOM, free),
+        true => (Align2::CENTER_BOTTOM, free.with_max_y(free.max.y - above_names)),
         false => (Align2::CENTER_TOP, picture),
     };
     area(Id::new("notice"), corner, room).interactable(false).show(egui, |ui| {
