@@ -37,11 +37,14 @@ impl Viewer {
 
     /// Short names of the earlier picture and of the present one, for the value under the mouse; `None` if no comparison is shown.
     pub(in crate::app) fn side_names(&self) -> Option<[String; 2]> {
-        let [earlier, now] = self.comparison_labels()?;
         let compare = &self.compare;
+        if let Some(With::Kept(..)) = &compare.with {
+            self.reference_label()?;
+            return Some(["kept", "now"].map(str::to_owned));
+        }
+        let [earlier, now] = self.comparison_labels()?;
         let name = compare.file().map(|path| file_name(path)).or_else(|| compare.tree_name().map(str::to_owned));
         Some(match &compare.with {
-            Some(With::Kept(..)) => ["kept", "now"].map(str::to_owned),
             Some(With::Version(number)) => [format!("version {number}"), now],
             _ => [name.unwrap_or(earlier), now],
         })
