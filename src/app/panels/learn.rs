@@ -86,8 +86,8 @@ fn paint_mark(painter: &egui::Painter, center: egui::Pos2, state: Option<bool>) 
 
 /// A dot for each exercise: filled when it is solved. A click opens it.
 fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(2.0, 2.0);
         for exercise in exercises() {
             let is_open = learning.exercise.is_some_and(|open| open.number == exercise.number);
             let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::click());
