@@ -26,6 +26,7 @@ mod recent;
 mod screen;
 mod selection;
 mod shader_log;
+mod source_line;
 mod stages;
 mod status;
 mod timing;

@@ -16,7 +16,7 @@ const fn row(command: &'static str, takes: &'static str, doc: &'static str) -> D
 }
 
 /// All commands.
-pub const COMMANDS: [Described; 28] = [
+pub const COMMANDS: [Described; 29] = [
     row(
         "set",
         r#""values": "path=value" | ["path=value", ...] | {"path": value}"#,
@@ -71,6 +71,12 @@ pub const COMMANDS: [Described; 28] = [
         "write-defaults",
         r#""names"?: ["Rim", ...]"#,
         "Writes the values of these parameters, or of all, into the GLSL as their defaults. Does not ask. Result: edits",
+    ),
+    row(
+        "numbers",
+        r#""at"?: "brdf/ndf.glsl:20", "values"?: [0.5, null, ...], "write"?: true"#,
+        "Lists the numbers of a line of the shaders, or shows the picture with other values in their place (null leaves one), without a \
+         change of the file. write puts them into it; without fields it goes back to the file. Result: line, numbers; generation; edits",
     ),
     row("undo", "", "Takes the last change of a setting back"),
     row("redo", "", "Takes the last undo back"),

@@ -68,6 +68,15 @@ pub(super) struct WriteDefaults {
     pub(super) names: Vec<String>,
 }
 
+/// Fields of `numbers`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Numbers {
+    pub at: Option<String>,
+    pub values: Option<Vec<Option<f64>>>,
+    pub write: bool,
+}
+
 /// Fields of `playback`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]

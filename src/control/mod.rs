@@ -17,7 +17,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 pub use client::{Client, Clients};
 pub use described::{COMMANDS, Described};
-pub(crate) use fields::{Camera, Capture, Compare, Playback, Probe, Run, Sheet, Timeline, Turntable};
+pub(crate) use fields::{Camera, Capture, Compare, Numbers, Playback, Probe, Run, Sheet, Timeline, Turntable};
 pub(crate) use reply::Reply;
 pub(crate) use request::{Open, Request, VersionsRequest};
 pub use socket::{Socket, socket_path};

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::described::COMMANDS;
 use super::fields::{
-    Camera, Capture, Compare, Grid, Pick, Playback, Probe, Run, Sheet, Timeline, Turntable, WriteDefaults,
+    Camera, Capture, Compare, Grid, Numbers, Pick, Playback, Probe, Run, Sheet, Timeline, Turntable, WriteDefaults,
 };
 use super::values::assignments;
 use crate::message::did_you_mean;
@@ -31,6 +31,7 @@ pub enum Request {
     Pick(Option<[u32; 2]>),
     /// Names of the parameters whose values become the defaults in the files; empty for all.
     WriteDefaults(Vec<String>),
+    Numbers(Numbers),
     /// The number of the version to write to the files, if any.
     Versions(VersionsRequest),
     Undo,
@@ -133,6 +134,7 @@ fn request(command: &str, mut fields: Map<String, Value>) -> Result<Request, Str
         "compare" => Request::Compare(of(command, fields, &[])?),
         "grid" => Request::Grid(of::<Grid>(command, fields, &["modes"])?.modes),
         "pick" => Request::Pick(of::<Pick>(command, fields, &[])?.at),
+        "numbers" => Request::Numbers(of(command, fields, &[])?),
         "write-defaults" => Request::WriteDefaults(of::<WriteDefaults>(command, fields, &[])?.names),
         "versions" => {
             let mut take = |field: &str| fields.remove(field).filter(|value| !value.is_null());

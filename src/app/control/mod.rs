@@ -4,6 +4,7 @@
 mod captures;
 mod compare;
 mod files;
+mod numbers;
 mod requests;
 
 use std::path::PathBuf;
@@ -41,7 +42,7 @@ pub(super) enum Until {
     /// The files of this version of the shaders.
     Written(u64),
     /// The shader files with these edits.
-    DefaultsWritten(Value),
+    EditsWritten(Value),
     /// A frame that shows the settings; the answer tells the modes side by side.
     Grid,
     /// A frame that shows the settings, for a picture of it.
@@ -137,7 +138,7 @@ impl Viewer {
     pub(super) fn fail_waiting(&mut self, message: &str) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match until {
-                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) | Until::DefaultsWritten(_) => {
+                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) | Until::EditsWritten(_) => {
                     self.controlled.waiting.push((reply, until))
                 }
                 _ => reply.error(message),
@@ -180,12 +181,12 @@ impl Viewer {
         }
     }
 
-    /// Answers those who wait for defaults in the files.
-    pub(super) fn answer_defaults(&mut self, result: Result<(), &str>) {
+    /// Answers those who wait for edits in the files.
+    pub(super) fn answer_edits(&mut self, result: Result<(), &str>) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match (until, result) {
-                (Until::DefaultsWritten(edits), Ok(())) => reply.done(json!({ "edits": edits })),
-                (Until::DefaultsWritten(_), Err(error)) => reply.error(error),
+                (Until::EditsWritten(edits), Ok(())) => reply.done(json!({ "edits": edits })),
+                (Until::EditsWritten(_), Err(error)) => reply.error(error),
                 (until, _) => self.controlled.waiting.push((reply, until)),
             }
         }

@@ -9,7 +9,7 @@ use crate::app::command::{Command, Side, open_as};
 use crate::app::grid::Grid;
 use crate::app::palette;
 use crate::app::selection::Selected;
-use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::app::viewer::Viewer;
 use crate::capture::modes_of;
 use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run, VersionsRequest};
 use crate::message::did_you_mean;
@@ -57,6 +57,7 @@ impl Viewer {
             Request::Grid(modes) => self.show_grid(modes)?,
             Request::Pick(at) => Next::Done(self.pick(at)?),
             Request::WriteDefaults(names) => self.write_defaults(&names)?,
+            Request::Numbers(numbers) => self.numbers_as(numbers)?,
             Request::Undo if !self.history.undo(&mut self.session.settings) => {
                 return Err("there is nothing to undo".into());
             }
@@ -242,13 +243,7 @@ impl Viewer {
         if edits.is_empty() {
             return Err("the shader files have these values already".into());
         }
-        if !self.has_folder() {
-            return Err(NO_FOLDER.into());
-        }
-        let told = edits.iter().map(|edit| json!({ "name": edit.name, "file": edit.path, "line": edit.line }));
-        let told = told.collect();
-        self.execute(Command::WriteEdits(edits));
-        Ok(Next::Wait(Until::DefaultsWritten(told)))
+        self.write_edits_of(edits)
     }
 
     /// Lists the versions of the shaders, shows one, or writes one into the files.

@@ -12,11 +12,12 @@ use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::difference::{Kind, Line};
 use crate::app::panels::theme::small_mono;
+use crate::app::source_line::SourceLine;
 use crate::app::viewer::{NO_FOLDER, Viewer};
 use crate::settings::Settings;
-use crate::shader::expression::{MODE, place_of, variables};
-use crate::shader::rewrite::{Edit, Literal, literals, spelled_like};
-use crate::shader::{Expression, TreePath};
+use crate::shader::Expression;
+use crate::shader::expression::MODE;
+use crate::shader::rewrite::Edit;
 
 /// Most edited lines that the panel offers.
 const MOST_LINES: usize = 8;
@@ -32,42 +33,7 @@ pub(in crate::app) struct ExpressionState {
     error: Option<String>,
     takes_focus: bool,
     /// The line of the field.
-    shown: Option<Shown>,
-}
-
-/// A line of the shaders, with what it offers.
-struct Shown {
-    path: TreePath,
-    line: u32,
-    text: Arc<str>,
-    variables: Vec<(String, String)>,
-    /// The line before any of its numbers is dragged.
-    before: String,
-    numbers: Vec<(Literal, f64)>,
-}
-
-impl Shown {
-    fn new(path: &TreePath, line: u32, text: &Arc<str>) -> Option<Self> {
-        let before = line_of(text, line)?.to_owned();
-        let numbers = literals(text, line).into_iter().map(|literal| (literal.clone(), literal.value)).collect();
-        let variables = variables(text, line);
-        Some(Self { path: path.clone(), line, text: text.clone(), variables, before, numbers })
-    }
-
-    /// The edits that make the dragged numbers those of the line.
-    fn edits(&self) -> Vec<Edit> {
-        let dragged = self.numbers.iter().filter(|(literal, value)| *value != literal.value);
-        dragged
-            .map(|(literal, value)| Edit {
-                path: self.path.clone(),
-                name: literal.text.clone(),
-                line: self.line,
-                bytes: literal.bytes.clone(),
-                before: self.before.clone(),
-                new: spelled_like(&literal.text, *value),
-            })
-            .collect()
-    }
+    shown: Option<SourceLine>,
 }
 
 impl ExpressionState {
@@ -85,10 +51,6 @@ impl ExpressionState {
 /// Shows the value of an expression over the model.
 pub(in crate::app) fn watch(settings: &mut Settings, at: String) {
     (settings.expression.at, settings.mode) = (at, MODE.to_owned());
-}
-
-fn line_of(text: &str, line: u32) -> Option<&str> {
-    text.lines().nth((line as usize).checked_sub(1)?)
 }
 
 /// Shows the panel.
@@ -156,12 +118,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
 /// Finds the line that the field names.
 fn find_line(viewer: &Viewer, state: &mut ExpressionState) {
     let Some(shaders) = &viewer.session.shaders else { return };
-    let found = place_of(&state.field).and_then(|(file, line)| {
-        let ends = |path: &&TreePath| path.as_str().strip_suffix(file).is_some_and(|rest| rest.ends_with('/'));
-        let exact = shaders.texts.get_key_value(&TreePath::from(file));
-        let (path, text) = exact.or_else(|| shaders.texts.iter().find(|(path, _)| ends(path)))?;
-        Some((path, text, line))
-    });
+    let found = SourceLine::place(shaders, &state.field);
     let Some((path, text, line)) = found else {
         state.shown = None;
         return;
@@ -172,12 +129,12 @@ fn find_line(viewer: &Viewer, state: &mut ExpressionState) {
             && (is_dragged || Arc::ptr_eq(&shown.text, text) || shown.text == *text)
     });
     if !is_same {
-        state.shown = Shown::new(path, line, text);
+        state.shown = SourceLine::new(path, line, text);
     }
 }
 
 /// The line itself, with its number to step through the file.
-fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
+fn line(ui: &mut Ui, shown: &mut SourceLine, state: &mut ExpressionState) {
     ui.horizontal(|ui| {
         ui.add(Label::new(RichText::new(shown.path.as_str()).small().color(QUIET)).truncate());
         let mut number = shown.line;
@@ -195,7 +152,7 @@ fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
 }
 
 /// The variables that the line offers, and which evaluation counts.
-fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut ExpressionState) {
+fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, state: &mut ExpressionState) {
     let watched = Expression::parse(&settings.expression.at, 0).ok();
     let watched =
         watched.filter(|watched| watched.line == shown.line && settings.mode == MODE).map(|watched| watched.text);
@@ -229,7 +186,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut Expr
 }
 
 /// The numbers of the line as sliders.
-fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<Command>) {
+fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut SourceLine, commands: &mut Vec<Command>) {
     let draft = viewer.edits.draft();
     let is_here = |edit: &Edit| edit.path == shown.path && edit.line == shown.line;
     let is_own = draft.is_some_and(|draft| draft.edits.first().is_some_and(is_here));
@@ -329,22 +286,12 @@ fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
 mod tests {
     use super::*;
     use crate::app::difference::difference;
+    use crate::shader::TreePath;
 
     #[test]
     fn the_lines_of_an_edit_are_offered() {
         let tree = |text: &str| BTreeMap::from([(TreePath::from("brdf/a.glsl"), Arc::<str>::from(text))]);
         let lines = difference(&tree("a;\nb;\nc;\nd;\n"), &tree("a;\nB;\nc;\n}\nd;\ne;\n"));
         assert_eq!(edited_lines(&lines), [("brdf/a.glsl".to_owned(), 2), ("brdf/a.glsl".to_owned(), 6)]);
-    }
-
-    #[test]
-    fn dragged_numbers_become_edits() {
-        let text: Arc<str> = "float f(float x) {\n    return 0.5 * x + 2.0;\n}\n".into();
-        let mut shown = Shown::new(&"a.glsl".into(), 2, &text).unwrap();
-        assert_eq!(shown.variables, [("x".to_owned(), "float".to_owned())]);
-        assert!(shown.edits().is_empty());
-        shown.numbers[1].1 = 3.25;
-        let edits = shown.edits();
-        assert_eq!((edits[0].old(), edits[0].new.as_str(), edits.len()), ("2.0", "3.25", 1));
     }
 }

@@ -35,9 +35,10 @@ pub(in crate::app) struct Edits {
 /// Numbers that are dragged, and not in the file yet.
 pub(in crate::app) struct Draft {
     pub(in crate::app) edits: Vec<Edit>,
-    pub(super) path: TreePath,
+    pub(in crate::app) path: TreePath,
     line: u32,
-    pub(super) base: Arc<str>,
+    /// The text of the file without the edits.
+    pub(in crate::app) base: Arc<str>,
 }
 
 impl Draft {
@@ -163,7 +164,7 @@ impl Viewer {
 
     /// Takes the result of writing.
     pub(super) fn on_written(&mut self, written: Result<String, String>) {
-        self.answer_defaults(written.as_ref().map(|_| ()).map_err(String::as_str));
+        self.answer_edits(written.as_ref().map(|_| ()).map_err(String::as_str));
         match written {
             Ok(text) => {
                 // The file has the dragged numbers now, so nothing is compiled.

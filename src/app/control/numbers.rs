@@ -1,0 +1,74 @@
+//! The command `numbers`: other numbers in a line of the shaders, shown without a change of the file, or written to it.
+
+use serde_json::{Value, json};
+
+use super::{Next, Until};
+use crate::app::command::Command;
+use crate::app::source_line::SourceLine;
+use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::control::Numbers;
+use crate::shader::rewrite::Edit;
+
+impl Viewer {
+    /// Lists the numbers of a line, shows others in their place, writes these, or goes back to the file.
+    pub(super) fn numbers_as(&mut self, request: Numbers) -> Result<Next, String> {
+        let Some(at) = &request.at else {
+            return if request.write { self.write_numbers() } else { Ok(self.show_numbers(Vec::new())) };
+        };
+        let shaders = self.session.shaders.clone().ok_or("the shaders have not been compiled yet")?;
+        // Numbers that are shown already are not those of the file.
+        let base = self.edits.draft().map(|draft| (draft.path.clone(), draft.base.clone()));
+        let line = SourceLine::place(&shaders, at).and_then(|(path, text, line)| {
+            let text = base.as_ref().filter(|(of, _)| of == path).map_or(text, |(_, base)| base);
+            SourceLine::new(path, line, text)
+        });
+        let mut line = line.ok_or_else(|| format!("the shaders have no line {at}; expected FILE:LINE"))?;
+        let Some(values) = request.values else {
+            let numbers = line.numbers.iter().map(|(literal, value)| json!({ "text": literal.text, "value": value }));
+            return Ok(Next::Done(json!({ "line": line.before.trim(), "numbers": numbers.collect::<Vec<_>>() })));
+        };
+        if values.len() > line.numbers.len() {
+            let (given, count) = (values.len(), line.numbers.len());
+            return Err(format!("`values` has {given} numbers, and the line has {count}: {}", line.before.trim()));
+        }
+        for ((literal, number), value) in line.numbers.iter_mut().zip(values) {
+            let Some(value) = value else { continue };
+            if literal.is_whole && (value.fract() != 0.0 || value < 0.0) {
+                return Err(format!("{} takes a whole number, 0 or more, not {value}", literal.text));
+            }
+            *number = value;
+        }
+        let edits = line.edits();
+        if request.write && !edits.is_empty() {
+            return self.write_edits_of(edits);
+        }
+        Ok(self.show_numbers(edits))
+    }
+
+    /// Shows the picture with edits, or with the file.
+    fn show_numbers(&mut self, edits: Vec<Edit>) -> Next {
+        if edits.is_empty() && self.edits.draft().is_none() {
+            return Next::Done(Value::Null);
+        }
+        self.shader.compiling = true;
+        self.execute(Command::Draft(edits));
+        Next::Wait(Until::Reloaded)
+    }
+
+    /// Writes the numbers that are shown.
+    fn write_numbers(&mut self) -> Result<Next, String> {
+        let edits = self.edits.draft().map(|draft| draft.edits.clone());
+        self.write_edits_of(edits.ok_or("no other numbers are shown")?)
+    }
+
+    /// Writes edits into the files. The answer lists them.
+    pub(super) fn write_edits_of(&mut self, edits: Vec<Edit>) -> Result<Next, String> {
+        if !self.has_folder() {
+            return Err(NO_FOLDER.into());
+        }
+        let told = edits.iter().map(|edit| json!({ "name": edit.name, "file": edit.path, "line": edit.line }));
+        let told = told.collect();
+        self.execute(Command::WriteEdits(edits));
+        Ok(Next::Wait(Until::EditsWritten(told)))
+    }
+}

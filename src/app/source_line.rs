@@ -1,0 +1,72 @@
+//! A line of the shaders, with the variables and the numbers that it offers.
+
+use std::sync::Arc;
+
+use crate::shader::expression::{place_of, variables};
+use crate::shader::rewrite::{Edit, Literal, literals, spelled_like};
+use crate::shader::{ShaderSet, TreePath};
+
+/// A line of the shaders.
+pub(super) struct SourceLine {
+    pub(super) path: TreePath,
+    /// From 1.
+    pub(super) line: u32,
+    /// The file.
+    pub(super) text: Arc<str>,
+    /// Name and type of each variable that the line can use.
+    pub(super) variables: Vec<(String, String)>,
+    /// The line before any of its numbers is dragged.
+    pub(super) before: String,
+    /// The numbers, and the values that are to replace them.
+    pub(super) numbers: Vec<(Literal, f64)>,
+}
+
+impl SourceLine {
+    /// A line of a file; `None` if the file ends before it.
+    pub(super) fn new(path: &TreePath, line: u32, text: &Arc<str>) -> Option<Self> {
+        let before = text.lines().nth((line as usize).checked_sub(1)?)?.to_owned();
+        let numbers = literals(text, line).into_iter().map(|literal| (literal.clone(), literal.value)).collect();
+        let variables = variables(text, line);
+        Some(Self { path: path.clone(), line, text: text.clone(), variables, before, numbers })
+    }
+
+    /// The file and the line that a text such as `brdf/ndf.glsl:20` names. The file may be the end of a path.
+    pub(super) fn place<'a>(shaders: &'a ShaderSet, text: &str) -> Option<(&'a TreePath, &'a Arc<str>, u32)> {
+        let (file, line) = place_of(text)?;
+        let ends = |path: &&TreePath| path.as_str().strip_suffix(file).is_some_and(|rest| rest.ends_with('/'));
+        let exact = shaders.texts.get_key_value(&TreePath::from(file));
+        let (path, text) = exact.or_else(|| shaders.texts.iter().find(|(path, _)| ends(path)))?;
+        Some((path, text, line))
+    }
+
+    /// The edits that put the values in place of the numbers.
+    pub(super) fn edits(&self) -> Vec<Edit> {
+        let changed = self.numbers.iter().filter(|(literal, value)| *value != literal.value);
+        changed
+            .map(|(literal, value)| Edit {
+                path: self.path.clone(),
+                name: literal.text.clone(),
+                line: self.line,
+                bytes: literal.bytes.clone(),
+                before: self.before.clone(),
+                new: spelled_like(&literal.text, *value),
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dragged_numbers_become_edits() {
+        let text: Arc<str> = "float f(float x) {\n    return 0.5 * x + 2.0;\n}\n".into();
+        let mut shown = SourceLine::new(&"a.glsl".into(), 2, &text).unwrap();
+        assert_eq!(shown.variables, [("x".to_owned(), "float".to_owned())]);
+        assert!(shown.edits().is_empty());
+        shown.numbers[1].1 = 3.25;
+        let edits = shown.edits();
+        assert_eq!((edits[0].old(), edits[0].new.as_str(), edits.len()), ("2.0", "3.25", 1));
+    }
+}
