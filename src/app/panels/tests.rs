@@ -76,10 +76,14 @@ fn the_legend_names_the_colors_of_numbers() {
         legend::show(ui, &legend, view, state, 600.0);
     });
     assert!(["front", "back"].iter().all(|name| harness.query_by_label(name).is_some()));
-    // A single channel is gray.
-    harness.get_by_role_and_label(Role::Button, "R").click();
+    // Colors that stand for numbers have no channels. If another mode has left one, it is gray, and the buttons lead back.
+    assert!(harness.query_by_label("RGB").is_none());
+    harness.state_mut().0.channels = Channels::R;
     harness.run();
     assert!(harness.query_by_label("front").is_none());
+    harness.get_by_role_and_label(Role::Button, "RGB").click();
+    harness.run();
+    assert!(harness.query_by_label("front").is_some());
 }
 
 #[test]
