@@ -18,14 +18,19 @@ pub(in crate::app) struct Restored {
     files: Texts,
     /// The texts that are shown.
     shown: Texts,
+    /// The texts that were shown in place of the newest before, if any.
+    shown_before: Option<Texts>,
     /// The files that differ.
     changed: BTreeSet<TreePath>,
 }
 
 impl Restored {
-    /// Whether these shaders have a text that neither the version nor its restoring explains: a file was saved.
+    /// Whether these shaders have a text that neither the version nor its restoring explains: a file was saved. Shaders that were
+    /// under way when the version was chosen have the texts of before.
     fn is_edited(&self, shaders: &ShaderSet) -> bool {
-        shaders.texts.iter().any(|(path, text)| self.shown.get(path).is_some_and(|shown| shown != text))
+        let known = || [Some(&self.shown), Some(&self.files), self.shown_before.as_ref()].into_iter().flatten();
+        let is_known = |path, text| known().any(|texts| texts.get(path) == Some(text));
+        shaders.texts.iter().any(|(path, text)| self.shown.contains_key(path) && !is_known(path, text))
     }
 }
 
@@ -46,10 +51,11 @@ impl Viewer {
         let source = self.source.with_draft(draft.collect());
         let mut shown = files.clone();
         shown.extend(texts.iter().map(|(path, text)| (path.clone(), text.clone())));
-        let before = self.edits.restored.take().map(|restored| restored.changed).unwrap_or_default();
+        let (before, shown_before) = self.edits.restored.take().map(|old| (old.changed, old.shown)).unzip();
+        let before: BTreeSet<TreePath> = before.unwrap_or_default();
         let before = before.into_iter().chain(self.edits.draft.take().map(|draft| draft.path));
         let paths = changed.iter().cloned().chain(before).collect();
-        self.edits.restored = Some(Restored { number, files, shown, changed });
+        self.edits.restored = Some(Restored { number, files, shown, shown_before, changed });
         self.shader.compiling = true;
         self.threads.worker.read_from(source, paths);
     }
@@ -79,5 +85,25 @@ impl Viewer {
         let mut texts = self.session.shaders.as_ref()?.texts.clone();
         texts.extend(self.edits.draft().map(|draft| (draft.path.clone(), draft.base.clone())));
         Some(texts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shaders_that_were_under_way_are_no_save() {
+        let texts = |text: &str| BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from(text))]);
+        let restored = Restored {
+            number: 1,
+            files: texts("file"),
+            shown: texts("version 1"),
+            shown_before: Some(texts("version 2")),
+            changed: BTreeSet::new(),
+        };
+        let is_edited = |text: &str| restored.is_edited(&ShaderSet { texts: texts(text), ..ShaderSet::default() });
+        assert!(["version 1", "version 2", "file"].iter().all(|text| !is_edited(text)));
+        assert!(is_edited("saved"));
     }
 }
