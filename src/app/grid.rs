@@ -56,18 +56,17 @@ impl Grid {
     ///
     /// # Errors
     /// A message if there are too many.
-    pub(super) fn show(&mut self, mut modes: Vec<String>) -> Result<(), String> {
-        let mut seen = Vec::new();
-        modes.retain(|mode| {
-            !seen.contains(mode) && {
-                seen.push(mode.clone());
-                true
+    pub(super) fn show(&mut self, modes: Vec<String>) -> Result<(), String> {
+        let mut each = Vec::new();
+        for mode in modes {
+            if !each.contains(&mode) {
+                each.push(mode);
             }
-        });
-        if modes.len() > MOST {
-            return Err(format!("{} modes do not fit side by side; at most {MOST} do", modes.len()));
         }
-        self.modes = if modes.len() > 1 { modes } else { Vec::new() };
+        if each.len() > MOST {
+            return Err(format!("{} modes do not fit side by side; at most {MOST} do", each.len()));
+        }
+        self.modes = if each.len() > 1 { each } else { Vec::new() };
         Ok(())
     }
 

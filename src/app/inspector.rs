@@ -27,6 +27,18 @@ pub(super) enum Page {
     Lobe,
 }
 
+impl Page {
+    pub(super) const ALL: [Self; 2] = [Self::Values, Self::Lobe];
+
+    /// Its name, and what it shows.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Values => ("Values", "The value of this pixel in every mode, before exposure, in world space"),
+            Self::Lobe => ("BRDF", "The lobe and the albedo of this pixel's material, from your GLSL"),
+        }
+    }
+}
+
 /// State of the inspector. Nothing is read or measured while its panel is out of sight.
 #[derive(Default)]
 pub(super) struct Inspector {

@@ -40,7 +40,7 @@ impl Selected {
         }
     }
 
-    /// What a click on an instance selects: that instance, or nothing if it was selected already.
+    /// The selection after a click on an instance: that instance, or nothing if it was selected already.
     pub(super) fn clicked(self, instance: Option<usize>) -> Self {
         instance.map(Self::Instance).filter(|selected| *selected != self).unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! What a picture shows, in its PNG file: a text chunk with the keyword `specula` holds the settings as a look file does, and one with
+//! The settings and the files behind a picture, in its PNG file: a text chunk with the keyword `specula` holds the settings as a look file does, and one with
 //! the keyword `specula-files` the model, the shader tree and other files, with paths from the picture's folder.
 
 use std::fmt;
@@ -18,7 +18,7 @@ const SETTINGS: &str = "specula";
 /// Keyword of the chunk of files.
 const FILES: &str = "specula-files";
 
-/// What a look file or a picture says.
+/// The content of a look file, or of the texts in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// The settings. Their files are where the picture found them.
@@ -64,20 +64,16 @@ impl Files {
 
     /// The look of these files, seen from the picture's folder.
     fn look(self, mut settings: Settings, folder: &Path) -> Look {
-        let there = |path: PathBuf| Some(folder.join(path)).filter(|path| path.exists());
+        // A file that is gone stays as it is named, and is an error of whoever opens it.
+        let found = |path: PathBuf| Some(folder.join(&path)).filter(|there| there.exists()).unwrap_or(path);
         let put = |name: &mut String, path: Option<PathBuf>| {
-            if let Some(path) = path.and_then(there) {
-                *name = path.display().to_string();
+            if let Some(there) = path.map(found).filter(|there| there.exists()) {
+                *name = there.display().to_string();
             }
         };
         put(&mut settings.environment.name, self.environment);
         put(&mut settings.measured, self.measured);
-        // A file that is gone is an error of whoever opens it.
-        Look {
-            settings,
-            model: self.model.map(|path| there(path.clone()).unwrap_or(path)),
-            shaders: self.shaders.map(|path| there(path.clone()).unwrap_or(path)),
-        }
+        Look { settings, model: self.model.map(found), shaders: self.shaders.map(found) }
     }
 }
 
@@ -113,7 +109,7 @@ fn from_folder(path: &Path, folder: &Path) -> PathBuf {
     up.chain(to[common..].iter().copied()).collect()
 }
 
-/// What a look file says, or a PNG file of Specula.
+/// Reads a look file, or the texts in a PNG file of Specula.
 ///
 /// # Errors
 /// The file cannot be read, is a PNG without settings, or its text is no look. Values are not checked against their ranges.

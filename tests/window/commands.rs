@@ -233,6 +233,50 @@ fn clicks_grids_defaults_and_looks_are_commands() {
     viewer.quit();
 }
 
+#[test]
+fn numbers_of_a_line_are_commands() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--env", "none"]);
+    viewer.running.event("ready");
+    let original = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &original.replace("alpha * alpha;", "1.0 * alpha * alpha;"));
+    viewer.running.reload(true);
+    viewer.running.event("settled");
+    let (text, first) = (viewer.tree.read(NDF), viewer.screenshot());
+    let row = 1 + text.lines().position(|line| line.contains("1.0 * alpha * alpha;")).unwrap();
+    let at = format!("ndf.glsl:{row}");
+    let running = &mut viewer.running;
+    let listed = running.done(json!({"command": "numbers", "at": at}));
+    assert_eq!(listed["numbers"], json!([{ "text": "1.0", "value": 1.0 }]));
+
+    // Shown, and taken back, without a change of the file.
+    running.done(json!({"command": "numbers", "at": at, "values": [9.0]}));
+    viewer.until("the other number", |shot| *shot != first);
+    assert_eq!(viewer.tree.read(NDF), text);
+    let running = &mut viewer.running;
+    assert_eq!(running.done(json!({"command": "numbers", "at": at}))["numbers"], listed["numbers"]);
+    running.done(json!({"command": "numbers"}));
+    // The tables of the other number light the first frames.
+    viewer.until("the number of the file", |shot| *shot == first);
+
+    // Written.
+    let running = &mut viewer.running;
+    running.done(json!({"command": "numbers", "at": at, "values": [9.0]}));
+    let written = running.done(json!({"command": "numbers", "write": true}));
+    assert_eq!(written["edits"][0]["line"], row);
+    assert_eq!(viewer.tree.read(NDF), text.replace("1.0 * alpha * alpha;", "9.0 * alpha * alpha;"));
+    let running = &mut viewer.running;
+    for (command, part) in [
+        (json!({"command": "numbers", "at": "ndf.glsl:9999"}), "no line ndf.glsl:9999"),
+        (json!({"command": "numbers", "at": at, "values": [1, 2]}), "has 2 numbers, and the line has 1"),
+        (json!({"command": "numbers", "write": true}), "no other numbers are shown"),
+    ] {
+        let message = running.refused(command.clone());
+        assert!(message.contains(part), "{command}: {message}");
+    }
+    viewer.running.end_input();
+    viewer.quit();
+}
+
 /// The mean difference of two pictures' channels, 0 to 255.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let sum: u64 = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();

@@ -17,7 +17,7 @@ use crate::capture::{
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;
 use crate::picture;
-use crate::recovery;
+use crate::recovery::Work;
 use crate::render::Texel;
 use crate::shader::{Compiler, Source};
 use crate::threads::Message;
@@ -34,7 +34,7 @@ const VERSIONS_PER_S: f32 = 1.5;
 
 /// Job of the background render thread.
 #[derive(Clone, Debug)]
-pub(in crate::app) enum Work {
+pub(in crate::app) enum Job {
     Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
     Probe { at: (u32, u32), names: Vec<String> },
     Sheet { file: PathBuf, names: Vec<String>, size: (u32, u32), columns: Option<u32> },
@@ -42,7 +42,7 @@ pub(in crate::app) enum Work {
     Timeline { file: PathBuf, fps: f32, size: Option<(u32, u32)> },
 }
 
-impl Work {
+impl Job {
     pub(super) fn sheet(fields: Sheet) -> Result<Self, String> {
         let names = match fields.modes {
             None => vec!["modes".to_owned()],
@@ -87,13 +87,13 @@ impl Work {
         }
     }
 
-    /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with, `files` the model and the shader
-    /// tree. Returns the result of the answer.
+    /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with, `work` names the model and the
+    /// shader tree. Returns the result of the answer.
     fn draw(
         self,
         stills: &mut Stills,
         size: (u32, u32),
-        (versions, tree, files): (&[VersionPicture], (&Compiler, &Source), recovery::Work),
+        (versions, tree, work): (&[VersionPicture], (&Compiler, &Source), Work),
         tell: &mut dyn FnMut(u64, u64) -> bool,
     ) -> Result<Value, CaptureError> {
         let wrong = |message: String| CaptureError::Usage(message);
@@ -105,7 +105,7 @@ impl Work {
                 }
                 stills.set_count(frames);
                 let capture = stills.capture(own.unwrap_or(size))?;
-                let shown = recovery::Work { settings: stills.settings().clone(), ..files };
+                let shown = Work { settings: stills.settings().clone(), ..work };
                 let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
                 Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
             }
@@ -202,20 +202,20 @@ impl Captures {
 
 impl Viewer {
     /// Begins to draw on a thread of its own.
-    pub(super) fn begin_capture(&mut self, reply: Reply, work: Work) {
+    pub(super) fn begin_capture(&mut self, reply: Reply, job: Job) {
         let captures = &mut self.controlled.captures;
         captures.last += 1;
         let (number, canceled) = (captures.last, Arc::new(AtomicBool::new(false)));
-        let title = work.title();
+        let title = job.title();
         captures.running.push(Running { number, title, done: 0, of: 0, canceled: canceled.clone() });
-        let versions = match work {
-            Work::Timeline { .. } => self.version_pictures(),
+        let versions = match job {
+            Job::Timeline { .. } => self.version_pictures(),
             _ => Vec::new(),
         };
         let size = self.shown().map_or((1, 1), |state| state.size);
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
-        let (compiler, source, files) = (self.compiler.clone(), self.source().clone(), self.work());
+        let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.work());
         self.threads.capture(number, canceled.clone(), move |outbox| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {
@@ -230,7 +230,7 @@ impl Viewer {
                 true => Stills::new(&gpu, session, resources, clock)
                     .map_err(|error| CaptureError::Render(error.into()))
                     .and_then(|mut stills| {
-                        work.draw(&mut stills, size, (&versions, (&compiler, &source), files), &mut tell)
+                        job.draw(&mut stills, size, (&versions, (&compiler, &source), work), &mut tell)
                     }),
                 false => Err(CaptureError::Canceled),
             };

@@ -15,7 +15,7 @@ use super::viewer::Viewer;
 use crate::control::{Asked, Reply, Request};
 use crate::shader::expression::is_about_expression;
 use crate::shader::{Diagnostic, Severity};
-pub(super) use captures::{Captures, Work};
+pub(super) use captures::{Captures, Job};
 use requests::short;
 
 /// Commands that are not done yet, and captures that are under way.
@@ -50,7 +50,7 @@ pub(super) enum Until {
     /// The same for a picture of the window.
     Window(Option<PathBuf>),
     /// The same for what a thread draws.
-    Picture(Work),
+    Picture(Job),
 }
 
 /// Immediate outcome of a command.
@@ -105,7 +105,7 @@ impl Viewer {
                 Until::Camera if shows => reply.done(self.camera_json()),
                 Until::Grid if shows => reply.done(json!({ "modes": self.panels.grid.modes() })),
                 Until::Compared if shows && self.compare.is_drawn() => reply.done(self.compare_json()),
-                Until::Picture(work) if shows && self.has_all_modes() => self.begin_capture(reply, work),
+                Until::Picture(job) if shows && self.has_all_modes() => self.begin_capture(reply, job),
                 Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
                 Until::Model(path) if !self.model.loading => match self.model.is_file(&path) {
                     true => self.controlled.waiting.push((reply, Until::Shown)),

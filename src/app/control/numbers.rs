@@ -38,6 +38,12 @@ impl Viewer {
             }
             *number = value;
         }
+        if let Some(restored) = &self.edits.restored {
+            return Err(format!("version {} is shown; show the newest one first", restored.number));
+        }
+        if self.edits.draft().is_some_and(|draft| !draft.is_at(&line.path, line.line)) {
+            return Err("the numbers of another line are shown; write them or go back to the file first".into());
+        }
         let edits = line.edits();
         if request.write && !edits.is_empty() {
             return self.write_edits_of(edits);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use super::{Next, Until, Work};
+use super::{Job, Next, Until};
 use crate::app::command::{Command, Side, open_as};
 use crate::app::grid::Grid;
 use crate::app::palette;
@@ -45,7 +45,7 @@ impl Viewer {
                 if self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete()) {
                     modes_of(&self.session, &names)?;
                 }
-                Next::Wait(Until::Picture(Work::Probe { at: at.into(), names }))
+                Next::Wait(Until::Picture(Job::Probe { at: at.into(), names }))
             }
             Request::Reload => {
                 self.execute(Command::Reload);
@@ -88,9 +88,9 @@ impl Viewer {
                 palette::run(self, &entry, value)?;
                 shown
             }
-            Request::Sheet(sheet) => Next::Wait(Until::Picture(Work::sheet(sheet)?)),
-            Request::Turntable(turntable) => Next::Wait(Until::Picture(Work::turntable(turntable)?)),
-            Request::Timeline(timeline) => Next::Wait(Until::Picture(Work::timeline(timeline)?)),
+            Request::Sheet(sheet) => Next::Wait(Until::Picture(Job::sheet(sheet)?)),
+            Request::Turntable(turntable) => Next::Wait(Until::Picture(Job::turntable(turntable)?)),
+            Request::Timeline(timeline) => Next::Wait(Until::Picture(Job::timeline(timeline)?)),
             Request::Cancel => {
                 self.cancel_captures();
                 Next::Done(Value::Null)
@@ -217,14 +217,19 @@ impl Viewer {
 
     /// Does what a click on a pixel does, or takes that back.
     fn pick(&mut self, at: Option<[u32; 2]>) -> Result<Value, String> {
-        self.panels.inspector.unpin();
         match at {
-            None => self.select(Selected::Nothing),
+            None => {
+                self.panels.inspector.unpin();
+                self.select(Selected::Nothing);
+            }
             Some([x, y]) => {
                 let (width, height) = self.shown().ok_or("there is no picture yet")?.size;
                 if x >= width || y >= height {
                     return Err(format!("[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"));
                 }
+                // A second click on a place would take the first one back.
+                self.panels.inspector.unpin();
+                self.selected = Selected::Nothing;
                 self.execute(Command::Pick([x, y]));
             }
         }
@@ -327,7 +332,7 @@ fn capture_of(capture: Capture) -> Result<Until, String> {
     if size.is_none() && mode.is_none() && frames.is_none() && !is_exr {
         return Ok(Until::Screen(file));
     }
-    Ok(Until::Picture(Work::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
+    Ok(Until::Picture(Job::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
 }
 
 fn is_exr(file: &std::path::Path) -> bool {

@@ -309,16 +309,13 @@ pub(super) fn commands() -> Vec<Entry> {
         let entry = Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
         Entry { words: panel.words().to_owned(), ..entry }
     };
-    let page = |(page, title, words): (Page, &str, &str)| {
-        let entry = Entry::new("Panel", title.to_owned(), Action::Do(Command::OpenInspector(page)));
-        Entry { words: words.to_owned(), ..entry }
+    let page = |page: Page| {
+        let (name, doc) = page.words();
+        let entry = Entry::new("Panel", format!("Panel: Inspector, {name}"), Action::Do(Command::OpenInspector(page)));
+        Entry { words: format!("polar plot curves {doc}"), ..entry }
     };
-    let pages = [
-        (Page::Values, "Panel: Inspector, values", "pixel numbers of every mode"),
-        (Page::Lobe, "Panel: Inspector, BRDF", "pixel lobe polar plot albedo curves furnace"),
-    ];
     let presets = Preset::ALL.into_iter().map(preset);
-    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(pages.into_iter().map(page));
+    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(Page::ALL.map(page));
     commands.into_iter().map(command).chain(presets).chain(panels).collect()
 }
 

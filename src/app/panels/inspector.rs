@@ -36,11 +36,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, comm
         return;
     };
     ui.horizontal(|ui| {
-        let pages = [
-            (Page::Values, "Values", "The value of this pixel in every mode, before exposure, in world space"),
-            (Page::Lobe, "BRDF", "The lobe and the albedo of this pixel's material, from your GLSL"),
-        ];
-        for (page, name, doc) in pages {
+        for page in Page::ALL {
+            let (name, doc) = page.words();
             ui.selectable_value(&mut state.page, page, name).on_hover_text(doc);
         }
         light(ui, &mut viewer.session.settings.lights.chosen, reading.lights.len());

@@ -69,7 +69,7 @@ pub(super) fn show(
     }
 }
 
-/// What the panel lists: the passes and switches that have the words of the search, or whose parameters do.
+/// The entries of the panel: the passes and switches that have the words of the search, or whose parameters do.
 #[derive(Debug, Default)]
 struct Found<'a> {
     /// Effects of the user.

@@ -16,8 +16,8 @@ use crate::app::viewer::{Version, Viewer};
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 /// How much smaller it is in a list.
 const IN_LIST: f32 = 0.625;
-/// What the panel lists, in words.
-const WHAT: &str = "versions";
+/// The entries of the panel, for its search.
+const ENTRIES: &str = "versions";
 /// Widest entry of a list, points.
 const WIDEST: f32 = 320.0;
 /// Opacity of the accent behind the chosen entry.
@@ -58,7 +58,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
     let words = match is_strip {
         true if count <= search::FEW => Words::default(),
         true => Words::new(&state.search),
-        false => search::above(ui, &mut state.search, WHAT, count),
+        false => search::above(ui, &mut state.search, ENTRIES, count),
     };
     if let Some(number) = state.asked {
         ask(ui, viewer, number, &mut state.asked, commands);

@@ -42,6 +42,11 @@ pub(in crate::app) struct Draft {
 }
 
 impl Draft {
+    /// Whether the dragged numbers are those of this line.
+    pub(in crate::app) fn is_at(&self, path: &TreePath, line: u32) -> bool {
+        (&self.path, self.line) == (path, line)
+    }
+
     /// Whether a text of the file differs from that on disk in the dragged line at most.
     fn is_of(&self, text: &str) -> bool {
         let other = |number: usize| number + 1 != self.line as usize;
@@ -89,7 +94,7 @@ impl Viewer {
         }
         let line = edits.first().map_or(0, |edit| edit.line);
         let base = match &self.edits.draft {
-            Some(draft) if draft.path == path && draft.line == line => Some(draft.base.clone()),
+            Some(draft) if draft.is_at(&path, line) => Some(draft.base.clone()),
             Some(_) => {
                 self.end_draft();
                 None

@@ -27,7 +27,7 @@ impl Viewer {
         event.into_iter().for_each(|event| emit(&self.events, &Event::Selected(event)));
     }
 
-    /// What is selected, by its names; `None` without a model.
+    /// The selection by its names; `None` without a model.
     pub(in crate::app) fn selected_event(&self) -> Option<SelectedEvent> {
         let selected = self.selected;
         let scene = self.session.scene()?;

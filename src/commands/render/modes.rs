@@ -5,7 +5,7 @@ use specula::shader::{Mode, ShaderSet};
 use super::Failure;
 use crate::commands::common::check_mode;
 
-/// What to write.
+/// The modes to write.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Modes {
     /// The mode of the settings, to the named file.

@@ -23,7 +23,7 @@ struct Declared {
     scope: Scope,
 }
 
-/// What the files of a stage declare.
+/// The declarations in the files of a stage.
 pub struct Names(BTreeMap<TreePath, Vec<Declared>>);
 
 impl Names {
@@ -90,7 +90,7 @@ fn nearest<'a>(unknown: &str, names: impl IntoIterator<Item = &'a str>) -> Optio
     best.map(|(_, name)| name)
 }
 
-/// What stands between the braces at file level.
+/// The construct between a pair of braces at file level.
 #[derive(Clone, Debug)]
 enum Body {
     /// The index of the first name that the function declares, counting its parameters.
@@ -205,7 +205,7 @@ impl<'a> Scanner<'a> {
         self.out.push(Declared { name: name.to_owned(), type_name: kind.to_owned(), scope });
     }
 
-    /// What the brace at file level opens.
+    /// The construct that a brace at file level opens.
     fn opened(&mut self, at: usize) -> Body {
         let (first, declared) = self.statement;
         if at > 0 && self.token(at - 1) == ")" {

@@ -62,8 +62,8 @@ pub(super) fn show(
     let title = |ui: &mut Ui, title: &str, doc: &str| {
         ui.label(RichText::new(title).small().color(QUIET)).on_hover_text(format!("{doc}. {MOVE}"));
     };
-    let doc = "The plane of incidence: the luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. The arrow of the eye has this \
-        pixel's angle; out of plane: the eye lies outside this plane";
+    let doc = "The plane of incidence: the luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. \
+        The arrow of the eye has this pixel's angle; out of plane: the eye lies outside this plane";
     legend(ui, before.is_some(), &format!("{doc}. {MOVE}"));
     polar(ui, &Pair { now: curves, before }, &shown.of, &directions);
     let chart = |ui: &mut Ui, name: &str, doc: &str, of: fn(&Curves) -> &[[f32; 3]]| {
@@ -109,8 +109,8 @@ fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Re
     let Directions { light_deg, eye_deg, azimuth_deg } = directions;
     let number = reading.light_of(light).map_or(1, |index| index + 1);
     let text = format!("Light {number} at {light_deg:.1}°, eye {eye_deg:.1}°, azimuth of the eye {azimuth_deg:.0}°");
-    let doc = "Of all lights, the one nearest to the normal. Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
-        would reflect the light, 180° on the side of the light";
+    let doc = "Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
+        would reflect the light, 180° on the side of the light. Of all lights, the one nearest to the normal is measured";
     ui.label(RichText::new(text).small()).on_hover_text(doc);
     if *light_deg >= 90.0 {
         let text = "The light is below the horizon of this surface, so the lobe is shown for a light at 89°";

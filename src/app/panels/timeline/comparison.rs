@@ -7,7 +7,7 @@ use crate::app::dialog::Dialog;
 use crate::app::panels::search;
 use crate::app::panels::spoken::named;
 use crate::app::panels::theme::QUIET;
-use crate::app::panels::timeline::{WHAT, monospace};
+use crate::app::panels::timeline::{ENTRIES, monospace};
 use crate::app::viewer::{Compare, Difference};
 
 /// The meaning of the numbers of a comparison.
@@ -25,7 +25,7 @@ pub(in crate::app::panels) fn show(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal_wrapped(|ui| {
-        // What does not fit into a row goes to the next one as a whole.
+        // A control that does not fit into a row goes to the next one as a whole.
         ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
         if compare.is_on() {
             let stop = named(ui.button("Stop"), "Stop comparing");
@@ -61,7 +61,7 @@ pub(in crate::app::panels) fn show(
         }
         if let Some(text) = search {
             let beside = (ui.available_width() - SEARCH).max(0.0);
-            search::field(ui, text, WHAT, beside);
+            search::field(ui, text, ENTRIES, beside);
         }
     });
     if let Some(note) = compare.note() {

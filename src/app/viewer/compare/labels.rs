@@ -12,7 +12,7 @@ use crate::settings::Settings;
 /// A value of a setting with more characters is left out.
 const LONGEST: usize = 24;
 
-/// What a picture shows.
+/// The contents of a picture.
 struct Shown<'a> {
     version: u64,
     mode: &'a str,
@@ -64,7 +64,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// What differs, for each side: version, mode, model, environment and a single setting by name, more settings by their number. The
+/// The differences, for each side: version, mode, model, environment and a single setting by name, more settings by their number. The
 /// mode if nothing differs.
 fn differences(kept: &Shown<'_>, now: &Shown<'_>) -> [String; 2] {
     let mut parts: [Vec<String>; 2] = Default::default();
