@@ -36,7 +36,8 @@ pub(super) fn show(
         side_by_side(ui, grid);
     }
     let words = Words::new(search);
-    let is_found = |mode: &Mode| words.are_in(&text_of(mode));
+    // In most frames nothing is searched, and no text is made for it.
+    let is_found = |mode: &Mode| words.is_empty() || words.are_in(&text_of(mode));
     let place = |mode: &Mode| shaders.modes.iter().position(|other| other.slug == mode.slug).unwrap_or(0);
     let found =
         listed(&shaders.modes).into_iter().filter(|mode| is_found(mode)).map(|mode| (place(mode), mode)).collect();

@@ -41,7 +41,7 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_
     let all: Vec<&String> = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name)).collect();
     let set: Vec<String> = all.iter().filter(|name| values.contains_key(**name)).map(|name| (*name).clone()).collect();
     let words = search::above_kept(ui, "parameters", all.len());
-    let is_found = |texts: [&str; 4]| words.are_in(&texts.join(" "));
+    let is_found = |texts: [&str; 4]| words.is_empty() || words.are_in(&texts.join(" "));
     let parameters: Vec<&Parameter> =
         parameters.into_iter().filter(|p| is_found([&p.label, &p.name, &p.group, &p.doc])).collect();
     let constants: Vec<&Constant> =
