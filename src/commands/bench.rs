@@ -43,7 +43,7 @@ const THUMBNAIL: [u32; 2] = [96, 72];
 /// Options of `bench`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// What to measure
+    /// The measurement
     #[arg(value_enum)]
     what: What,
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]

@@ -90,7 +90,7 @@ pub const COMMANDS: [Described; 29] = [
     row("settings", "", "All settings, with what each takes, its range, unit and meaning"),
     row("commands", "", "This list"),
     row("help", "", "This list"),
-    row("entries", "", "What the command palette can do at the moment"),
+    row("entries", "", "What the command palette can do at the moment; `now` marks the choices in force"),
     row(
         "run",
         r#""entry": "Layout: Look", "value"?: number"#,

@@ -133,6 +133,10 @@ fn a_program_drives_the_window_by_standard_input() {
         let result = running.done(json!({"command": list}));
         assert!(!result.as_array().unwrap().is_empty(), "{list}");
     }
+    let entries = running.done(json!({"command": "entries"}));
+    let in_force: Vec<&Value> = entries.as_array().unwrap().iter().filter(|entry| entry["now"] == true).collect();
+    let is_in_force = |entry: &str| in_force.iter().any(|listed| listed["entry"] == entry);
+    assert!(is_in_force("Environment: none") && !is_in_force("Environment: studio"), "{in_force:?}");
     running.done(json!({"command": "run", "entry": "Exposure", "value": 1.5}));
     assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(-1.5), "brighter");
 

@@ -80,10 +80,7 @@ impl Viewer {
             }
             Request::Settings => Next::Done(settings_json()),
             Request::Commands => Next::Done(json!(COMMANDS)),
-            Request::Entries => {
-                let entries = palette::titles(self).into_iter();
-                Next::Done(entries.map(|(group, title)| json!({ "group": group, "entry": title })).collect())
-            }
+            Request::Entries => Next::Done(json!(palette::listed(self))),
             Request::Run(Run { entry, value }) => {
                 palette::run(self, &entry, value)?;
                 shown

@@ -4,7 +4,33 @@ use super::entries::Action;
 use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::panels::expression::watch;
+use crate::app::panels::parameters::default_of;
 use crate::app::viewer::Viewer;
+use crate::shader::values::number;
+
+/// Whether the action is a choice of a setting that has this value already.
+pub(super) fn is_in_force(action: &Action, viewer: &Viewer) -> bool {
+    let settings = &viewer.session.settings;
+    match action {
+        Action::Mode(slug) => viewer.session.mode().is_some_and(|mode| mode.slug == *slug),
+        Action::Environment(name) => settings.environment.name == *name,
+        Action::Assign(assignment) => {
+            let mut assigned = settings.clone();
+            assigned.assign(assignment).is_ok() && assigned == *settings
+        }
+        Action::Value(name, value) => viewer.session.shaders.as_ref().is_some_and(|shaders| {
+            let constant = shaders.constants.iter().find(|constant| constant.name == *name);
+            let parameter = shaders.parameters.iter().find(|parameter| parameter.name == *name);
+            let of_constant = constant.map(|constant| (&constant.choices, Some(default_of(constant))));
+            let of_parameter = parameter.map(|parameter| (&parameter.choices, parameter.default.first().copied()));
+            of_constant.or(of_parameter).is_some_and(|(choices, default)| {
+                let now = settings.shader.get(name).and_then(|value| number(value, choices)).or(default);
+                now.is_some() && now == number(value, choices)
+            })
+        }),
+        _ => false,
+    }
+}
 
 /// Carries out the action of the chosen entry.
 pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Command>) {

@@ -2,13 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use super::act::is_in_force;
+use super::ask::{Ask, Target};
 use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::inspector::Page;
 use crate::app::layout::{Panel, Preset};
 use crate::app::learn::LearnCommand;
-use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
+use crate::app::numbers::{self, of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::recent::Kind;
@@ -57,77 +59,6 @@ pub(super) enum Action {
     ShowKeys,
 }
 
-/// A number that the palette asks for.
-#[derive(Clone, Debug)]
-pub(super) struct Ask {
-    pub(super) title: String,
-    group: &'static str,
-    pub(super) doc: String,
-    pub(super) scale: Scale,
-    /// The present value.
-    pub(super) now: f64,
-    target: Target,
-}
-
-/// Where a number is.
-#[derive(Clone)]
-enum Target {
-    Setting(Number),
-    /// A parameter or constant of the shaders; `true` for a whole number.
-    Shader(String, bool),
-}
-
-impl std::fmt::Debug for Target {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Setting(number) => formatter.write_str(&number.path()),
-            Self::Shader(name, _) => formatter.write_str(name),
-        }
-    }
-}
-
-impl Ask {
-    pub(super) fn of_setting(number: &Number, settings: &mut Settings) -> Self {
-        Self {
-            title: number.title(),
-            group: number.group(),
-            doc: number.doc.to_owned(),
-            scale: number.scale(),
-            now: number.get(settings),
-            target: Target::Setting(number.clone()),
-        }
-    }
-
-    pub(super) fn entry(self) -> Entry {
-        let (group, title, key) = (self.group, self.title.clone(), self.scale.text(self.now));
-        let words = match &self.target {
-            // The index of a light in its path is not the number in its name.
-            Target::Setting(number) => number.path().rsplit('.').next().unwrap_or_default().to_owned(),
-            Target::Shader(name, _) => name.clone(),
-        };
-        Entry { words, key, ..Entry::new(group, title, Action::Number(Box::new(self))) }
-    }
-
-    /// The same number with another value.
-    pub(super) fn with(&self, now: f64) -> Self {
-        Self { now, ..self.clone() }
-    }
-
-    /// Sets the number to its present value.
-    pub(super) fn set(&self, settings: &mut Settings) {
-        let value = self.now;
-        match &self.target {
-            Target::Setting(number) => number.set(settings, value),
-            Target::Shader(name, true) => {
-                settings.shader.insert(name.clone(), ShaderValue::Int(value.round() as i64));
-            }
-            Target::Shader(name, false) => {
-                settings.shader.insert(name.clone(), ShaderValue::Float(value));
-            }
-        }
-    }
-}
-
 /// A row that the palette can show.
 #[derive(Debug)]
 pub(super) struct Entry {
@@ -140,11 +71,13 @@ pub(super) struct Entry {
     pub(super) action: Action,
     /// Whether it comes after entries that match as well: it shows or switches the inside of an effect.
     pub(super) is_minor: bool,
+    /// Whether it is the choice in force, so that choosing it changes nothing.
+    pub(super) is_in_force: bool,
 }
 
 impl Entry {
     pub(super) fn new(group: &'static str, title: String, action: Action) -> Self {
-        Self { group, title, words: String::new(), key: String::new(), action, is_minor: false }
+        Self { group, title, words: String::new(), key: String::new(), action, is_minor: false, is_in_force: false }
     }
 }
 
@@ -163,6 +96,9 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
         parameters(&mut entries, shaders, settings);
         passes(&mut entries, shaders, settings);
         entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode)));
+    }
+    for entry in &mut entries {
+        entry.is_in_force = is_in_force(&entry.action, viewer);
     }
     entries
 }

@@ -2,12 +2,14 @@
 //! value of a number is typed behind its name (`exposure 1.5`) or in a second step.
 
 mod act;
+mod ask;
 mod entries;
 mod row;
 mod search;
 mod settings;
 
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
+use serde::Serialize;
 
 use super::command::Command;
 use super::panels::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
@@ -15,7 +17,8 @@ use super::viewer::Viewer;
 use crate::message::did_you_mean;
 use crate::shader::Expression;
 use act::act;
-use entries::{Action, Ask, Entry, entries};
+use ask::Ask;
+use entries::{Action, Entry, entries};
 use search::{Found, find};
 
 /// Most rows of the list.
@@ -52,9 +55,19 @@ impl Palette {
     }
 }
 
-/// The group and title of everything that the palette can do at the moment.
-pub(super) fn titles(viewer: &Viewer) -> Vec<(&'static str, String)> {
-    entries(viewer).into_iter().map(|entry| (entry.group, entry.title)).collect()
+/// An entry, as the command `entries` tells it.
+#[derive(Serialize)]
+pub(super) struct Listed {
+    group: &'static str,
+    entry: String,
+    /// Whether it is the choice in force.
+    now: bool,
+}
+
+/// Everything that the palette can do at the moment.
+pub(super) fn listed(viewer: &Viewer) -> Vec<Listed> {
+    let listed = |entry: Entry| Listed { group: entry.group, entry: entry.title, now: entry.is_in_force };
+    entries(viewer).into_iter().map(listed).collect()
 }
 
 /// Does what the entry with this title does. `value` is for an entry that sets a number.

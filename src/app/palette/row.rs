@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align2, Color32, FontId, TextStyle, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::search::Found;
 use crate::app::panels::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT, small_mono_font};
@@ -13,6 +13,8 @@ pub(super) const HEIGHT: f32 = 22.0;
 /// Width of the column with the groups, in points.
 const GROUP: f32 = 78.0;
 const GAP: f32 = 10.0;
+/// Width of the mark of the choice in force, in points.
+const CHECK_MARK: f32 = 9.0;
 
 /// Shows a row. `note` is the key or value at the right of the title. Returns whether it was clicked.
 pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) -> bool {
@@ -28,7 +30,8 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
     let at = pos2(text.right() - GROUP - GAP, text.center().y);
     let mono = small_mono_font();
     let note = ui.painter().text(at, Align2::RIGHT_CENTER, note, mono, quiet);
-    let room = note.left() - GAP - text.left();
+    let mark = if found.entry.is_in_force { CHECK_MARK + GAP } else { 0.0 };
+    let room = note.left() - GAP - mark - text.left();
     let font = TextStyle::Body.resolve(ui.style());
     let colors = match is_chosen {
         true => [TEXT.color(), STRONG.color()],
@@ -36,6 +39,9 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
     };
     let galley = ui.painter().layout_job(job(&found.entry.title, &found.marks, room, font, colors));
     let is_elided = galley.elided;
+    if found.entry.is_in_force {
+        check_mark(ui, pos2(text.left() + galley.size().x + GAP, text.center().y), colors[1]);
+    }
     let corner = pos2(text.left(), text.center().y - 0.5 * galley.size().y);
     ui.painter().galley(corner, galley, colors[0]);
     let clicked = response.clicked();
@@ -43,6 +49,12 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
         response.on_hover_text(&found.entry.title);
     }
     clicked
+}
+
+/// Marks the choice in force. `left` is the middle of the mark's left edge.
+fn check_mark(ui: &Ui, left: egui::Pos2, color: Color32) {
+    let at = |x: f32, y: f32| left + CHECK_MARK * vec2(x, y);
+    ui.painter().line(vec![at(0.0, 0.0), at(0.35, 0.35), at(1.0, -0.4)], Stroke::new(1.5, color));
 }
 
 /// A line that ends with an ellipsis where it does not fit `width`. `colors`: of the text and of the marks.

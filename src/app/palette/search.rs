@@ -160,7 +160,8 @@ fn tokens(text: &str) -> impl Iterator<Item = Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::entries::{Ask, commands};
+    use super::super::ask::Ask;
+    use super::super::entries::commands;
     use super::*;
     use crate::app::numbers::{EXPOSURE, ORBIT};
     use crate::settings::Settings;

@@ -1,5 +1,5 @@
-//! The number under the mouse, in a mode whose picture shows a color for each number. The color tells nobody the number, so the pixel is
-//! drawn once more, with numbers, where the mouse rests.
+//! The exact value under the mouse. The picture's own value is a half float, and in some modes a color that stands for a number, so the
+//! pixel is drawn once more, in 32 bits and with numbers, where the mouse rests.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -8,12 +8,14 @@ use std::time::{Duration, Instant};
 use super::background::Background;
 use super::sets::{BoundSets, Shown, shown, time_to_rest};
 use crate::app::viewer::Viewer;
-use crate::frame::{TargetFormat, mode_sets};
+use crate::frame::{FrameState, TargetFormat, mode_sets};
 use crate::gpu::{GpuError, SetLayouts};
+use crate::interface::MODE_FINAL;
 use crate::render::{PixelModes, Thumbnails};
-use crate::shader::{Mode, PixelValue};
+use crate::shader::graph::Part;
+use crate::shader::{DrawAs, Mode, PixelValue};
 
-/// A pixel of a mode that shows colors for numbers.
+/// A pixel of a mode whose value can be read in 32 bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Pointed {
     /// Slug of the mode.
@@ -22,6 +24,23 @@ pub(super) struct Pointed {
     pub(super) at: [u32; 2],
     /// Width and height of the picture, pixels.
     pub(super) size: (u32, u32),
+    /// Whether the picture shows a color for each number of the mode.
+    pub(super) is_number: bool,
+}
+
+impl Pointed {
+    /// A pixel of a picture. `None` if the pixel drawn alone would not have the value that the picture shows: random paths take many
+    /// frames, lines and layers are blended, and passes may follow the model.
+    pub(super) fn new(state: &FrameState, at: (u32, u32)) -> Option<Self> {
+        let mode = state.mode()?;
+        let is_number = mode.numbers.is_some();
+        let is_of_model = mode.pass.is_none() && mode.id != MODE_FINAL && !mode.is_displayed;
+        let is_opaque = mode.draw == DrawAs::Surfaces && !mode.through && !mode.follows_paths();
+        let mut passes = state.pipelines.passes.iter();
+        let has_no_others = passes.all(|pass| matches!(pass.part, Part::BeforeModel | Part::Model | Part::Tonemap));
+        let is_same = is_number || is_of_model && is_opaque && has_no_others;
+        is_same.then(|| Self { mode: mode.slug.clone(), at: [at.0, at.1], size: state.size, is_number })
+    }
 }
 
 /// How far the number of the pixel is.
@@ -36,7 +55,7 @@ enum Progress {
     Failed,
 }
 
-/// Reads the number under the mouse.
+/// Reads the value under the mouse.
 #[derive(Default)]
 pub(super) struct NumberReader {
     renderer: Option<PixelModes>,
@@ -106,11 +125,16 @@ impl NumberReader {
             return Ok(Some(left));
         }
         let Some((shown, pointed)) = &self.shown else { return Ok(None) };
-        // The set that the inspector draws, so that both need the same pipelines.
         let features = viewer.session.features();
-        let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
-        let sets = mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu));
         let place = |set: &Vec<_>| set.iter().position(|mode: &&Mode| mode.slug == pointed.mode);
+        let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
+        let sets = if pointed.is_number {
+            // The set that the inspector draws, so that both need the same pipelines.
+            mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu))
+        } else {
+            // A pipeline of one mode is built in a fraction of the time.
+            with_data.filter(|mode| mode.slug == pointed.mode).map(|mode| vec![mode]).collect()
+        };
         let Some((set, place)) = sets.into_iter().find_map(|set| place(&set).map(|place| (set, place))) else {
             self.progress = Progress::Failed;
             return Ok(None);

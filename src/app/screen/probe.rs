@@ -73,13 +73,11 @@ impl Screen {
         Some(Readout { side, ..readout })
     }
 
-    /// The pixel under the mouse, if its mode shows colors for numbers.
+    /// The pixel under the mouse, if its value can be read in 32 bits.
     pub(super) fn pointed_number(&self, viewer: &Viewer) -> Option<Pointed> {
         let of_cell = self.cells.iter().find_map(|cell| cell.view.probe);
-        let (x, y) = of_cell.or(self.view.probe).filter(|_| self.mouse.over)?;
-        let state = self.pointed_at(viewer)?;
-        let mode = state.mode().filter(|mode| mode.numbers.is_some())?;
-        Some(Pointed { mode: mode.slug.clone(), at: [x, y], size: state.size })
+        let at = of_cell.or(self.view.probe).filter(|_| self.mouse.over)?;
+        Pointed::new(self.pointed_at(viewer)?, at)
     }
 
     /// The state of the picture under the mouse: that of a cell of the grid, or of the selected mode.

@@ -47,7 +47,7 @@ pub struct Args {
     /// Write a full turn of N frames: a video (.mp4), an animation (.webp, .gif) or numbered .png files. 25 frames per second without --fps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     turntable: Option<u32>,
-    /// What a turntable rotates
+    /// Whether a turntable turns the camera, the light or the model
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
     turn: Turn,
     /// Keep running, and render again whenever a shader or the model is saved

@@ -1,0 +1,76 @@
+//! Numbers that the palette asks for.
+
+use super::entries::{Action, Entry};
+use crate::app::numbers::{Number, Scale};
+use crate::settings::{Settings, ShaderValue};
+
+/// A number that the palette asks for.
+#[derive(Clone, Debug)]
+pub(super) struct Ask {
+    pub(super) title: String,
+    pub(super) group: &'static str,
+    pub(super) doc: String,
+    pub(super) scale: Scale,
+    /// The present value.
+    pub(super) now: f64,
+    pub(super) target: Target,
+}
+
+/// Where a number is.
+#[derive(Clone)]
+pub(super) enum Target {
+    Setting(Number),
+    /// A parameter or constant of the shaders; `true` for a whole number.
+    Shader(String, bool),
+}
+
+impl std::fmt::Debug for Target {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Setting(number) => formatter.write_str(&number.path()),
+            Self::Shader(name, _) => formatter.write_str(name),
+        }
+    }
+}
+
+impl Ask {
+    pub(super) fn of_setting(number: &Number, settings: &mut Settings) -> Self {
+        Self {
+            title: number.title(),
+            group: number.group(),
+            doc: number.doc.to_owned(),
+            scale: number.scale(),
+            now: number.get(settings),
+            target: Target::Setting(number.clone()),
+        }
+    }
+
+    pub(super) fn entry(self) -> Entry {
+        let (group, title, key) = (self.group, self.title.clone(), self.scale.text(self.now));
+        let words = match &self.target {
+            // The index of a light in its path is not the number in its name.
+            Target::Setting(number) => number.path().rsplit('.').next().unwrap_or_default().to_owned(),
+            Target::Shader(name, _) => name.clone(),
+        };
+        Entry { words, key, ..Entry::new(group, title, Action::Number(Box::new(self))) }
+    }
+
+    /// The same number with another value.
+    pub(super) fn with(&self, now: f64) -> Self {
+        Self { now, ..self.clone() }
+    }
+
+    /// Sets the number to its present value.
+    pub(super) fn set(&self, settings: &mut Settings) {
+        let value = self.now;
+        match &self.target {
+            Target::Setting(number) => number.set(settings, value),
+            Target::Shader(name, true) => {
+                settings.shader.insert(name.clone(), ShaderValue::Int(value.round() as i64));
+            }
+            Target::Shader(name, false) => {
+                settings.shader.insert(name.clone(), ShaderValue::Float(value));
+            }
+        }
+    }
+}
