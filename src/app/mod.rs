@@ -31,6 +31,7 @@ mod stages;
 mod status;
 mod timing;
 mod viewer;
+mod widgets;
 
 use std::path::PathBuf;
 use std::sync::Arc;

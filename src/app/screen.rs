@@ -29,9 +29,9 @@ use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use super::input::Mouse;
-use super::panels;
 use super::timing::CpuTimes;
 use super::viewer::Viewer;
+use super::widgets;
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::render::tools::Outline;
@@ -141,7 +141,7 @@ impl Screen {
         let (display, handle) = handles.map_err(|e| GpuError::NoDevice(format!("the window has no handle: {e}")))?;
         let surface = Surface::new(gpu, display, handle)?;
         let egui = egui::Context::default();
-        panels::theme::apply(&egui);
+        widgets::theme::apply(&egui);
         let input = egui_winit::State::new(
             egui.clone(),
             egui::ViewportId::ROOT,

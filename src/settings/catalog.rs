@@ -1,6 +1,8 @@
 //! The list of all settings with what each takes, for `specula help set` and for messages.
 
+use std::collections::HashMap;
 use std::ops::RangeInclusive;
+use std::sync::LazyLock;
 
 use clap::ValueEnum;
 
@@ -155,9 +157,9 @@ pub(super) fn names(path: &str) -> Vec<String> {
 /// Smallest and largest value of a number, or of each of its components; `None` when it has no limits or no such
 /// setting exists.
 pub fn limits(path: &str) -> Option<RangeInclusive<f32>> {
-    let settings = Settings::default();
-    let of = |path: &str| settings.ranges().into_iter().find(|range| range.path == path).map(|range| range.limits);
-    of(path).or_else(|| of(&format!("{path}.0")))
+    static LIMITS: LazyLock<HashMap<String, RangeInclusive<f32>>> =
+        LazyLock::new(|| Settings::default().ranges().into_iter().map(|range| (range.path, range.limits)).collect());
+    LIMITS.get(path).or_else(|| LIMITS.get(&format!("{path}.0"))).cloned()
 }
 
 /// Limits in words: `0 to 1`.

@@ -4,7 +4,7 @@ use image::{Rgba, RgbaImage};
 
 use crate::support::window::Viewer;
 
-/// Text and frames of errors, as `src/app/panels/theme.rs` has them.
+/// Text and frames of errors, as `src/app/widgets/theme.rs` has them.
 pub(super) const ERROR: [u8; 3] = [255, 110, 100];
 /// Links and marked letters.
 pub(super) const ACCENT: [u8; 3] = [240, 166, 60];

@@ -4,7 +4,7 @@ use super::controls::count;
 use crate::support::Tree;
 use crate::support::window::Viewer;
 
-/// The outline, as `src/app/panels/theme.rs` has it.
+/// The outline, as `src/app/widgets/theme.rs` has it.
 const SELECTION: [u8; 3] = [255, 160, 48];
 
 #[test]

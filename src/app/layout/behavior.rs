@@ -9,7 +9,7 @@ use egui_tiles::{
 };
 
 use super::{Panel, SIMPLIFY};
-use crate::app::panels::theme::{ACCENT, EDGE, PANEL, QUIET};
+use crate::app::widgets::theme::{ACCENT, EDGE, PANEL, QUIET};
 
 /// Space between two tiles, in points.
 pub(super) const GAP: f32 = 2.0;

@@ -161,7 +161,7 @@ fn handles_lie_only_between_the_picture_and_panels() {
 #[test]
 fn the_active_tab_shows_its_whole_title() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
-    crate::app::panels::theme::apply(&egui);
+    crate::app::widgets::theme::apply(&egui);
     for panel in Panel::GROUPS.concat() {
         layout.open(panel);
         // The second frame has the widths of the first.

@@ -12,8 +12,8 @@ use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 use serde::Serialize;
 
 use super::command::Command;
-use super::panels::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
 use super::viewer::Viewer;
+use super::widgets::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
 use crate::message::did_you_mean;
 use crate::shader::Expression;
 use act::act;

@@ -6,7 +6,7 @@ use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, FontId, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::search::Found;
-use crate::app::panels::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT, small_mono_font};
+use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT, small_mono_font};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 22.0;

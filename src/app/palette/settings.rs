@@ -4,8 +4,8 @@ use clap::ValueEnum;
 
 use super::entries::{Action, Entry, switch};
 use crate::app::command::Command;
-use crate::app::panels::rows::choice_name;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::rows::choice_name;
 use crate::settings::{Channels, Colormap, LightSource, Settings, Tonemap};
 
 /// An entry that sets a setting of the command line.

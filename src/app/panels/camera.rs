@@ -2,11 +2,11 @@
 
 use egui::{Button, Label, Response, RichText, Ui};
 
-use super::rows::{Row, Value as _, drag, heading, number, option_text, set_option};
-use super::spoken::named;
 use super::{ACCENT, QUIET};
 use crate::app::command::{Command, Side};
 use crate::app::numbers::{FIELD_OF_VIEW, Scale};
+use crate::app::widgets::rows::{Row, Value as _, drag, heading, number, option_text, set_option};
+use crate::app::widgets::spoken::named;
 use crate::scene::{CameraView, Model};
 use crate::settings::{CameraSettings, Settings};
 

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use egui::{Align, Button, Checkbox, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
 use super::QUIET;
-use super::check_box;
-use super::rows::{Row, elided, heading};
 use crate::app::command::Command;
 use crate::app::control::Captures;
+use crate::app::widgets::check_box;
+use crate::app::widgets::rows::{Row, elided, heading};
 use crate::capture::Turn;
 use crate::control::{Capture, Request, Sheet, Timeline, Turntable};
 use crate::picture::numbered_as;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use super::rows::{Row, check, choose, number, set_option, setting};
 use crate::app::numbers::{BLUR, INTENSITY, ROTATION};
+use crate::app::widgets::rows::{Row, check, choose, number, set_option, setting};
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{EnvironmentSettings, Settings, ViewSettings};

@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
-use super::rows::elided;
-use super::spoken::named;
 use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::difference::{Kind, Line};
-use crate::app::panels::theme::small_mono;
 use crate::app::source_line::SourceLine;
 use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::small_mono;
 use crate::settings::Settings;
 use crate::shader::Expression;
 use crate::shader::expression::MODE;

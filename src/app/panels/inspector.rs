@@ -9,13 +9,13 @@ mod values;
 
 use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
-use super::check_box;
-use super::rows::{choose, elided};
-use super::search::{self, Words};
-use super::theme::{ACCENT, QUIET};
 use crate::app::command::Command;
 use crate::app::inspector::{Inspector, Page, text};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::check_box;
+use crate::app::widgets::rows::{choose, elided};
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::{ACCENT, QUIET};
 
 /// Radius of the marker of the pinned pixel, points.
 const MARKER: f32 = 5.0;

@@ -2,9 +2,9 @@
 
 use egui::{Key, Label, RichText, Ui, Window, vec2};
 
-use super::search::{self, Words};
-use super::theme::hide_hover_texts;
 use super::{ACCENT, QUIET};
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::hide_hover_texts;
 
 /// Keys and what they do, in short; assets/manual/window.md says more.
 const KEYS: &[(&str, &str)] = &[

@@ -9,7 +9,7 @@ use crate::app::command::Command;
 use crate::app::learn::{LearnCommand, Learning};
 use crate::shader::{Diagnostic, Severity};
 
-use super::theme::{ACCENT, ERROR, GOOD, QUIET};
+use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET};
 use crate::learn::exercises;
 
 /// Shows the panel.
@@ -91,7 +91,7 @@ fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
         for exercise in exercises() {
             let is_open = learning.exercise.is_some_and(|open| open.number == exercise.number);
             let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::click());
-            super::spoken::button(&response, &exercise.title);
+            crate::app::widgets::spoken::button(&response, &exercise.title);
             let record = learning.progress.of(exercise);
             let color = if record.solved { GOOD } else { QUIET };
             let (center, radius) = (rect.center(), if is_open { 6.0 } else { 4.5 });

@@ -3,10 +3,10 @@
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use super::rows::{check, choose, color, heading, number, setting};
 use crate::app::command::Command;
 use crate::app::numbers::{AMBIENT, ORBIT, RECTANGLE, SPIN};
 use crate::app::selection::{LightId, Selected};
+use crate::app::widgets::rows::{check, choose, color, heading, number, setting};
 use crate::settings::{LightSettings, LightSource, RectLight, Settings};
 
 /// Shows the panel. `in_model` is the number of lights in the model.

@@ -3,7 +3,6 @@
 
 mod camera;
 mod capture;
-mod check_box;
 mod environment;
 pub(super) mod expression;
 mod inspector;
@@ -17,16 +16,12 @@ mod output;
 pub(super) mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
-pub(super) mod rows;
 pub(super) mod scene;
-mod search;
 mod shaders;
-mod spoken;
 mod status_bar;
 #[cfg(test)]
 mod tests;
 pub(super) mod texture;
-pub(super) mod theme;
 pub(super) mod timeline;
 mod timing;
 mod top_bar;
@@ -46,11 +41,11 @@ use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
+use super::widgets::theme::{self, ACCENT, EDGE, ERROR, QUIET, WARNING};
 use crate::frame::Limits;
 use crate::render::Survey;
 use crate::settings::Colormap;
 use crate::shader::Mode;
-use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
-use super::check_box;
-use super::rows::{Row, check, choose, color, heading, number, setting};
 use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
 use crate::app::numbers::{DIRECTION, MATERIAL, TRANSFORM};
 use crate::app::viewer::ModelStatus;
+use crate::app::widgets::check_box;
+use crate::app::widgets::rows::{Row, check, choose, color, heading, number, setting};
 use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialChannel, MaterialOverride, ModelSettings, Settings};
 

@@ -5,12 +5,12 @@ mod tile;
 
 use egui::{RichText, Ui, vec2};
 
-use super::search::{self, Words};
-use super::spoken::named;
-use super::theme::{icon, small_mono};
 use super::{PanelState, QUIET};
 use crate::app::gallery::GalleryState;
 use crate::app::grid::Grid;
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::{icon, small_mono};
 use crate::shader::ShaderSet;
 use crate::shader::annotation::{Mode, listed};
 

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use egui::{Align2, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
 use egui::{TextureOptions, pos2, vec2};
 
-use super::search::{self, Words};
-use super::theme::{ACCENT, EDGE, QUIET, body_font};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::recent::Kind;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, body_font};
 use crate::scene::{BUILT_IN, BuiltInPictures, built_in_pictures, environment};
 use crate::threads::Message;
 
@@ -176,7 +176,7 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
                 let color = if *is_shown { ACCENT.color() } else { ui.visuals().text_color() };
                 let at = pos2(area.left() + 2.0, area.bottom() + NAME / 2.0);
                 ui.painter().text(at, Align2::LEFT_CENTER, name, body_font(), color);
-                super::spoken::button(&response, name);
+                crate::app::widgets::spoken::button(&response, name);
                 if response.on_hover_text(option).clicked() {
                     clicked = Some(*name);
                 }

@@ -6,9 +6,9 @@ use clap::ValueEnum as _;
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use super::rows::{Row, check, choice_name, choose, number, setting};
 use crate::app::command::Command;
 use crate::app::numbers::EXPOSURE;
+use crate::app::widgets::rows::{Row, check, choice_name, choose, number, setting};
 use crate::settings::{Settings, Tonemap, ViewSettings};
 
 /// Shows the panel. `shows_histogram`: whether the legend over the picture has the histogram of its values.

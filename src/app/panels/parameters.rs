@@ -8,9 +8,9 @@ use egui::{Response, RichText, Ui};
 
 use super::QUIET;
 use super::passes::is_of_pass;
-use super::rows::{self, Row, edit_number, heading, set_option, short};
-use super::search;
 use crate::app::numbers::{component, of_constant, of_parameter};
+use crate::app::widgets::rows::{self, Row, edit_number, heading, set_option, short};
+use crate::app::widgets::search;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;

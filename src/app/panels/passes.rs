@@ -7,9 +7,9 @@ use egui::{CollapsingHeader, RichText, Ui};
 
 use super::QUIET;
 use super::parameters::{is_true, show_constant, show_parameter};
-use super::rows::{Row, check, set_option};
-use super::search::{self, Words};
 use crate::app::playback::Playback;
+use crate::app::widgets::rows::{Row, check, set_option};
+use crate::app::widgets::search::{self, Words};
 use crate::settings::Settings;
 use crate::shader::annotation::pass::{MODEL, Target};
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, TreePath, embedded};

@@ -8,13 +8,13 @@ mod stages;
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::rows::elided;
 use super::{ACCENT, ERROR, QUIET, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::shader_log::reached;
 use crate::app::status::ShaderStatus;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::rows::elided;
 use crate::events::ReloadEvent;
 use crate::shader::{Diagnostic, Severity};
 pub(super) use stages::short_figures;

@@ -2,11 +2,11 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::rows::elided;
-use super::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use super::{plural, shaders};
 use crate::app::stages::StageRow;
 use crate::app::status::ShaderStatus;
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use crate::shader::{Diagnostic, Severity};
 
 /// Height in points.

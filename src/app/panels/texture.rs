@@ -5,10 +5,10 @@ use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::QUIET;
 use super::scene::tree::textures;
-use super::search;
-use crate::app::panels::theme::small_mono_font;
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::search;
+use crate::app::widgets::theme::small_mono_font;
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};

@@ -4,13 +4,13 @@ pub(super) mod comparison;
 
 use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 
-use super::rows::elided;
-use super::search::{self, Words};
-use super::theme::{ACCENT, GOOD, QUIET, TEXT, small_mono};
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
 use crate::app::viewer::{Version, Viewer};
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::{ACCENT, GOOD, QUIET, TEXT, small_mono};
 
 /// Size of a thumbnail in points.
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);

@@ -6,10 +6,10 @@ mod table;
 
 use egui::{Grid, Label, RichText, Ui};
 
-use super::rows::elided;
-use super::theme::{GOOD, QUIET, WARNING};
 use crate::app::timing::MemoryClock;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 use crate::gpu::MemoryUse;
 use crate::pipeline::grouped;
 

@@ -2,14 +2,15 @@
 
 use egui::{Button, Checkbox, RichText, Ui, vec2};
 
-use super::check_box;
-use super::spoken::named;
-use super::theme::{BAR, QUIET, icon, small_mono};
-use super::{PanelState, theme};
+use super::PanelState;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Layout, Panel, Preset};
 use crate::app::recent::Kind;
+use crate::app::widgets::check_box;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme;
+use crate::app::widgets::theme::{BAR, QUIET, icon, small_mono};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 30.0;

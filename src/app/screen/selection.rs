@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::panels::theme::SELECTION;
 use crate::app::selection::stands_out;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::SELECTION;
 use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
 use crate::render::tools::{Outline, OutlineStyle};

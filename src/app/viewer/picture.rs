@@ -239,7 +239,7 @@ pub(in crate::app) fn readout(
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
     let mode = state.mode().filter(|_| covered)?;
     let [value, unit] = texts(mode, value, exact);
-    Some(Readout { side: None, value, unit, at: *at })
+    Some(Readout { side: None, value: value.trim_start().to_owned(), unit, at: *at })
 }
 
 /// A pixel's value and its unit: see [`readout`].

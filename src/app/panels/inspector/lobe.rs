@@ -3,11 +3,11 @@
 
 use egui::{RichText, Sense, Ui, vec2};
 
-use super::super::theme::{ERROR, QUIET, WARNING};
 use super::plot::{PARTS, Pair, albedo, polar};
 use super::solid;
 use crate::app::inspector::directions::Directions;
 use crate::app::inspector::{Asked, Reading, Shown};
+use crate::app::widgets::theme::{ERROR, QUIET, WARNING};
 use crate::measure::{Curves, Material};
 
 /// Height of the lobe in space, points.

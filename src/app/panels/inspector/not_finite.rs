@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, Sense, Ui};
 
-use super::super::rows::elided;
-use super::super::theme::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::inspector::NotFiniteSearch;
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 use crate::shader::not_finite::ELSEWHERE;
 use crate::shader::{FirstNotFinite, Site};
 

@@ -3,9 +3,9 @@
 use egui::{Align2, Color32, Grid, Response, RichText, Stroke, Ui};
 use egui_plot::{Arrows, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
 
-use super::super::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
 use super::lobe::luminance;
 use crate::app::inspector::directions::Directions;
+use crate::app::widgets::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
 use crate::measure::{Curves, Lobe, Material};
 
 /// Lines of the grid.

@@ -4,10 +4,10 @@ use egui::epaint::{Mesh, Vertex};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::super::theme::{ACCENT, WARNING, small_font};
 use super::lobe::luminance;
 use super::plot::GRID;
 use crate::app::inspector::directions::Directions;
+use crate::app::widgets::theme::{ACCENT, WARNING, small_font};
 use crate::measure::Hemisphere;
 
 /// Angle of the view above the horizon, degrees, at most and at least.

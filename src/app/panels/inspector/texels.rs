@@ -3,13 +3,13 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::super::theme::{ACCENT, EDGE, QUIET, small_font, small_mono_font};
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
-use crate::app::panels::search::Words;
-use crate::app::panels::spoken;
 use crate::app::selection::Selected;
+use crate::app::widgets::search::Words;
+use crate::app::widgets::spoken;
+use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, small_font, small_mono_font};
 use crate::render::Texel;
 
 /// Shows a row for each texture that has the words of the search.

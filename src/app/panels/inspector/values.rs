@@ -3,12 +3,12 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::super::rows::option_text;
-use super::super::theme::{ACCENT, EDGE, ERROR, QUIET, small_font, small_mono_font};
 use crate::app::inspector::{Reading, text};
 use crate::app::panels::modes::text_of;
-use crate::app::panels::search::Words;
-use crate::app::panels::spoken;
+use crate::app::widgets::rows::option_text;
+use crate::app::widgets::search::Words;
+use crate::app::widgets::spoken;
+use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, QUIET, small_font, small_mono_font};
 use crate::shader::{Mode, PixelValue};
 
 /// Height of a row, points.

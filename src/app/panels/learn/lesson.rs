@@ -6,7 +6,7 @@ use super::mark;
 use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
-use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
+use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
 
 /// Shows the exercise. `is_broken`: the newest edit does not compile.

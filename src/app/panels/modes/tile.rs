@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CornerRadius, Rect, Response, Sense, Stroke, StrokeK
 
 use crate::app::gallery::GalleryState;
 use crate::app::panels::QUIET;
-use crate::app::panels::theme::{ACCENT, EDGE, LINE, small_font, small_mono_font};
+use crate::app::widgets::theme::{ACCENT, EDGE, LINE, small_font, small_mono_font};
 use crate::shader::Mode;
 
 /// The smallest width of a tile, points.
@@ -42,7 +42,7 @@ pub(super) fn show(
 ) -> Response {
     let size = gallery.size;
     let (rect, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click());
-    crate::app::panels::spoken::button(&response, &mode.name);
+    crate::app::widgets::spoken::button(&response, &mode.name);
     if !ui.is_rect_visible(rect) {
         return response;
     }

@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use egui::{DragValue, Ui};
 
-use crate::app::panels::rows::{Value, check, choice_name, choose, setting};
-use crate::app::panels::spoken::named;
+use crate::app::widgets::rows::{Value, check, choice_name, choose, setting};
+use crate::app::widgets::spoken::named;
 use crate::settings::{Channels, Colormap, Settings, ViewRange, ViewSettings};
 
 impl Value for ViewRange {

@@ -5,8 +5,8 @@ use egui::{
 };
 
 use crate::app::panels::ACCENT;
-use crate::app::panels::theme::small_font;
 use crate::app::viewer::{Compare, Difference, Viewer};
+use crate::app::widgets::theme::small_font;
 
 /// Width of the strip that the mouse takes hold of, in points.
 const GRIP: f32 = 16.0;

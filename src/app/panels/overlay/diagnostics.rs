@@ -9,7 +9,7 @@ use super::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::panels::plural;
-use crate::app::panels::theme::{ERROR, QUIET, STRONG, TEXT, WARNING};
+use crate::app::widgets::theme::{ERROR, QUIET, STRONG, TEXT, WARNING};
 use crate::shader::{Diagnostic, Severity};
 
 /// Whether the files of the diagnostics exist. The disk is asked once for each file, not in each frame.

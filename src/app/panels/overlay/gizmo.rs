@@ -4,9 +4,9 @@
 use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use crate::app::panels::theme::{SELECTION, small_font, small_mono_font};
 use crate::app::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{SELECTION, small_font, small_mono_font};
 use crate::scene::{Bounds, CameraView, Light, light_direction, ray};
 use crate::settings::{LightSettings, LightSource};
 

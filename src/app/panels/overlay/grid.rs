@@ -4,8 +4,8 @@ use egui::{Align2, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
 use crate::app::grid::{GAP, places};
 use crate::app::panels::PanelState;
-use crate::app::panels::theme::{ACCENT, CARD, EDGE, PANEL, STRONG, small_font};
 use crate::app::screen::PictureRect;
+use crate::app::widgets::theme::{ACCENT, CARD, EDGE, PANEL, STRONG, small_font};
 use crate::session::Session;
 
 /// Shows the names over the picture, below cards.

@@ -6,8 +6,8 @@ use super::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::learn::LearnCommand;
-use crate::app::panels::theme::{ACCENT, QUIET};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::learn::exercises;
 
 /// Shows the card while the hint is not dismissed.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Align2, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use crate::app::panels::theme::{CARD, TEXT, small_font};
+use crate::app::widgets::theme::{CARD, TEXT, small_font};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
 use crate::settings::CameraSettings;
 

@@ -5,10 +5,10 @@ use clap::ValueEnum as _;
 use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::{swatches, wrapped};
-use crate::app::panels::rows::choice_name;
-use crate::app::panels::spoken::named;
-use crate::app::panels::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::app::panels::{LegendOf, Readout};
+use crate::app::widgets::rows::choice_name;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};

@@ -17,10 +17,10 @@ use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margi
 use egui::{TextStyle, Ui};
 
 use super::inspector::marker;
-use super::theme::{CARD, LINE};
 use super::{Readings, WARNING};
 use crate::app::command::Command;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{CARD, LINE};
 use diagnostics::Shown;
 pub(super) use gizmo::Gizmo;
 pub(super) use labels::Labels;

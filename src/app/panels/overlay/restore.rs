@@ -4,8 +4,8 @@ use egui::{Align2, Id, Rect, RichText};
 
 use super::{area, card};
 use crate::app::command::Command;
-use crate::app::panels::theme::{ACCENT, QUIET};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{ACCENT, QUIET};
 
 /// Shows the offer over the picture, until the user answers or begins something else.
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Color32, Rect, Rgba, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
-use crate::app::panels::theme::small_font;
+use crate::app::widgets::theme::small_font;
 use crate::frame::Scene;
 use crate::shader::{Mode, Numbers, ShaderSet, TreePath, embedded};
 

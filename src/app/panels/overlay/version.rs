@@ -5,8 +5,8 @@ use egui::{Align2, Id, Rect, RichText};
 use super::{area, card};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
-use crate::app::panels::theme::{ACCENT, QUIET};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{ACCENT, QUIET};
 
 /// Shows the card over the picture while an older version is shown.
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {

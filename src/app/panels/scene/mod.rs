@@ -8,11 +8,11 @@ pub(super) mod tree;
 use egui::{RichText, ScrollArea, Ui};
 
 use super::QUIET;
-use super::search::{self, Words};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::search::{self, Words};
 use tree::Tree;
 
 /// Height of the part about the selection at first, points.

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::app::panels::plural;
-use crate::app::panels::search::Words;
 use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::widgets::search::Words;
 use crate::frame::Scene;
 use crate::scene::{LightKind, Model, TextureSource};
 

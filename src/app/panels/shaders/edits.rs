@@ -2,10 +2,10 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::super::rows::elided;
 use super::super::{ERROR, QUIET};
 use super::lines;
 use crate::app::shader_log::{ShaderLog, reached};
+use crate::app::widgets::rows::elided;
 use crate::events::in_short;
 
 /// Height of a line, in points.

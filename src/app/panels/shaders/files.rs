@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, CursorIcon, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
-use super::super::theme::{ACCENT, ERROR, QUIET, WARNING, body_font, small_font};
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::panels::search::{self, Words};
-use crate::app::panels::spoken;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::spoken;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, WARNING, body_font, small_font};
 use crate::shader::{IncludeGraph, Severity, ShaderSet, TreePath};
 
 /// Height of a row, in points.

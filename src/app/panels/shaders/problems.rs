@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
-use super::super::rows::elided;
-use super::super::search::{self, Words};
 use super::super::{ACCENT, ERROR, QUIET, WARNING, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::search::{self, Words};
 use crate::shader::{Diagnostic, Severity};
 
 /// Height of a line, in points.

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use egui::{Checkbox, Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
-use super::super::check_box;
-use super::super::rows::elided;
-use super::super::theme::{ERROR, GOOD, QUIET, WARNING};
 use crate::app::stages::{StageRow, StageState};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::check_box;
+use crate::app::widgets::rows::elided;
+use crate::app::widgets::theme::{ERROR, GOOD, QUIET, WARNING};
 use crate::pipeline::{Figure, all_statistics, grouped};
 
 /// A list narrower than this has two lines for each stage, in points.

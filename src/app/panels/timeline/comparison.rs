@@ -4,11 +4,11 @@ use egui::{Label, RichText, TextWrapMode, Ui};
 
 use crate::app::command::{Command, CompareWith};
 use crate::app::dialog::Dialog;
-use crate::app::panels::search;
-use crate::app::panels::spoken::named;
-use crate::app::panels::theme::QUIET;
 use crate::app::panels::timeline::{ENTRIES, monospace};
 use crate::app::viewer::{Compare, Difference};
+use crate::app::widgets::search;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::QUIET;
 
 /// The meaning of the numbers of a comparison.
 const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different the pictures look to a viewer who flips between \

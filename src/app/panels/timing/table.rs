@@ -2,9 +2,9 @@
 
 use egui::{Grid, RichText, Sense, Ui, vec2};
 
-use super::super::theme::{GOOD, QUIET, WARNING};
 use super::graph;
 use crate::app::timing::Timing;
+use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 
 /// Size of the history of a pass, in points.
 const HISTORY: egui::Vec2 = vec2(60.0, 12.0);

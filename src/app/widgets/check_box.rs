@@ -10,7 +10,7 @@ const RADIUS: u8 = 2;
 const MARK: f32 = 1.6;
 
 /// Shows a check box.
-pub(super) fn show(ui: &mut Ui, check_box: Checkbox<'_>) -> Response {
+pub(in crate::app) fn show(ui: &mut Ui, check_box: Checkbox<'_>) -> Response {
     ui.scope(|ui| {
         let widgets = &mut ui.visuals_mut().widgets;
         let [inactive, hovered, active] = [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active];

@@ -2,18 +2,17 @@
 
 use egui::{Response, RichText, TextEdit, Ui};
 
-use super::QUIET;
 use super::spoken::named;
-use super::theme::icon;
+use super::theme::{QUIET, icon};
 
 /// Up to this many entries need no search.
-pub(super) const FEW: usize = 5;
+pub(in crate::app) const FEW: usize = 5;
 /// Width of the button that empties the field, with the gap before it, in points.
 const CLEAR: f32 = 24.0;
 
 /// The words that an entry must have.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Words {
+pub(in crate::app) struct Words {
     /// As the user typed them.
     typed: String,
     /// In small letters.
@@ -21,30 +20,30 @@ pub(super) struct Words {
 }
 
 impl Words {
-    pub(super) fn new(typed: &str) -> Self {
+    pub(in crate::app) fn new(typed: &str) -> Self {
         let words = typed.to_lowercase().split_whitespace().map(str::to_owned).collect();
         Self { typed: typed.trim().to_owned(), words }
     }
 
     /// Whether every entry has them.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::app) fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
 
     /// Whether `text` has all of them, in letters of any case.
-    pub(super) fn are_in(&self, text: &str) -> bool {
+    pub(in crate::app) fn are_in(&self, text: &str) -> bool {
         let text = if self.is_empty() { String::new() } else { text.to_lowercase() };
         self.words.iter().all(|word| text.contains(word))
     }
 
     /// Says that no entry of a list of `noun`s has the words.
-    pub(super) fn no_match(&self, ui: &mut Ui, noun: &str) {
+    pub(in crate::app) fn no_match(&self, ui: &mut Ui, noun: &str) {
         ui.label(RichText::new(format!("No {noun} matches \"{}\".", self.typed)).small().color(QUIET));
     }
 }
 
 /// Shows the field with its button, and leaves `beside` points of the row to the caller. `what` the list has, such as "modes".
-pub(super) fn field(ui: &mut Ui, text: &mut String, what: &str, beside: f32) -> Response {
+pub(in crate::app) fn field(ui: &mut Ui, text: &mut String, what: &str, beside: f32) -> Response {
     let mut row = |ui: &mut Ui| {
         // The button comes one frame after the first letter, when the field has made room for it.
         let has_button = !text.is_empty();
@@ -63,7 +62,7 @@ pub(super) fn field(ui: &mut Ui, text: &mut String, what: &str, beside: f32) -> 
 }
 
 /// Shows the field above a list with this many entries, unless they are few. Returns its words.
-pub(super) fn above(ui: &mut Ui, text: &mut String, what: &str, entries: usize) -> Words {
+pub(in crate::app) fn above(ui: &mut Ui, text: &mut String, what: &str, entries: usize) -> Words {
     if entries <= FEW {
         return Words::default();
     }
@@ -72,7 +71,7 @@ pub(super) fn above(ui: &mut Ui, text: &mut String, what: &str, entries: usize) 
 }
 
 /// The same for a panel without a state: egui keeps the text.
-pub(super) fn above_kept(ui: &mut Ui, what: &str, entries: usize) -> Words {
+pub(in crate::app) fn above_kept(ui: &mut Ui, what: &str, entries: usize) -> Words {
     let id = ui.id().with(("search", what));
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     let words = above(ui, &mut text, what, entries);

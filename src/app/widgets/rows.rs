@@ -32,26 +32,26 @@ const REFUSAL_S: f64 = 4.0;
 const SHORTEST: f32 = 36.0;
 
 /// A row without its control.
-pub(super) struct Row<'a> {
-    pub(super) name: &'a str,
+pub(in crate::app) struct Row<'a> {
+    pub(in crate::app) name: &'a str,
     /// Meaning of the setting; may be empty.
-    pub(super) doc: &'a str,
+    pub(in crate::app) doc: &'a str,
     /// Option of the command line that sets the present value; empty if there is none.
-    pub(super) option: String,
+    pub(in crate::app) option: String,
     /// Whether the value differs from the default.
-    pub(super) is_changed: bool,
+    pub(in crate::app) is_changed: bool,
     /// Whether it belongs to the row above.
-    pub(super) is_indented: bool,
+    pub(in crate::app) is_indented: bool,
 }
 
 impl Row<'_> {
     /// Shows the row with its control. Returns whether the user resets the setting.
-    pub(super) fn show(self, ui: &mut Ui, control: impl FnOnce(&mut Ui) -> Response) -> bool {
+    pub(in crate::app) fn show(self, ui: &mut Ui, control: impl FnOnce(&mut Ui) -> Response) -> bool {
         self.show_with(ui, control, |_| {})
     }
 
     /// The same with more in the menu of the name.
-    pub(super) fn show_with(
+    pub(in crate::app) fn show_with(
         self,
         ui: &mut Ui,
         control: impl FnOnce(&mut Ui) -> Response,
@@ -125,24 +125,24 @@ fn name_width(row: f32, gap: f32) -> f32 {
 }
 
 /// An option of the command line. The font of the other texts shows two hyphens as one dash.
-pub(super) fn option_text(option: &str) -> RichText {
+pub(in crate::app) fn option_text(option: &str) -> RichText {
     small_mono(option)
 }
 
 /// A text in one line that ends with an ellipsis where there is no room, for a widget that has a hover text: egui's own hover text
 /// would stand beside it.
-pub(super) fn elided(text: impl Into<egui::WidgetText>) -> Label {
+pub(in crate::app) fn elided(text: impl Into<egui::WidgetText>) -> Label {
     Label::new(text).truncate().show_tooltip_when_elided(false)
 }
 
 /// A heading above rows.
-pub(super) fn heading(ui: &mut Ui, text: &str) {
+pub(in crate::app) fn heading(ui: &mut Ui, text: &str) {
     ui.add_space(4.0);
     ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(false));
 }
 
 /// A value of a setting as `--set` takes it.
-pub(super) trait Value: PartialEq {
+pub(in crate::app) trait Value: PartialEq {
     fn text(&self) -> String;
 }
 
@@ -188,12 +188,12 @@ pub(in crate::app) fn choice_name(value: &impl clap::ValueEnum) -> String {
 }
 
 /// A number with at most four decimals.
-pub(super) fn short(number: f64) -> String {
+pub(in crate::app) fn short(number: f64) -> String {
     ((number * 1e4).round() / 1e4).to_string()
 }
 
 /// `--set PATH=VALUE`, in the quotes that a shell needs.
-pub(super) fn set_option(path: &str, value: &str) -> String {
+pub(in crate::app) fn set_option(path: &str, value: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._-/,:+%@=".contains(c);
     let value =
         if value.chars().all(is_plain) { value.to_owned() } else { format!("'{}'", value.replace('\'', r"'\''")) };
@@ -201,7 +201,7 @@ pub(super) fn set_option(path: &str, value: &str) -> String {
 }
 
 /// Shows the row of a setting: `value` at `path` of the settings, with this default.
-pub(super) fn setting<T: Value>(
+pub(in crate::app) fn setting<T: Value>(
     ui: &mut Ui,
     (name, doc, path): (&str, &str, &str),
     value: &mut T,
@@ -216,7 +216,7 @@ pub(super) fn setting<T: Value>(
 }
 
 /// Shows the row of a number of the settings.
-pub(super) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
+pub(in crate::app) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
     let (before, default) = (number.get(settings), number.get(&mut Settings::of_window()));
     let (path, scale) = (number.path(), number.scale());
     let row = Row {
@@ -237,7 +237,7 @@ pub(super) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
 }
 
 /// A slider with its number, or the number alone where there is no room or no range.
-pub(super) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, scale: &Scale) -> Response {
+pub(in crate::app) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, scale: &Scale) -> Response {
     let gap = ui.spacing().item_spacing.x;
     let rail = ui.available_width() - VALUE - gap;
     let Some((low, high)) = scale.slider.filter(|_| rail >= SHORTEST) else {
@@ -266,7 +266,7 @@ pub(super) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, scale: &Sca
 }
 
 /// A number that is dragged or typed, of this width in points.
-pub(super) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: f32) -> Response {
+pub(in crate::app) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: f32) -> Response {
     let (low, high) = scale.limits;
     // A drag over 200 points covers the range of the slider.
     let speed = scale.slider.map_or(0.01, |(low, high)| (high - low) / 200.0);
@@ -297,7 +297,7 @@ fn refusal(response: &Response, refused: Option<String>) {
 }
 
 /// A list of choices as wide as the rest of the row.
-pub(super) fn choose(
+pub(in crate::app) fn choose(
     ui: &mut Ui,
     id: &str,
     shown: impl Into<egui::WidgetText>,
@@ -308,7 +308,7 @@ pub(super) fn choose(
 }
 
 /// A check box.
-pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
+pub(in crate::app) fn check(ui: &mut Ui, on: &mut bool) -> Response {
     let response = check_box::show(ui, Checkbox::without_text(on));
     // egui gives a box without text an empty name, which would hide that of the row.
     ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
@@ -316,7 +316,7 @@ pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
 }
 
 /// A color picker for linear RGB.
-pub(super) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
+pub(in crate::app) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
     // The picker rounds the color that it is given, also while nobody uses it.
     let mut edited = *linear;
     let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);

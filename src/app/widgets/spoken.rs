@@ -3,12 +3,12 @@
 use egui::{Response, WidgetInfo, WidgetType};
 
 /// Names something that is drawn by hand and can be clicked.
-pub(super) fn button(response: &Response, name: &str) {
+pub(in crate::app) fn button(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, response.enabled(), name));
 }
 
 /// Names a control of egui's that has no text, or a symbol in it.
-pub(super) fn named(response: Response, name: &str) -> Response {
+pub(in crate::app) fn named(response: Response, name: &str) -> Response {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
     response
 }
