@@ -1,7 +1,11 @@
 //! The gallery of modes: its thumbnails follow edits, stay through errors, and let the window rest.
 
-use image::RgbaImage;
+use std::collections::HashSet;
 
+use image::RgbaImage;
+use serde_json::json;
+
+use crate::NDF;
 use crate::support::Tree;
 use crate::support::window::Viewer;
 
@@ -37,5 +41,30 @@ fn thumbnails_follow_edits_stay_through_errors_and_let_the_window_rest() {
     viewer.until_screen("the first thumbnails", |screen| first_row(screen) == before);
 
     viewer.running.rests();
+    viewer.quit();
+}
+
+/// How many colors the newest and the second thumbnail of the timeline have, in a window of 1000 x 700 pixels with the panels of Compare.
+fn colors_of_versions(screen: &RgbaImage) -> [usize; 2] {
+    let colors = |left: u32| {
+        let pixels = (left..left + 110).flat_map(|x| (550..610).map(move |y| screen.get_pixel(x, y).0));
+        pixels.collect::<HashSet<_>>().len()
+    };
+    [colors(16), colors(208)]
+}
+
+/// The device may finish a thumbnail while a frame is drawn, and nothing may follow that frame.
+#[test]
+fn the_thumbnail_of_an_edit_appears_though_nothing_moves() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "1000x700", "sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({"command": "run", "entry": "Layout: Compare"}));
+    viewer.until_screen("the first thumbnail", |screen| colors_of_versions(screen)[0] > 100);
+
+    let original = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &original.replace("alpha * alpha;", "alpha;"));
+    viewer.until_screen("the second thumbnail", |screen| colors_of_versions(screen).iter().all(|count| *count > 100));
+    viewer.running.rests();
+    viewer.running.end_input();
     viewer.quit();
 }

@@ -91,7 +91,6 @@ impl Screen {
                 return Ok(Next::Frame);
             }
             wait = self.draw_background(viewer, self.egui.pixels_per_point())?;
-            wait = wait.into_iter().chain(left(self.shows_at())).min();
         }
         Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
     }
@@ -124,8 +123,8 @@ impl Screen {
         self.background.is_unseen = false;
     }
 
-    /// Draws thumbnails and values of pixels that are out of date. Returns the time until they need the next frame, or `None`. A lack of
-    /// memory drops them.
+    /// Draws thumbnails and values of pixels that are out of date. Returns the time until they or results that no frame has shown need the
+    /// next frame, or `None`. A lack of memory drops them.
     ///
     /// # Errors
     /// A device error other than out of memory.
@@ -151,7 +150,9 @@ impl Screen {
             self.shortage = None;
         }
         // The frame that follows shows the results.
-        Ok(self.time_to_poll().or_else(|| waits.into_iter().flatten().flatten().min()))
+        let wait = self.time_to_poll().or_else(|| waits.into_iter().flatten().flatten().min());
+        let shows = self.shows_at().map(|at| at.saturating_duration_since(Instant::now()));
+        Ok(wait.into_iter().chain(shows).min())
     }
 
     fn record_background(

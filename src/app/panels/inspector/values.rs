@@ -35,11 +35,12 @@ pub(super) fn show(
         modes.iter().partition(|mode| reading.value(&mode.slug).is_some() || !has_feature(mode));
     let found: Vec<&Mode> = read.into_iter().filter(|mode| is_found(mode)).collect();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if modes.iter().all(|mode| reading.value(&mode.slug).is_none()) {
+            ui.label(RichText::new("Reading the pixel…").small().color(QUIET));
+            return;
+        }
         if found.is_empty() {
-            match words.is_empty() {
-                true => drop(ui.label(RichText::new("Reading the pixel…").small().color(QUIET))),
-                false => words.no_match(ui, "value"),
-            }
+            words.no_match(ui, "value");
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut more = Some(more);

@@ -4,9 +4,8 @@ use egui::{
     Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2,
 };
 
-use crate::app::panels::ACCENT;
 use crate::app::viewer::{Compare, Difference, Viewer};
-use crate::app::widgets::theme::small_font;
+use crate::app::widgets::theme::{PICTURE_ACCENT, small_font};
 
 /// Width of the strip that the mouse takes hold of, in points.
 const GRIP: f32 = 16.0;
@@ -38,7 +37,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
         egui.request_repaint();
     }
     let is_active = response.hovered() || response.dragged();
-    let (stroke, center) = (Stroke::new(if is_active { 2.0 } else { 1.0 }, ACCENT), strip.center());
+    let (stroke, center) = (Stroke::new(if is_active { 2.0 } else { 1.0 }, PICTURE_ACCENT), strip.center());
     painter.vline(center.x, picture.y_range(), stroke);
     painter.circle(center, MARK, Color32::from_black_alpha(190), stroke);
     for side in [-1.0, 1.0] {
