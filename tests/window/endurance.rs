@@ -26,9 +26,9 @@ fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&m
     let early = viewer.running.usage();
     (steps / 5..steps).for_each(|number| step(viewer, number));
     let mut late = viewer.running.usage();
-    // A thread that has sent its result may still be ending.
+    // A thread that has sent its result may still be ending, and a file may be written at the moment.
     let deadline = Instant::now() + PATIENCE;
-    while late.threads > early.threads && Instant::now() < deadline {
+    while (late.threads > early.threads || late.files > early.files) && Instant::now() < deadline {
         std::thread::sleep(Duration::from_millis(10));
         late = viewer.running.usage();
     }
