@@ -1,4 +1,4 @@
-//! What all panels are made of: rows of a name and its control, the search of lists, check boxes, the theme, and words for screen readers.
+//! The parts that all panels share: rows of a name and its control, the search of lists, check boxes, the theme, and words for screen readers.
 
 pub(in crate::app) mod check_box;
 pub(in crate::app) mod rows;

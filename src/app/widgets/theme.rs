@@ -74,7 +74,7 @@ pub(in crate::app) const QUIET: Tone = Tone::new(0x98a0aa, 0x565e68);
 pub(in crate::app) const ACCENT: Tone = Tone::new(0xf0a63c, 0x915400);
 /// Behind what is chosen.
 const SELECTED: Tone = Tone::new(0x5a411a, 0xf5d9ab);
-/// What can be chosen or dragged over the picture, in both themes.
+/// Handles over the picture, in both themes.
 pub(in crate::app) const PICTURE_ACCENT: Color32 = Color32::from_rgb(0xf0, 0xa6, 0x3c);
 /// Around what is selected in the picture, in both themes.
 pub(in crate::app) const SELECTION: Color32 = Color32::from_rgb(255, 160, 48);
