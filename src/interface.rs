@@ -5,6 +5,7 @@
 //!
 //! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
 
+mod access;
 mod blocks;
 mod constants;
 mod print;
@@ -13,6 +14,7 @@ mod textures;
 use std::mem::offset_of;
 use std::ops::Range;
 
+pub use access::{INSTANCES, Resource, StageRole, table as access_table};
 pub use blocks::{
     BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
     TracedTriangle, Vertex, block,

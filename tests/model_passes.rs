@@ -277,10 +277,14 @@ fn quads_are_drawn_where_a_compute_pass_puts_them() {
         assert!(told.contains(expected), "{told}");
         session.save(path, &good);
     };
-    let material = squares.replace("#version 460", "#version 460\n#include \"material/material.glsl\"");
-    refuse("passes/squares.frag", &material, "the pass `squares` draws quads, which have no");
+    // Of an included file only what is called counts.
+    let own = squares.replace(" to=picture", " format=r32f");
+    let included = own.replace("#version 460", "#version 460\n#include \"material/material.glsl\"");
+    let material = included.replace("void main() {", "void main() { if (material.id == 7u) discard;");
+    let expected = "passes/squares.frag reads `material` here: a pass that draws quads has no material";
+    refuse("passes/squares.frag", &material, expected);
     let reads_model = vertex.replace("index = float", "index = draw.vertices.at[0].uv0.x + float");
-    let expected = "squares.vert:8:13: error: the pass `squares` draws quads, which have no vertices of the model";
+    let expected = "squares.vert:8:13: error: passes/squares.vert reads `draw` here: a pass that draws quads has no draw constants";
     refuse("passes/squares.vert", &reads_model, expected);
 }
 

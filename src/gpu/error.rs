@@ -56,6 +56,16 @@ pub enum GpuError {
     /// A pipeline needs a stage that the shader tree does not have.
     #[error("the shader tree has no {0}")]
     NoStage(String),
+    /// A stage reads a resource that nothing binds for it. The contract check refuses such stages before, with their line.
+    #[error("{stage} reads what {role} does not have: {resource}")]
+    Unbound {
+        /// Path of the stage.
+        stage: String,
+        /// What the stage is run for.
+        role: &'static str,
+        /// The resource.
+        resource: &'static str,
+    },
     /// A stage reads more textures than the device has.
     #[error("{0}")]
     Texture(String),

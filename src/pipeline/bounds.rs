@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use crate::gpu::{Gpu, GpuError, ShaderModule, Uses, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
+use crate::shader::contract::access::resource_of;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
+use crate::shader::spirv::reach::reached;
 use crate::shader::spirv::uses::{used_bindings, used_bytes};
 use crate::shader::spirv::{optimize, specialize_several};
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
@@ -101,6 +103,7 @@ fn bounded_module(
         frame_bindings: used_bindings(&words, interface::SET_FRAME),
         frame_bytes: used_bytes(&words, interface::SET_FRAME, interface::BINDING_FRAME),
         pass_bindings: used_bindings(&words, interface::SET_PASS),
+        resources: reached(&words).into_iter().filter_map(resource_of).collect(),
     };
     ShaderModule::optimized(gpu, path, (&words, specialized), is_bounded && stores, uses)
 }

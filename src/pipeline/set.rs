@@ -14,6 +14,7 @@ use crate::gpu::{
     ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
     ShaderModule, Specialization, vk,
 };
+use crate::interface::StageRole;
 use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::{Input, Inputs, Part};
@@ -278,13 +279,13 @@ impl PipelineSet {
 
     /// A compute pipeline, created at its first use.
     pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
-        self.compute_with(path, constants, |_| Ok(None))
+        self.compute_with(path, constants, StageRole::of_compute(path), |_| Ok(None))
     }
 
     /// The pipeline of a compute pass, created at its first use.
     fn compute_pass(&self, pass: &GraphPass, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
         let layout = |module: &ShaderModule| self.layout(&pass.inputs, &[module], false).map(Some);
-        self.compute_with(&pass.note.stage, constants, layout).map_err(|error| of_pass(pass, error))
+        self.compute_with(&pass.note.stage, constants, pass.role(), layout).map_err(|error| of_pass(pass, error))
     }
 
     /// The layout for these inputs, as far as the modules read them.
@@ -313,6 +314,7 @@ impl PipelineSet {
         &self,
         path: &str,
         constants: &Specialization,
+        role: StageRole,
         layout: impl FnOnce(&ShaderModule) -> Result<Option<Arc<PassLayout>>, GpuError>,
     ) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
@@ -322,6 +324,7 @@ impl PipelineSet {
             return Ok(pipeline.clone());
         }
         let module = shader_module(&self.gpu, self.stage(path)?, constants, false)?;
+        check_bound(&module, role)?;
         let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout(&module)?)?;
         lock(&self.computes).insert(key, pipeline.clone(), number);
         Ok(pipeline)
@@ -347,6 +350,7 @@ impl PipelineSet {
         };
         let front: Vec<_> = front.iter().map(|(flag, module)| (*flag, &**module)).collect();
         let modules: Vec<&ShaderModule> = front.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
+        modules.iter().try_for_each(|module| check_bound(module, pass.role()))?;
         let layout = self.layout(&pass.inputs, &modules, pass.note.draws_model());
         let layout = layout.map_err(|error| of_pass(pass, error))?;
         let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
@@ -377,6 +381,16 @@ fn flag_of(kind: StageKind) -> vk::ShaderStageFlags {
         StageKind::Mesh => S::MESH_EXT,
         StageKind::Fragment => S::FRAGMENT,
         StageKind::Compute => S::COMPUTE,
+    }
+}
+
+/// Refuses a module that reads a resource which nothing binds: the driver would crash, or read 0.
+fn check_bound(module: &ShaderModule, role: StageRole) -> Result<(), GpuError> {
+    match module.uses.resources.iter().find(|resource| !role.binds(**resource)) {
+        None => Ok(()),
+        Some(resource) => {
+            Err(GpuError::Unbound { stage: module.name.clone(), role: role.name(), resource: resource.name() })
+        }
     }
 }
 

@@ -137,7 +137,7 @@ impl PipelineRequest {
     /// The pipeline that adds a frame to the mean, in an accumulating mode.
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.part == Part::Mean)?;
-        Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, Vec::new()))
+        Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, self.constants.clone()))
     }
 
     /// The pipelines of a pass that is none of the built-in steps: one for each material if it draws the model, none for a

@@ -21,7 +21,8 @@ pub(super) const MAIN: &CStr = c"main";
 pub struct ShaderModule {
     gpu: Arc<Gpu>,
     pub(super) raw: vk::ShaderModule,
-    pub(super) name: String,
+    /// Path of its stage.
+    pub name: String,
     pub(super) names_loops: bool,
     /// Its size, and that of the module before Specula's optimizer, in words.
     words: usize,

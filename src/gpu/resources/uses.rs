@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use crate::interface::Resource;
+
 /// The descriptors that the functions of a module use, or those of all modules of a pipeline. What a module only declares
 /// does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -13,6 +15,8 @@ pub struct Uses {
     pub frame_bytes: Vec<Range<usize>>,
     /// Bindings in `interface::SET_PASS`.
     pub pass_bindings: BTreeSet<u32>,
+    /// What the entry points reach.
+    pub resources: BTreeSet<Resource>,
 }
 
 impl Uses {
@@ -23,6 +27,7 @@ impl Uses {
             frame_bindings: &self.frame_bindings | &other.frame_bindings,
             frame_bytes: [&*self.frame_bytes, &*other.frame_bytes].concat(),
             pass_bindings: &self.pass_bindings | &other.pass_bindings,
+            resources: &self.resources | &other.resources,
         }
     }
 

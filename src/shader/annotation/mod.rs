@@ -73,7 +73,8 @@ impl Annotations {
     }
 }
 
-/// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules.
+/// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules. `is_whole`: `files` are all of the
+/// tree, so that the constant of a `when=` must be among them.
 ///
 /// # Errors
 /// Annotations that do not parse, duplicate names, slugs or ids, and a `//@ui` on a declaration that no module has.
@@ -81,6 +82,7 @@ pub fn read<'p>(
     snapshot: &Snapshot<'_>,
     files: impl IntoIterator<Item = &'p TreePath>,
     modules: &[&Reflection],
+    is_whole: bool,
 ) -> Result<Annotations, Vec<Diagnostic>> {
     let mut out = Annotations::default();
     let mut errors = Vec::new();
@@ -132,7 +134,7 @@ pub fn read<'p>(
         let place = places.remove(&(pair[1].file.clone(), pair[1].line)).unwrap_or_default();
         errors.push(place.error_at(&pair[1].name, message).with_note(note));
     }
-    errors.extend(out.parameters.iter().filter_map(|parameter| {
+    errors.extend(out.parameters.iter().filter(|_| is_whole).filter_map(|parameter| {
         let message = out.unknown_constant(parameter.when.as_deref()?)?;
         let place = places.get(&(parameter.file.clone(), parameter.line))?;
         Some(place.error_at("when=", message))

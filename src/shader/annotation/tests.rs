@@ -12,7 +12,7 @@ fn read_text(text: &str) -> Result<Annotations, Vec<Diagnostic>> {
     let snapshot = Snapshot::new(&source);
     let compiled = Compiler::new().unwrap().compile(&snapshot, &"m.frag".into());
     let reflection = Reflection::of(&compiled.result.unwrap());
-    read(&snapshot, &compiled.dependencies, &[&reflection])
+    read(&snapshot, &compiled.dependencies, &[&reflection], true)
 }
 
 #[track_caller]

@@ -157,7 +157,7 @@ impl Compiler {
     pub fn warm(&self) {
         let trivial = "#version 460\nvoid main() {}\n";
         for kind in [StageKind::Fragment, StageKind::Vertex] {
-            if let Ok(options) = options(kind, trivial) {
+            if let Ok(options) = options(kind) {
                 let _ = self.shaderc.compile_into_spirv(trivial, kind.shaderc(), "warm", "main", Some(&options));
             }
         }
@@ -168,7 +168,7 @@ impl Compiler {
     /// # Errors
     /// The compiler's log.
     pub fn compile_alone(&self, name: &str, text: &str, kind: StageKind) -> Result<Vec<u32>, String> {
-        let options = options(kind, text).map_err(|error| error.to_string())?;
+        let options = options(kind).map_err(|error| error.to_string())?;
         let compiled = self.shaderc.compile_into_spirv(text, kind.shaderc(), name, "main", Some(&options));
         compiled.map(|compiled| compiled.as_binary().to_vec()).map_err(|error| error.to_string())
     }
@@ -209,7 +209,7 @@ impl Compiler {
         let text = snapshot.read(stage).ok()?;
         let includes = Includes::new(snapshot, stage.clone());
         let kind = StageKind::of(stage)?;
-        let mut options = options(kind, &text).ok()?;
+        let mut options = options(kind).ok()?;
         if with_lines {
             options.set_generate_debug_info();
         }
@@ -244,7 +244,7 @@ impl Compiler {
     fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
         let start = Instant::now();
         let includes = Includes::new(snapshot, path.clone());
-        let outcome = options(kind, text).and_then(|options| self.run(options, &includes, path, text, kind));
+        let outcome = options(kind).and_then(|options| self.run(options, &includes, path, text, kind));
         let ms = start.elapsed().as_secs_f64() * 1e3;
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
@@ -279,9 +279,7 @@ impl Compiler {
         match self.shaderc.compile_into_spirv(text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
-                if reads_by_name(kind, text) {
-                    assign_set(&mut words, SET_PASS, kind.first_binding(), &includes.unbound());
-                }
+                assign_set(&mut words, SET_PASS, kind.first_binding(), &includes.unbound());
                 Ok((words, artifact.get_warning_messages()))
             }
             Err(shaderc::Error::CompilationError(_, log)) => Err(log),
@@ -341,11 +339,6 @@ fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) 
     files.iter().filter_map(check).collect()
 }
 
-/// Whether a stage declares images and buffers by name alone: all but the compute stages that bake.
-pub fn reads_by_name(kind: StageKind, text: &str) -> bool {
-    kind != StageKind::Compute || declares_pass(text)
-}
-
 /// Whether the text of a stage declares a pass.
 pub fn declares_pass(text: &str) -> bool {
     text.contains("//@pass")
@@ -355,8 +348,9 @@ pub fn declares_pass(text: &str) -> bool {
 /// The macro that compute shaders are compiled with, so that a file that they share with other stages can tell.
 const COMPUTE_STAGE: &str = "COMPUTE_STAGE";
 
-/// Compile options for a stage: unoptimized, which is five times faster and keeps the names that reflection needs.
-fn options<'a>(kind: StageKind, stage: &str) -> Result<CompileOptions<'a>, String> {
+/// Compile options for a stage: unoptimized, which is five times faster and keeps the names that reflection needs. What a text
+/// declares by name alone gets a binding, which [`assign_set`] replaces.
+fn options<'a>(kind: StageKind) -> Result<CompileOptions<'a>, String> {
     let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
     options.set_target_spirv(SpirvVersion::V1_5);
@@ -364,8 +358,6 @@ fn options<'a>(kind: StageKind, stage: &str) -> Result<CompileOptions<'a>, Strin
     if kind == StageKind::Compute {
         options.add_macro_definition(COMPUTE_STAGE, None);
     }
-    if reads_by_name(kind, stage) {
-        options.set_auto_bind_uniforms(true);
-    }
+    options.set_auto_bind_uniforms(true);
     Ok(options)
 }

@@ -1,6 +1,7 @@
 //! Checks compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both
 //! sides.
 
+pub mod access;
 mod capability;
 
 use std::collections::BTreeSet;
@@ -8,7 +9,7 @@ use std::ops::Range;
 
 use crate::interface::{self, BindingKind, block};
 
-use crate::shader::compile::{StageKind, declares_pass, reads_by_name};
+use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -67,12 +68,8 @@ impl Texts<'_> {
 /// Checks one stage against the contract.
 pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    // `graph` checks what a stage declares by name, and what its libraries declare.
-    let by_name = match StageKind::of(texts.stage) {
-        None => true,
-        Some(kind) => texts.snapshot.read(texts.stage).is_ok_and(|text| reads_by_name(kind, &text)),
-    };
-    for descriptor in reflection.descriptors.iter().filter(|found| !by_name || found.set != interface::SET_PASS) {
+    // `graph` checks what a stage declares by name.
+    for descriptor in reflection.descriptors.iter().filter(|found| found.set != interface::SET_PASS) {
         out.extend(check_descriptor(descriptor, texts));
     }
     if let Some(block) = &reflection.push_constants {

@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::annotation::Annotations;
 use super::annotation::pass::{MODEL, PassNote};
+use super::annotation::{Annotations, PATHS_STAGE};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
@@ -26,7 +26,7 @@ use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::primitive::Primitive;
 use super::spirv::reflect::Reflection;
-use crate::interface::VERTEX_BINDINGS;
+use crate::interface::{StageRole, VERTEX_BINDINGS};
 use contradiction::contradiction;
 pub use inputs::read_later;
 pub use pre_rasterization::{MeshStages, PreRasterization, at_main, stage_beside, unlike_neighbors};
@@ -119,6 +119,17 @@ impl GraphPass {
     pub fn stages(&self) -> impl Iterator<Item = &str> {
         let front = (!self.is_compute).then(|| self.front.stages());
         front.into_iter().flatten().chain([self.note.stage.as_str()])
+    }
+
+    /// What its stages are run for.
+    pub fn role(&self) -> StageRole {
+        match () {
+            () if self.is_compute => StageRole::Compute,
+            () if self.note.quads => StageRole::Quads,
+            () if self.note.stage == PATHS_STAGE => StageRole::Paths,
+            () if self.note.model.is_some() => StageRole::Model,
+            () => StageRole::Screen,
+        }
     }
 
     /// Whether this is its name or that of one of its images.

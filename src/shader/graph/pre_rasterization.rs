@@ -7,11 +7,9 @@ use serde::Serialize;
 use super::{FULL_SCREEN, PassStage};
 use crate::shader::annotation::pass::PassNote;
 use crate::shader::compile::StageKind;
-use crate::shader::compile::include::files_of;
-use crate::shader::contract::{INTERFACE_FILE, Texts, check_pair};
+use crate::shader::contract::{Texts, check_pair};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{Line, lines};
 use crate::shader::source::{SourceError, TreePath};
 use crate::shader::spirv::primitive::Primitive;
 
@@ -229,40 +227,7 @@ fn check_quads(
         let help = "gl_VertexIndex is 0 to 5, the corners of two triangles; gl_InstanceIndex is the number of the quad";
         return Err(Box::new(note.place.error_at("draw=", message).with_help(help)));
     }
-    let stages = StageKind::PRE_RASTERIZATION.map(|kind| stage_beside(&note.stage, kind));
-    let stages = stages.into_iter().filter(|path| exists(path, snapshot)).chain([note.stage.clone()]);
-    let files: BTreeSet<TreePath> =
-        stages.flat_map(|stage| files_of(snapshot, &TreePath::from(stage.as_str()))).collect();
-    match files.iter().filter(|path| path.as_str() != INTERFACE_FILE).find_map(|path| reads_mesh(path, name, snapshot))
-    {
-        Some(error) => Err(Box::new(error)),
-        None => Ok(()),
-    }
-}
-
-/// An error about the first line of a file that reads what a quad lacks: vertices in memory, whose address is 0, and a material, whose
-/// descriptors are not bound. `name`: the pass.
-fn reads_mesh(path: &TreePath, name: &str, snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
-    const WORDS: [(&str, &str); 3] = [
-        ("draw.vertices", "have no vertices of the model"),
-        ("draw.indices", "have no vertices of the model"),
-        ("material.", "have no material"),
-    ];
-    let text = snapshot.read(path).ok()?;
-    let found = |line: Line<'_>| {
-        let find = |(word, lack): &(&str, &'static str)| {
-            let at = line.code.match_indices(word).map(|(at, _)| at).find(|at| {
-                !line.code[..*at].ends_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '"'))
-            })?;
-            Some((at..at + word.len(), *lack))
-        };
-        let (at, lack) = WORDS.iter().find_map(find).filter(|_| !line.code.trim_start().starts_with("#include"))?;
-        let error =
-            Diagnostic::error(snapshot.display_path(path), format!("the pass `{name}` draws quads, which {lack}"));
-        let help = "place the corner gl_VertexIndex of the quad gl_InstanceIndex, and color it, without this file";
-        Some(error.on_line(line.number, Some(line.raw)).under(at).with_help(help))
-    };
-    lines(&text).into_iter().find_map(found)
+    Ok(())
 }
 
 /// An error about a stage whose other half of the tessellation is missing.

@@ -7,8 +7,11 @@ use super::passes::modes_of;
 use super::slot::Slot;
 use super::watched::is_watched;
 use super::{Library, Report, ShaderSet, Stage, Update};
+use crate::interface::StageRole;
 use crate::shader::annotation::{self, Annotations};
+use crate::shader::compile::StageKind;
 use crate::shader::compile::include::files_of;
+use crate::shader::contract::access::{Run, check_access};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
 use crate::shader::expression;
@@ -83,7 +86,7 @@ impl Library {
         let goods = goods.map(|built| (&built.stage.path, &*built.stage));
         let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
         let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
-        let mut annotations = annotation::read(snapshot, files, &reflections).map_err(|errors| {
+        let mut annotations = annotation::read(snapshot, files, &reflections, !self.is_part).map_err(|errors| {
             // Without one of the built-in passes, what its files declare is unknown, and other files may need it.
             let missing = self.missing_passes(snapshot);
             if missing.is_empty() { errors } else { missing }
@@ -104,6 +107,10 @@ impl Library {
         let graph = Graph::new(&annotations, &declared, snapshot)?;
         let pairs = |pass: &Arc<GraphPass>| unlike_stages(pass, &declared);
         let errors: Vec<Diagnostic> = graph.passes.iter().flat_map(pairs).collect();
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let errors = check_access(runs(&graph, &declared, &modules), &self.compiler);
         if !errors.is_empty() {
             return Err(errors);
         }
@@ -157,6 +164,25 @@ impl Library {
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
+}
+
+/// The stages among `compiled`, each with what it is run for. A stage of several passes appears once for each role.
+fn runs<'a>(
+    graph: &Graph,
+    declared: &'a BTreeMap<String, PassStage<'a>>,
+    compiled: &BTreeMap<&TreePath, &Stage>,
+) -> Vec<Run<'a>> {
+    let of_passes = graph.passes.iter().flat_map(|pass| pass.stages().map(|path| (path.to_owned(), pass.role())));
+    let mut roles: BTreeSet<(String, StageRole)> = of_passes.collect();
+    let is_alone = |path: &str| !graph.passes.iter().any(|pass| pass.stages().any(|stage| stage == path));
+    let alone = declared.iter().filter(|(path, stage)| stage.kind == StageKind::Compute && is_alone(path));
+    roles.extend(alone.map(|(path, _)| (path.clone(), StageRole::of_compute(path))));
+    let is_new = |path: &str| compiled.keys().any(|known| known.as_str() == path);
+    let run = |(path, role): (String, StageRole)| {
+        let stage = declared.get(&path).filter(|_| is_new(&path))?;
+        Some(Run { role, reflection: stage.reflection, texts: stage.texts })
+    };
+    roles.into_iter().filter_map(run).collect()
 }
 
 /// Warnings about members of a pass's own uniform block that nothing sets.

@@ -139,6 +139,8 @@ pub struct Library {
     relink: bool,
     /// The expression that is shown over the model.
     watched: Option<Watched>,
+    /// Whether the source holds a part of a tree, so that annotations may name what is in other files.
+    is_part: bool,
 }
 
 impl Library {
@@ -147,8 +149,13 @@ impl Library {
         let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
         let (fixed, beside) = (slots.len(), BTreeSet::new());
-        let (set, failed, relink, watched) = (None, false, false, None);
-        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched }
+        let (set, failed, relink, watched, is_part) = (None, false, false, None, false);
+        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched, is_part }
+    }
+
+    /// A library whose source holds a part of a tree: the constants that `when=` names may be in other files.
+    pub fn of_part(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
+        Self { is_part: true, ..Self::new(source, compiler, stages) }
     }
 
     /// The tree.

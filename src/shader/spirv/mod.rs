@@ -11,6 +11,7 @@ mod opcode;
 mod operands;
 mod optimize;
 pub mod primitive;
+pub mod reach;
 pub mod reflect;
 mod specialize;
 mod types;

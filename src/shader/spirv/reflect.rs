@@ -3,12 +3,15 @@
 //! Expects modules compiled by glslang at -O0, with names and with every declared global, used or not. Skips malformed
 //! words instead of panicking; the contract check then reports what is missing.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
-use crate::interface::BindingKind;
+use crate::interface::{self, BindingKind};
 
 use super::declared::Module;
 use super::primitive::Primitive;
+use super::reach::{Used, reached};
+use super::uses::used_bytes;
 
 /// One member of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,6 +116,10 @@ pub struct Reflection {
     pub capabilities: Vec<u32>,
     /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.
     pub local_size: [u32; 3],
+    /// What the entry point reaches of the descriptors and push constants.
+    pub reached: BTreeSet<Used>,
+    /// The bytes that the stage may read of the block `Params`.
+    pub params_read: Vec<Range<usize>>,
     /// The largest numbers of vertices and primitives that a workgroup of a mesh stage gives.
     pub mesh_outputs: [u32; 2],
     /// Whether the stage is a task stage with a message for mesh stages (`taskPayloadSharedEXT`), or a mesh stage that takes one.
@@ -130,7 +137,13 @@ pub struct Reflection {
 impl Reflection {
     /// Reflects a module.
     pub fn of(spirv: &[u32]) -> Self {
-        Module::parse(spirv).reflect()
+        let reached = reached(spirv);
+        let reads_params = reached.contains(&Used::Descriptor(interface::SET_FRAME, interface::BINDING_PARAMS));
+        let params_read = match reads_params {
+            true => used_bytes(spirv, interface::SET_FRAME, interface::BINDING_PARAMS),
+            false => Vec::new(),
+        };
+        Self { reached, params_read, ..Module::parse(spirv).reflect() }
     }
 
     /// The descriptor with this set and binding.

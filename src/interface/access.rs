@@ -1,0 +1,212 @@
+//! Which resources are bound for which stages.
+//!
+//! A stage that reads a resource which nothing binds for it would read 0 or crash the driver. [`StageRole::binds`] says what is
+//! bound; the contract check refuses everything else at its line, and `pipeline` refuses a module that slipped through.
+
+use std::fmt::Write as _;
+
+use super::{SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK};
+
+/// The blocks of the contract that shaders read by the name of an instance.
+pub const INSTANCES: [(&str, &str); 4] =
+    [("Frame", "frame"), ("Material", "material"), ("Task", "task"), ("Draw", "draw")];
+
+/// What a stage is run for. This decides which resources are bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum StageRole {
+    /// A stage that draws the model: the picture, debug modes, passes with `draw=model`.
+    Model,
+    /// `paths.frag`: draws the model and traces rays through it.
+    Paths,
+    /// A stage of a pass with `draw=quads`.
+    Quads,
+    /// A stage that covers an image: the background, the tone map, the accumulation, passes.
+    Screen,
+    /// A compute pass.
+    Compute,
+    /// A compute stage that bakes light or BRDF tables.
+    Bake,
+    /// A compute stage of `specula brdf` and of the inspector.
+    Measure,
+}
+
+/// A resource of the contract, or a group of resources that are bound together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Resource {
+    /// The block `Params`.
+    Params,
+    /// The block `Frame`.
+    Frame,
+    /// The lights.
+    Lights,
+    /// The block `Material` and its textures.
+    Material,
+    /// The push constants `Draw`.
+    Draw,
+    /// The environment's cube map, its prefiltered levels and its irradiance.
+    Environment,
+    /// The BRDF's tables: albedo, linearly transformed cosines, measured data.
+    Tables,
+    /// The scene that rays are traced through.
+    Scene,
+    /// Images, textures, buffers and blocks that a stage declares by name.
+    Pass,
+    /// The parameters, inputs and outputs of a bake.
+    Task,
+}
+
+impl StageRole {
+    /// Every role, in the order of the documentation.
+    pub const ALL: [Self; 7] =
+        [Self::Model, Self::Paths, Self::Quads, Self::Screen, Self::Compute, Self::Bake, Self::Measure];
+
+    /// The role of a compute stage that no pass declares, by its path.
+    pub fn of_compute(path: &str) -> Self {
+        if path.starts_with("measure/") { Self::Measure } else { Self::Bake }
+    }
+
+    /// Whether the resource is bound with its values wherever such a stage runs.
+    pub fn binds(self, resource: Resource) -> bool {
+        let is_compute = matches!(self, Self::Bake | Self::Measure);
+        match resource {
+            Resource::Params => true,
+            Resource::Frame | Resource::Lights | Resource::Environment | Resource::Pass => !is_compute,
+            Resource::Tables => self != Self::Bake,
+            Resource::Material | Resource::Draw => matches!(self, Self::Model | Self::Paths),
+            Resource::Scene => self == Self::Paths,
+            Resource::Task => is_compute,
+        }
+    }
+
+    /// The stage in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Model => "a stage that draws the model",
+            Self::Paths => "the path tracer",
+            Self::Quads => "a pass that draws quads",
+            Self::Screen => "a stage that covers an image",
+            Self::Compute => "a compute pass",
+            Self::Bake => "a bake",
+            Self::Measure => "a measurement of the BRDF",
+        }
+    }
+
+    /// The stage as the head of a column in the documentation.
+    fn column(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Paths => "paths.frag",
+            Self::Quads => "draw=quads",
+            Self::Screen => "full screen",
+            Self::Compute => ".comp pass",
+            Self::Bake => "ibl/",
+            Self::Measure => "measure/",
+        }
+    }
+}
+
+impl Resource {
+    /// Every resource, in the order of the documentation.
+    pub const ALL: [Self; 10] = [
+        Self::Params,
+        Self::Frame,
+        Self::Lights,
+        Self::Material,
+        Self::Draw,
+        Self::Environment,
+        Self::Tables,
+        Self::Scene,
+        Self::Pass,
+        Self::Task,
+    ];
+
+    /// The resource at a place of the contract. `None` for a descriptor that Specula itself adds to stages.
+    pub fn at(set: u32, binding: u32) -> Option<Self> {
+        match (set, binding) {
+            (SET_FRAME, super::BINDING_FRAME) => Some(Self::Frame),
+            (SET_FRAME, super::BINDING_LIGHTS) => Some(Self::Lights),
+            (SET_FRAME, super::BINDING_PARAMS) => Some(Self::Params),
+            (SET_FRAME, 3..=6) => Some(Self::Environment),
+            (SET_FRAME, 7..=10 | 12 | 13) => Some(Self::Tables),
+            (SET_FRAME, 14..=19) => Some(Self::Scene),
+            (SET_MATERIAL, _) => Some(Self::Material),
+            (SET_PASS, _) => Some(Self::Pass),
+            (SET_TASK, binding) if !super::LOOPS.contains(&(SET_TASK, binding)) => Some(Self::Task),
+            _ => None,
+        }
+    }
+
+    /// The resource in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Params => "parameters",
+            Self::Frame => "frame constants",
+            Self::Lights => "lights",
+            Self::Material => "material",
+            Self::Draw => "draw constants",
+            Self::Environment => "environment",
+            Self::Tables => "BRDF tables",
+            Self::Scene => "scene to trace",
+            Self::Pass => "images, textures, buffers or blocks of a pass",
+            Self::Task => "task of a bake",
+        }
+    }
+
+    /// The resource as the head of a row in the documentation.
+    fn row(self) -> &'static str {
+        match self {
+            Self::Params => "members of `Params` (`user/params.glsl`)",
+            Self::Frame => "`frame.*`",
+            Self::Lights => "`lights[]`",
+            Self::Material => "`material.*` and its textures",
+            Self::Draw => "`draw.*`",
+            Self::Environment => "the environment's images (`lighting/environment_map.glsl`)",
+            Self::Tables => "BRDF tables, measured BRDF (`brdf/energy/dfg.glsl`, `brdf/measured.glsl`)",
+            Self::Scene => "the traced scene (`paths/scene.glsl`)",
+            Self::Pass => "images of passes, `//@texture`, buffers, blocks of one's own",
+            Self::Task => "`task.*`",
+        }
+    }
+}
+
+/// The table of resources and stages, in Markdown: part of `shaders/README.md`.
+pub fn table() -> String {
+    let mut out = String::from("| read in |");
+    let mut rule = String::from("|---|");
+    for role in StageRole::ALL {
+        // A `String` takes everything.
+        let _ = write!(out, " {} |", role.column());
+        rule.push_str("---|");
+    }
+    let constants = std::iter::repeat_n(" works |", StageRole::ALL.len()).collect::<String>();
+    let _ = write!(out, "\n{rule}\n| constants with `//@ui` |{constants}\n");
+    for resource in Resource::ALL {
+        let _ = write!(out, "| {} |", resource.row());
+        for role in StageRole::ALL {
+            out.push_str(if role.binds(resource) { " works |" } else { " refused |" });
+        }
+        out.push('\n');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interface::{BINDINGS, LOOPS};
+
+    #[test]
+    fn every_binding_belongs_to_a_resource() {
+        for binding in BINDINGS {
+            let is_added = LOOPS.contains(&(binding.set, binding.binding)) || binding.name == "BINDING_UNUSED";
+            assert_eq!(Resource::at(binding.set, binding.binding).is_none(), is_added, "{}", binding.name);
+        }
+    }
+
+    #[test]
+    fn every_resource_is_bound_somewhere() {
+        for resource in Resource::ALL {
+            assert!(StageRole::ALL.iter().any(|role| role.binds(resource)), "{resource:?}");
+        }
+    }
+}
