@@ -9,7 +9,7 @@ use bytemuck::{Pod, Zeroable};
 pub use curves::{Curves, Hemisphere, Material, prepare};
 
 use crate::frame::stages::MEASURE_STAGES;
-use crate::frame::{PipelineRequest, TablesKey, TargetFormat};
+use crate::frame::{BakeValues, PipelineRequest, TablesKey, TargetFormat};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::pipeline::PipelineSet;
@@ -177,11 +177,12 @@ impl Bench {
     fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {
         let request = request(settings, &shared.set.shaders);
         shared.set.build(&request)?;
-        let tables = Tables::bake(&shared.set, &TablesKey::new(&shared.set.shaders, &request.constants), None)?;
+        let params: Arc<[u8]> = values::params(&settings.shader, &shared.set.shaders.parameters).into();
+        let values = BakeValues { constants: &request.constants, params: &params };
+        let tables = Tables::bake(&shared.set, &TablesKey::new(&shared.set.shaders, values), None)?;
         let (measured, traced) = (shared.measured.clone(), shared.traced.clone());
         let sources = Sources { environment: shared.environment.clone(), tables, measured, traced };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
-        let params = values::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);
         let frame = uniforms.set(&shared.layouts, &sources, &shared.images)?;
         Ok(Self { shared, constants: request.constants, frame })

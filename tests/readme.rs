@@ -16,20 +16,43 @@ fn session() -> Session {
     Session::new(model(BUILT_IN[0]), settings(&["environment.name=none"]))
 }
 
-#[test]
-fn the_slider_of_the_readme() {
-    let mut session = session();
-    let before = session.render();
-    let member = snippet("//@ui \"Snow\"");
+/// Adds a member to `Params`.
+fn declare(session: &mut Session, member: &str) {
     let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", member.trim_end()));
     ready(&session.save("user/params.glsl", &params));
-    let hook = "void user_surface(inout Surface s) {";
-    ready(&session.edit("user.glsl", hook, &format!("{hook}\n{}", snippet("snow * smoothstep"))));
+}
+
+#[test]
+fn the_slider_of_the_readme() {
+    let mut session = Session::new(model(BUILT_IN[0]), settings(&["environment.name=studio"]));
+    let before = session.render();
+    declare(&mut session, &snippet("//@ui \"Unsquared\""));
+    let (ndf, squared) = ("brdf/ndf.glsl", "    float a2 = alpha * alpha;\n");
+    let text = session.tree.edited(ndf, squared, &snippet("mix(alpha * alpha, alpha, unsquared)"));
+    let last = "#include \"common/math.glsl\"\n";
+    assert!(text.contains(last));
+    ready(&session.save(ndf, &text.replace(last, &format!("{last}#include \"user/params.glsl\"\n"))));
     assert_same(&before, &session.render(), "at its default the slider changes nothing");
     let generation = session.headless.shaders().generation;
+    session.set("unsquared=1.0");
+    let unsquared = session.render();
+    assert_differ(&before, &unsquared, "the slider reaches the picture");
+    assert_eq!(session.headless.shaders().generation, generation, "moving a slider compiles nothing");
+    passes_check(&session);
+    ready(&session.edit(ndf, "mix(alpha * alpha, alpha, unsquared)", "alpha"));
+    assert_same(&unsquared, &session.render(), "lamps and the light of the environment are those of the edit");
+}
+
+#[test]
+fn the_hook_of_the_readme() {
+    let mut session = session();
+    let before = session.render();
+    declare(&mut session, "    float snow; //@ui \"Snow\" 0..1 = 0.0");
+    let hook = "void user_surface(inout Surface s) {";
+    ready(&session.edit("user.glsl", hook, &format!("{hook}\n{}", snippet("snow * smoothstep"))));
+    assert_same(&before, &session.render(), "without snow");
     session.set("snow=1.0");
     assert_differ(&before, &session.render(), "snow");
-    assert_eq!(session.headless.shaders().generation, generation, "moving a slider compiles nothing");
     passes_check(&session);
 }
 

@@ -1,8 +1,10 @@
-//! Geometry, tessellation and mesh stages of passes that draw the model.
+//! Geometry, tessellation and mesh stages of passes that draw the model; what each kind of stage can read.
 
 mod support;
 mod stages {
+    mod access;
     mod mesh;
+    mod sliders;
 }
 
 use specula::render::Capture;

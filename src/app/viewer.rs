@@ -47,8 +47,8 @@ use crate::threads::{Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
 use edits::Edits;
 pub(super) use edits::NO_FOLDER;
-pub(super) use picture::readout;
 use picture::target;
+pub(super) use picture::{Waits, readout};
 pub(super) use versions::Version;
 use versions::Versions;
 
@@ -157,8 +157,8 @@ pub(super) struct Viewer {
     is_complete: bool,
     /// Whether the last frame showed the settings, and lacked nothing but stages that it does not need.
     shows_settings: bool,
-    /// Since when pipelines have been built for the settings; `None` when the picture has them.
-    building_since: Option<Instant>,
+    /// What the picture waits for, and since when; `None` when it has everything.
+    waits: Option<(Waits, Instant)>,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.
     names_checked: bool,
@@ -231,7 +231,7 @@ impl Viewer {
             clock: Clock::default(),
             is_complete: false,
             shows_settings: false,
-            building_since: None,
+            waits: None,
             first_frame: None,
             names_checked: false,
             settled: None,

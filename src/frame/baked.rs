@@ -1,34 +1,66 @@
 //! The keys of what is baked from shaders: the BRDF's tables and an environment's images.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::frame::stages::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES, TABLE_STAGES};
 use crate::gpu::Specialization;
 use crate::shader::{ShaderSet, Stage};
 
-/// A compute stage with the author's constants that it declares. Two are equal if the driver gets the same module, so a
-/// constant that changes nothing in it makes no difference, nor does an edit of a comment.
+/// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver gets the
+/// same module, and if the parameters that it reads have the same values. So a constant that changes nothing in the module makes no
+/// difference, nor does an edit of a comment.
 #[derive(Clone, Debug)]
 pub struct BakeStage {
     pub(crate) stage: Arc<Stage>,
     pub(crate) constants: Specialization,
     /// Hash of the specialized module.
     pub(crate) module: u64,
+    /// The bytes of the block `Params`.
+    pub(crate) params: Arc<[u8]>,
+}
+
+impl BakeStage {
+    /// The bytes of the parameters that the stage reads.
+    pub(crate) fn params_read(&self) -> impl Iterator<Item = &[u8]> {
+        let of = |range: &Range<usize>| self.params.get(range.start..range.end.min(self.params.len()));
+        self.stage.reflection.params_read.iter().filter_map(of)
+    }
+
+    /// Whether the stage reads parameters. Its results are then not kept on disk, where each step of a slider would leave them.
+    pub(crate) fn reads_params(&self) -> bool {
+        !self.stage.reflection.params_read.is_empty()
+    }
 }
 
 impl PartialEq for BakeStage {
     fn eq(&self, other: &Self) -> bool {
-        self.module == other.module
+        self.module == other.module && self.params_read().eq(other.params_read())
     }
 }
 
+/// The author's values that a bake depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct BakeValues<'a> {
+    /// The specialization constants.
+    pub constants: &'a Specialization,
+    /// The bytes of the block `Params`.
+    pub params: &'a Arc<[u8]>,
+}
+
 /// The stages of `paths` with the constants that each declares. A tree without one of them has failed its check before.
-fn stages(shaders: &ShaderSet, paths: &[&str], constants: &Specialization) -> Vec<BakeStage> {
+fn stages(shaders: &ShaderSet, paths: &[&str], values: BakeValues<'_>) -> Vec<BakeStage> {
+    let BakeValues { constants, params } = values;
     let stages = paths.iter().filter_map(|path| shaders.stages.get(*path));
     let bake = stages.map(|stage| {
         let declares = |id: u32| stage.reflection.constants.iter().any(|constant| constant.id == id);
         let constants: Specialization = constants.iter().filter(|(id, _)| declares(*id)).copied().collect();
-        BakeStage { module: stage.specialized_hash(&constants), stage: stage.clone(), constants }
+        BakeStage {
+            module: stage.specialized_hash(&constants),
+            stage: stage.clone(),
+            constants,
+            params: params.clone(),
+        }
     });
     bake.collect()
 }
@@ -38,8 +70,13 @@ fn stages(shaders: &ShaderSet, paths: &[&str], constants: &Specialization) -> Ve
 pub struct TablesKey(pub(crate) Vec<BakeStage>);
 
 impl TablesKey {
-    pub(crate) fn new(shaders: &ShaderSet, constants: &Specialization) -> Self {
-        Self(stages(shaders, &TABLE_STAGES, constants))
+    pub(crate) fn new(shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
+        Self(stages(shaders, &TABLE_STAGES, values))
+    }
+
+    /// Whether both differ at most by values of parameters, as two steps of a slider do.
+    pub(crate) fn is_step_of(&self, other: &Self) -> bool {
+        same_modules(&self.0, &other.0)
     }
 
     /// Whether both are for the same choice of models, so that the tables differ by an edit of the shaders at most.
@@ -63,13 +100,13 @@ pub struct EnvironmentKey {
 }
 
 impl EnvironmentKey {
-    pub(crate) fn new(name: &str, revision: u64, shaders: &ShaderSet, constants: &Specialization) -> Self {
+    pub(crate) fn new(name: &str, revision: u64, shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
         Self {
             name: name.to_owned(),
             revision,
-            radiance: stages(shaders, &RADIANCE_STAGES, constants),
-            prefilter: stages(shaders, &PREFILTER_STAGES, constants),
-            sheen: stages(shaders, &SHEEN_STAGES, constants),
+            radiance: stages(shaders, &RADIANCE_STAGES, values),
+            prefilter: stages(shaders, &PREFILTER_STAGES, values),
+            sheen: stages(shaders, &SHEEN_STAGES, values),
         }
     }
 
@@ -78,12 +115,24 @@ impl EnvironmentKey {
         self.name == other.name && self.revision == other.revision && self.radiance == other.radiance
     }
 
+    /// Whether both differ at most by values of parameters, as two steps of a slider do.
+    pub(crate) fn is_step_of(&self, other: &Self) -> bool {
+        (&self.name, self.revision) == (&other.name, other.revision)
+            && same_modules(&self.radiance, &other.radiance)
+            && same_modules(&self.prefilter, &other.prefilter)
+            && same_modules(&self.sheen, &other.sheen)
+    }
+
     /// Whether both are for the same map and models: they differ by an edit of the shaders or of the file at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
         self.name == other.name
             && same_constants(&self.prefilter, &other.prefilter)
             && same_constants(&self.sheen, &other.sheen)
     }
+}
+
+fn same_modules(a: &[BakeStage], b: &[BakeStage]) -> bool {
+    a.iter().map(|stage| stage.module).eq(b.iter().map(|stage| stage.module))
 }
 
 fn same_constants(a: &[BakeStage], b: &[BakeStage]) -> bool {

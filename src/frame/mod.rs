@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(crate) use baked::BakeStage;
-pub use baked::{EnvironmentKey, TablesKey};
+pub use baked::{BakeValues, EnvironmentKey, TablesKey};
 pub use date::Date;
 pub use display::{Display, Limits};
 pub use formats::TargetFormat;
@@ -148,7 +148,7 @@ pub struct FrameState {
     pub displays: Vec<(u32, u8, Display)>,
     /// Bytes that images and buffers of passes may take.
     pub pass_memory: u64,
-    params: Vec<u8>,
+    params: Arc<[u8]>,
     pass_blocks: PassBlocks,
     constants: Frame,
 }
@@ -230,13 +230,14 @@ impl FrameState {
             }),
             ..Default::default()
         };
+        let params: Arc<[u8]> = values::params(&settings.shader, &shaders.parameters).into();
+        let values = BakeValues { constants: &pipelines.constants, params: &params };
         Self {
-            params: values::params(&settings.shader, &shaders.parameters),
             pass_blocks: pass_blocks(settings, shaders, &pipelines, size, clock),
-            tables: TablesKey::new(shaders, &pipelines.constants),
+            tables: TablesKey::new(shaders, values),
             environment: lit.then(|| {
                 let (name, revision) = (&settings.environment.name, revisions.environment);
-                EnvironmentKey::new(name, revision, shaders, &pipelines.constants)
+                EnvironmentKey::new(name, revision, shaders, values)
             }),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
@@ -244,6 +245,7 @@ impl FrameState {
             display: Display::new(&settings.view, shaders.modes.iter().find(|mode| mode.id == pipelines.mode)),
             shaders: shaders.clone(),
             scene: scene.cloned(),
+            params,
             pipelines,
             camera,
             lights,

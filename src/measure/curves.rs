@@ -114,7 +114,7 @@ pub fn prepare(
     }
     // Stages compile on a shared pool of threads, where an edit would wait for these.
     let own = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
-    let mut library = Library::new(source, compiler.clone(), &stages);
+    let mut library = Library::of_part(source, compiler.clone(), &stages);
     let shaders: Arc<ShaderSet> = match own.install(|| library.update(&Change::All)) {
         Update::Ready(shaders, _) => shaders,
         Update::Failed(diagnostics, _) => {

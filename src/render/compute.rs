@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use crate::frame::BakeStage;
 pub(crate) use crate::gpu::upload_images as upload;
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, one_shot, vk,
 };
-use crate::interface::{BINDING_TASK, SET_TASK, Task};
+use crate::interface::{BINDING_PARAMS, BINDING_TASK, PARAMS_SIZE, SET_FRAME, SET_TASK, Task};
 
 /// Workgroup size along x and y of most compute stages.
 const GROUP: u32 = 8;
@@ -28,6 +29,21 @@ pub(crate) fn bindings(
     buffer.write(0, bytemuck::bytes_of(task));
     let writer = SetWriter::default().buffer(BINDING_TASK, &buffer);
     DescriptorSet::new(layouts, SET_TASK, more(writer))
+}
+
+/// Descriptor set 0 of a bake: the parameters of `stages`. Nothing else of the set has a meaning there, and the contract check
+/// refuses a stage that reads it.
+pub(crate) fn frame_set(
+    gpu: &Arc<Gpu>,
+    layouts: &Arc<SetLayouts>,
+    stages: &[BakeStage],
+) -> Result<Arc<DescriptorSet>, GpuError> {
+    let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+    let buffer = Buffer::new(gpu, "params of a bake", PARAMS_SIZE.into(), usage, Memory::Upload)?;
+    if let Some(stage) = stages.first() {
+        buffer.write(0, &stage.params);
+    }
+    DescriptorSet::new(layouts, SET_FRAME, SetWriter::default().buffer(BINDING_PARAMS, &buffer))
 }
 
 /// A trilinear sampler, clamped vertically. `wrap_u` is REPEAT for an equirectangular map, whose left and right edges meet.

@@ -70,10 +70,12 @@ impl Baker {
         self.bake.as_ref().map(|bake| &bake.progress)
     }
 
-    /// Bakes `key` with `set` and cancels any other bake. `None` only cancels. `resources` has the last bake, of which
-    /// unchanged parts are taken over.
+    /// Bakes `key` with `set` and cancels any other bake, except an earlier step of the same slider: that one ends and shows, and the
+    /// newest step follows. `None` only cancels. `resources` has the last bake, of which unchanged parts are taken over.
     pub(crate) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
-        if self.bake.as_ref().map(|bake| &bake.key) == key.as_ref() {
+        let running = self.bake.as_ref().map(|bake| &bake.key);
+        let is_step = running.zip(key.as_ref()).is_some_and(|(running, key)| key.is_step_of(running));
+        if is_step || running == key.as_ref() {
             return;
         }
         let number = self.newest.fetch_add(1, Ordering::SeqCst) + 1;
@@ -97,9 +99,10 @@ impl Baker {
         });
     }
 
-    /// Bakes the tables of `key` with `set`, unless they are being baked.
+    /// Bakes the tables of `key` with `set`, unless they are being baked, or those of an earlier step of the same slider are.
     pub(crate) fn bake_tables(&mut self, set: &Arc<PipelineSet>, key: Option<TablesKey>, resources: &Resources) {
-        let Some(key) = key.filter(|key| self.tables.as_ref() != Some(key)) else { return };
+        let is_running = |key: &TablesKey| self.tables.as_ref().is_some_and(|running| key.is_step_of(running));
+        let Some(key) = key.filter(|key| !is_running(key)) else { return };
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
         self.spawn(Role::Tables(key.clone()), move |outbox| {

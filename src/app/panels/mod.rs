@@ -204,7 +204,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     picture
 }
 
-/// Pipelines that take longer are told of.
+/// The status bar says what the picture waits for after this long.
 const LONG: Duration = Duration::from_millis(250);
 
 /// The bars above and below the tiles.
@@ -215,14 +215,15 @@ fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     let diagnostics = &viewer.session.diagnostics;
     let frame_ms = viewer.timing.frame_ms();
     let stage = viewer.stages.main();
-    let builds = viewer.builds_for().is_some_and(|time| match LONG.checked_sub(time) {
+    let waits = viewer.waits_for().filter(|(_, time)| match LONG.checked_sub(*time) {
         Some(left) => {
             ui.ctx().request_repaint_after(left);
             false
         }
         None => true,
     });
-    let status = status_bar::Status { shader, builds, generation, diagnostics, frame_ms, stage, device: &device };
+    let waits = waits.map(|(waits, _)| waits);
+    let status = status_bar::Status { shader, waits, generation, diagnostics, frame_ms, stage, device: &device };
     status_bar::show(ui, &status);
 }
 

@@ -5,6 +5,7 @@ use egui::{Align, Layout, RichText, Ui};
 use super::{plural, shaders};
 use crate::app::stages::StageRow;
 use crate::app::status::ShaderStatus;
+use crate::app::viewer::Waits;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use crate::shader::{Diagnostic, Severity};
@@ -18,8 +19,8 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
-    /// Whether pipelines for the settings take so long that the user should know.
-    pub(super) builds: bool,
+    /// What the picture has waited for so long that the user should know.
+    pub(super) waits: Option<Waits>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
@@ -53,7 +54,8 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     let (color, text) = match (status.shader.compiling, errors, warnings) {
         (true, ..) => (WARNING, "compiling".to_owned()),
-        (_, 0, _) if status.builds => (WARNING, "building pipelines".to_owned()),
+        (_, 0, _) if status.waits == Some(Waits::Pipelines) => (WARNING, "building pipelines".to_owned()),
+        (_, 0, _) if status.waits == Some(Waits::Light) => (WARNING, "baking light".to_owned()),
         (_, 0, _) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
         (_, 0, 0) => (GOOD, "watching".to_owned()),
         (_, 0, warnings) => (WARNING, plural(warnings, "warning")),

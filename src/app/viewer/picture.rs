@@ -10,10 +10,30 @@ use crate::events::{Event, emit};
 use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
 use crate::recovery::Work;
-use crate::render::{BoundFrame, PixelAt, View};
+use crate::render::{BoundFrame, Missing, PixelAt, View};
 use crate::settings::Settings;
 use crate::shader::{Mode, PixelValue, expression};
 use crate::threads::worker::Snapshot;
+
+/// What threads make for the settings, while the picture shows what was there before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Waits {
+    /// Pipelines. Until then, the last picture stays.
+    Pipelines,
+    /// The light of the environment or the BRDF tables. Until then, the picture has the light of before.
+    Light,
+}
+
+impl Waits {
+    /// What a state waits for that lacks this.
+    fn of(missing: &Missing) -> Option<Self> {
+        match missing {
+            missing if missing.pipelines => Some(Self::Pipelines),
+            missing if missing.tables.is_some() || missing.environment.is_some() => Some(Self::Light),
+            _ => None,
+        }
+    }
+}
 
 impl Viewer {
     /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture
@@ -178,7 +198,9 @@ impl Viewer {
         let Some(set) = self.resources.pipelines() else { return false };
         let missing = self.resources.missing(state);
         let is_empty = missing.is_empty();
-        self.building_since = missing.pipelines.then(|| self.building_since.unwrap_or_else(Instant::now));
+        let waits = Waits::of(&missing);
+        let since = self.waits.filter(|(before, _)| Some(*before) == waits).map(|(_, since)| since);
+        self.waits = waits.map(|waits| (waits, since.unwrap_or_else(Instant::now)));
         if missing.pipelines {
             self.threads.worker.build(set, &state.pipelines);
         }
@@ -189,9 +211,9 @@ impl Viewer {
         is_empty
     }
 
-    /// How long pipelines have been built for the settings, while the picture is that of before.
-    pub(in crate::app) fn builds_for(&self) -> Option<Duration> {
-        self.building_since.map(|since| since.elapsed())
+    /// What the picture waits for, and for how long already.
+    pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
+        self.waits.map(|(waits, since)| (waits, since.elapsed()))
     }
 
     /// Whether the last frame shows the settings: no interim picture, no light from before, and the model if there is one.

@@ -183,8 +183,9 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
     let (path, desc) = (of.stage.path.as_str(), table.desc());
     let image = Image::new(gpu, path, desc)?;
     let task = Task { size: [table.side; 2], levels: 1, samples: table.samples, ..Task::default() };
+    let is_kept = !of.reads_params();
     let key = disk_cache::key(&[&of.module.to_le_bytes(), bytemuck::bytes_of(&task)]);
-    if let Some(bytes) = disk_cache::load(&key, desc.bytes()) {
+    if let Some(bytes) = is_kept.then(|| disk_cache::load(&key, desc.bytes())).flatten() {
         compute::upload(gpu, &[(&image, &bytes)])?;
         return Ok((image, bytes));
     }
@@ -193,9 +194,10 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
     let buffer = Buffer::new(gpu, "table", desc.bytes(), readback, Memory::Readback)?;
     let bindings =
         compute::bindings(gpu, &set.layouts, &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
+    let frame = compute::frame_set(gpu, &set.layouts, std::slice::from_ref(of))?;
     one_shot(gpu, |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
-        encoder.dispatch(&pipeline, &[&bindings], table.groups);
+        encoder.dispatch(&pipeline, &[&frame, &bindings], table.groups);
         encoder.transition(&image, Use::Storage, Use::CopyFrom);
         encoder.copy_levels_from_image(&image, &buffer, 0);
         encoder.transition(&image, Use::CopyFrom, Use::Sampled);
@@ -203,7 +205,7 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
         Ok(())
     })?;
     let texels = buffer.read();
-    if table.wrong(&texels).is_empty() {
+    if is_kept && table.wrong(&texels).is_empty() {
         disk_cache::store(&key, &texels);
     }
     Ok((image, texels))

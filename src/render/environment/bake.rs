@@ -10,7 +10,7 @@ use crate::cancel::Running;
 use crate::disk_cache;
 use crate::frame::stages::{CUBE, PREFILTER, PREFILTER_SHEEN};
 use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::pipeline::PipelineSet;
 use crate::scene::{EnvironmentError, EnvironmentFile, has_exact_sun};
@@ -74,7 +74,8 @@ impl GpuEnvironment {
     ) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();
         let report = BakeReport { environment: key.name.clone(), cached: true, ..BakeReport::default() };
-        let mut bake = Bake { gpu: &set.gpu, set, key, control, report, storing_ms: 0.0 };
+        let frame = compute::frame_set(&set.gpu, &set.layouts, &key.radiance)?;
+        let mut bake = Bake { gpu: &set.gpu, set, key, frame, control, report, storing_ms: 0.0 };
         let before = before.filter(|(old, _)| old.has_radiance_of(key));
         let radiance = match before {
             Some((_, old)) => {
@@ -104,6 +105,8 @@ struct Bake<'a> {
     gpu: &'a Arc<Gpu>,
     set: &'a PipelineSet,
     key: &'a EnvironmentKey,
+    /// Descriptor set 0 of all passes.
+    frame: Arc<DescriptorSet>,
     control: &'a BakeControl<'a>,
     report: BakeReport,
     /// Time of reading back and writing to the disk, milliseconds.
@@ -119,7 +122,8 @@ impl Bake<'_> {
     }
 
     fn passes<'a>(&'a self, small_lights: &'a Arc<Buffer>) -> Passes<'a> {
-        Passes { gpu: self.gpu, layouts: &self.set.layouts, set: self.set, small_lights }
+        let radiance = &self.key.radiance;
+        Passes { gpu: self.gpu, layouts: &self.set.layouts, set: self.set, radiance, frame: &self.frame, small_lights }
     }
 
     /// Creates the pipelines of these stages, which counts as a time of its own.
@@ -132,8 +136,9 @@ impl Bake<'_> {
         Ok(())
     }
 
-    fn cached(&self, key: &str, bytes: u64) -> Option<Vec<u8>> {
-        disk_cache::load(key, bytes).filter(|_| self.control.from_disk)
+    /// A part in the disk cache. `None` in place of a key stands for a part that is not kept there.
+    fn cached(&self, key: Option<&String>, bytes: u64) -> Option<Vec<u8>> {
+        disk_cache::load(key?, bytes).filter(|_| self.control.from_disk)
     }
 
     /// Uploads a cached part.
@@ -161,7 +166,7 @@ impl Bake<'_> {
     }
 
     /// The cache's key of the specular levels of a map.
-    fn prefiltered_key(&self, map: u128) -> String {
+    fn prefiltered_key(&self, map: u128) -> Option<String> {
         let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
         let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT];
         sizes.extend(SPECULAR_SAMPLES);
@@ -169,19 +174,21 @@ impl Bake<'_> {
     }
 
     /// The cache's key of the sheen levels of a map.
-    fn sheen_key(&self, map: u128) -> String {
+    fn sheen_key(&self, map: u128) -> Option<String> {
         let stages = [&*self.key.radiance, &*self.key.sheen].concat();
         key(&[map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES])
     }
 
     /// The stages of all parts that have to be computed for a map whose radiance is not in the cache.
     fn stages_to_run(&self, map: u128) -> Vec<BakeStage> {
-        let is_cached = |key: &str, desc: ImageDesc| self.control.from_disk && disk_cache::contains(key, desc.bytes());
+        let is_cached = |key: Option<String>, desc: ImageDesc| {
+            self.control.from_disk && key.is_some_and(|key| disk_cache::contains(&key, desc.bytes()))
+        };
         let mut stages = self.key.radiance.clone();
-        if !is_cached(&self.prefiltered_key(map), octahedral(SPECULAR_SIZE)) {
+        if !is_cached(self.prefiltered_key(map), octahedral(SPECULAR_SIZE)) {
             stages.extend_from_slice(&self.key.prefilter);
         }
-        if !is_cached(&self.sheen_key(map), ImageDesc::cube(SHEEN_SIDE, SHEEN_LEVELS, HALF, written())) {
+        if !is_cached(self.sheen_key(map), ImageDesc::cube(SHEEN_SIDE, SHEEN_LEVELS, HALF, written())) {
             stages.extend_from_slice(&self.key.sheen);
         }
         stages
@@ -203,7 +210,7 @@ impl Bake<'_> {
         let lights = small_lights_size(self.set);
         let bytes: u64 = images.iter().map(|image| image.desc().bytes()).sum();
         // An entry holds the images, the small lights, and the scale.
-        if let Some(entry) = self.cached(&disk_key, bytes + lights + 4) {
+        if let Some(entry) = self.cached(disk_key.as_ref(), bytes + lights + 4) {
             self.report.decode_ms = ms(time);
             let (images_part, rest) = entry.split_at(bytes as usize);
             self.fill(&images, images_part)?;
@@ -255,7 +262,9 @@ impl Bake<'_> {
         let mut entry = transfer::read(self.gpu, &[&cube], &buffers)?;
         let sun = sun_of(&entry[bytes as usize..]);
         entry.extend(f32::to_ne_bytes(scale));
-        disk_cache::store(&disk_key, &entry);
+        if let Some(key) = disk_key {
+            disk_cache::store(&key, &entry);
+        }
         self.storing_ms += ms(time);
         Ok(Arc::new(Radiance { cube, irradiance, scale, sun, small_lights: Some(lights), map: file.fingerprint }))
     }
@@ -264,7 +273,7 @@ impl Bake<'_> {
     fn prefiltered(&mut self, radiance: &Radiance) -> Result<Arc<Prefiltered>, BakeError> {
         let disk_key = self.prefiltered_key(radiance.map);
         let levels = self.octahedral("specular levels", SPECULAR_SIZE)?;
-        if let Some(entry) = self.cached(&disk_key, levels.desc().bytes()) {
+        if let Some(entry) = self.cached(disk_key.as_ref(), levels.desc().bytes()) {
             self.fill(&[&levels], &entry)?;
             return Ok(Arc::new(Prefiltered { levels, wrong: false }));
         }
@@ -287,8 +296,8 @@ impl Bake<'_> {
         let wrong = self.passes(lights).finish_specular(&lobes, &texels, &levels)?;
         self.report.prefilter_ms = ms(time);
         let time = Instant::now();
-        if !wrong {
-            disk_cache::store(&disk_key, &transfer::read(self.gpu, &[], &[(&texels, texels.size())])?);
+        if let Some(key) = disk_key.filter(|_| !wrong) {
+            disk_cache::store(&key, &transfer::read(self.gpu, &[], &[(&texels, texels.size())])?);
         }
         self.storing_ms += ms(time);
         Ok(Arc::new(Prefiltered { levels, wrong }))
@@ -298,7 +307,7 @@ impl Bake<'_> {
     fn sheen(&mut self, radiance: &Radiance) -> Result<Arc<Image>, BakeError> {
         let disk_key = self.sheen_key(radiance.map);
         let image = self.cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?;
-        if let Some(entry) = self.cached(&disk_key, image.desc().bytes()) {
+        if let Some(entry) = self.cached(disk_key.as_ref(), image.desc().bytes()) {
             self.fill(&[&image], &entry)?;
             return Ok(image);
         }
@@ -309,7 +318,9 @@ impl Bake<'_> {
         self.passes(lights).sheen(stage, &radiance.cube, &image, SHEEN_SAMPLES)?;
         self.report.sheen_ms = ms(time);
         let time = Instant::now();
-        disk_cache::store(&disk_key, &transfer::read(self.gpu, &[&image], &[])?);
+        if let Some(key) = disk_key {
+            disk_cache::store(&key, &transfer::read(self.gpu, &[&image], &[])?);
+        }
         self.storing_ms += ms(time);
         Ok(image)
     }
@@ -327,10 +338,14 @@ fn octahedral([width, height]: [u32; 2]) -> ImageDesc {
     ImageDesc::new(width, height, SHARED_EXPONENT, usage)
 }
 
-/// The cache key of a part: a hash of the map, of the modules of its stages, and of sizes and sample counts.
-fn key(map: &[u128], stages: &[BakeStage], sizes: &[u32]) -> String {
+/// The cache key of a part: a hash of the map, of the modules of its stages, and of sizes and sample counts. `None` if one of the stages
+/// reads parameters: such a part is not kept on disk.
+fn key(map: &[u128], stages: &[BakeStage], sizes: &[u32]) -> Option<String> {
+    if stages.iter().any(BakeStage::reads_params) {
+        return None;
+    }
     let modules: Vec<u64> = stages.iter().map(|stage| stage.module).collect();
-    disk_cache::key(&[bytemuck::cast_slice(map), bytemuck::cast_slice(&modules), bytemuck::cast_slice(sizes)])
+    Some(disk_cache::key(&[bytemuck::cast_slice(map), bytemuck::cast_slice(&modules), bytemuck::cast_slice(sizes)]))
 }
 
 fn ms(since: Instant) -> f64 {

@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk};
+use crate::gpu::{
+    Buffer, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk,
+};
 use crate::interface::{
     BINDING_LEVEL_ABOVE, BINDING_LOBE, BINDING_LOBE_TARGET, BINDING_PACKED, BINDING_RESULTS, BINDING_SMALL_LIGHTS,
     BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
@@ -87,11 +89,22 @@ pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
+    /// The stages of the cube map and the irradiance.
+    pub(crate) radiance: &'a [BakeStage],
+    /// Descriptor set 0: see [`compute::frame_set`].
+    pub(crate) frame: &'a Arc<DescriptorSet>,
     /// `cube` lists them, all other passes read the list: ibl/small_lights/list.glsl.
     pub(crate) small_lights: &'a Arc<Buffer>,
 }
 
 impl Passes<'_> {
+    /// The pipeline of one of the stages of the cube map and the irradiance.
+    fn radiance_pipeline(&self, path: &str) -> Result<Arc<ComputePipeline>, GpuError> {
+        let stage = self.radiance.iter().find(|stage| stage.stage.path.as_str() == path);
+        let stage = stage.ok_or_else(|| GpuError::NoStage(path.to_owned()))?;
+        self.set.compute(path, &stage.constants)
+    }
+
     /// Binds the list of small lights for a pass that reads it.
     fn lit(&self, writer: SetWriter) -> SetWriter {
         writer.buffer(BINDING_SMALL_LIGHTS, self.small_lights)
@@ -126,7 +139,7 @@ impl Passes<'_> {
             })
         };
         let mut dispatches = vec![(
-            self.set.compute(CUBE, &Vec::new())?,
+            self.radiance_pipeline(CUBE)?,
             bind(&first, &|w| w.texture(BINDING_SOURCE, map, &sampler))?,
             desc.width,
         )];
@@ -134,12 +147,12 @@ impl Passes<'_> {
             let side = (desc.width >> level).max(1);
             let task = Task { size: [side; 2], level, ..first };
             let set = bind(&task, &|writer| writer.storage_level(BINDING_LEVEL_ABOVE, cube, level - 1))?;
-            dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
+            dispatches.push((self.radiance_pipeline(DOWNSAMPLE)?, set, side));
         }
         one_shot(self.gpu, |encoder| {
             encoder.transition(cube, Use::Undefined, Use::Storage);
             for (pipeline, set, side) in &dispatches {
-                encoder.dispatch(pipeline, &[set], compute::groups(*side, desc.layers));
+                encoder.dispatch(pipeline, &[self.frame, set], compute::groups(*side, desc.layers));
                 encoder.transition(cube, Use::Storage, Use::Storage);
                 encoder.computed();
             }
@@ -156,10 +169,10 @@ impl Passes<'_> {
             let writer = writer.storage_level(BINDING_LEVEL_ABOVE, cube, IRRADIANCE_LEVEL);
             self.lit(writer.buffer(BINDING_PACKED, texels))
         })?;
-        let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
+        let pipeline = self.radiance_pipeline(IRRADIANCE)?;
         one_shot(self.gpu, |encoder| {
             encoder.transition(cube, Use::Sampled, Use::Storage);
-            encoder.dispatch(&pipeline, &[&bindings], compute::groups(side, to.desc().layers));
+            encoder.dispatch(&pipeline, &[self.frame, &bindings], compute::groups(side, to.desc().layers));
             encoder.transition(cube, Use::Storage, Use::Sampled);
             encoder.computed();
             transfer::fill_from(encoder, texels, to);
@@ -180,7 +193,7 @@ impl Passes<'_> {
         }
         one_shot(self.gpu, |encoder| {
             for bindings in &dispatches {
-                encoder.dispatch(&pipeline, &[bindings], [1, 1, 1]);
+                encoder.dispatch(&pipeline, &[self.frame, bindings], [1, 1, 1]);
             }
             encoder.computed();
             Ok(())
@@ -211,7 +224,7 @@ impl Passes<'_> {
         }
         one_shot(self.gpu, |encoder| {
             for (bindings, groups) in &dispatches {
-                encoder.dispatch(&pipeline, &[bindings], *groups);
+                encoder.dispatch(&pipeline, &[self.frame, bindings], *groups);
             }
             encoder.computed();
             Ok(())
@@ -259,7 +272,7 @@ impl Passes<'_> {
         one_shot(self.gpu, |encoder| {
             encoder.transition(to, Use::Undefined, Use::Storage);
             for (bindings, groups) in &dispatches {
-                encoder.dispatch(&pipeline, &[bindings], *groups);
+                encoder.dispatch(&pipeline, &[self.frame, bindings], *groups);
             }
             encoder.transition(to, Use::Storage, Use::Sampled);
             Ok(())
