@@ -159,7 +159,7 @@ const uint MODE_K_D = 304u;
 const uint MODE_K_S = 305u;
 //@mode n-dot-l "N dot L" group="BRDF terms" encode=data components=1 doc="0 for light behind the surface."
 const uint MODE_N_DOT_L = 306u;
-//@mode n-dot-v "N dot V" group="BRDF terms" encode=data components=1 doc="At least 0.0001. Needs no light."
+//@mode n-dot-v "N dot V" group="BRDF terms" encode=data components=1 doc="|n . v|, at least 0.0001. Needs no light."
 const uint MODE_N_DOT_V = 307u;
 //@mode n-dot-h "N dot H" group="BRDF terms" encode=data components=1 doc="h is the half vector of l and v."
 const uint MODE_N_DOT_H = 308u;
