@@ -148,7 +148,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
 
     Dfg dfg_l = s.dfg;
     if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) {
-        dfg_l = dfg_towards_lamp(abs(cos_l), table_roughness(s), s.dfg);
+        dfg_l = dfg_towards_lamp(s, l);
     }
     brdf.multiple = vec3(0.0);
     if (MULTI_SCATTER != SINGLE_SCATTER) brdf.multiple = f_multiple(s, dfg_l.lost);

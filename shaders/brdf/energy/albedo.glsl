@@ -5,10 +5,12 @@
 
 #include "interface.glsl"
 #include "brdf/diffuse.glsl"
+#include "brdf/energy/anisotropy.glsl"
 #include "brdf/energy/dfg.glsl"
 #include "brdf/energy/dfg_table.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_LAMP_DFG) uniform sampler2D lamp_dfg_table;
@@ -24,18 +26,52 @@ Dfg dfg_at(float cosine, float roughness) {
     return dfg_of(dfg_texel(cosine, roughness, DFG_DIRECTION), weights);
 }
 
+// The same moments for a lobe of another E, whose facets F meets at the same angles. 1e-3: a lobe that masking takes away
+// entirely.
+Dfg with_lost(Dfg dfg, float lost) {
+    float ratio = (1.0 - lost) / max(1.0 - dfg.lost, 1e-3);
+    return Dfg(dfg.a * ratio, dfg.b * ratio, dfg.e * ratio, lost, dfg.weights * ratio);
+}
+
 // A + B. f_schlick(1, 1, c) does not depend on c, so A + B is proportional to E, which is proportional to 1 - lost; the factor
 // is that of the direction to the eye. 1e-3: a lobe that masking takes away entirely.
 float sum_of_terms(float lost, Dfg towards_eye) {
     return (1.0 - lost) * (towards_eye.a + towards_eye.b) / max(1.0 - towards_eye.lost, 1e-3);
 }
 
+// The lobe's moments towards v.
+Dfg dfg_towards_eye(Surface s, vec3 v) {
+    Dfg dfg = dfg_at(n_dot_v_of(s.n, v), table_roughness(s));
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
+        RoundLobe equal = lobe_of_equal_albedo(s, v);
+        dfg = with_lost(dfg, dfg_texel(equal.cosine, equal.roughness, DFG_DIRECTION).a);
+    }
+    return dfg;
+}
+
 // The moments towards a lamp. Its table holds B and `lost` alone, from which A follows.
-Dfg dfg_towards_lamp(float cosine, float roughness, Dfg towards_eye) {
-    if (F_IS_SAMPLED) return dfg_at(cosine, roughness);
-    vec2 b_lost = textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
-    float sum = sum_of_terms(b_lost.y, towards_eye);
-    return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+vec2 lamp_texel(float cosine, float roughness) {
+    return textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
+}
+
+Dfg dfg_towards_lamp(Surface s, vec3 l) {
+    float cosine = abs(dot(s.n, l));
+    float roughness = table_roughness(s);
+    Dfg dfg;
+    if (F_IS_SAMPLED) {
+        dfg = dfg_at(cosine, roughness);
+    } else {
+        vec2 b_lost = lamp_texel(cosine, roughness);
+        float sum = sum_of_terms(b_lost.y, s.dfg);
+        dfg = Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+    }
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
+        RoundLobe equal = lobe_of_equal_albedo(s, l);
+        float lost = F_IS_SAMPLED ? dfg_texel(equal.cosine, equal.roughness, DFG_DIRECTION).a
+                                  : lamp_texel(equal.cosine, equal.roughness).y;
+        dfg = with_lost(dfg, lost);
+    }
+    return dfg;
 }
 
 // Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu. Likewise, the table has no A.
@@ -45,22 +81,6 @@ Dfg dfg_mean(float roughness, Dfg towards_eye) {
     if (!F_IS_SAMPLED) return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
     float e = texelFetch(dfg_table, fine_texel(roughness, DFG_LOBE), 0).r;
     return Dfg(sum - b_lost.x, b_lost.x, e, b_lost.y, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
-}
-
-// alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
-vec2 alpha_sides(Surface s) {
-    float alpha = alpha_from_roughness(s.roughness);
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) return vec2(alpha);
-    return vec2(mix(alpha, 1.0, s.anisotropy * s.anisotropy), alpha);
-}
-
-// The roughness at which to look up the table. The table holds isotropic lobes only. Averaged over the azimuth, an
-// anisotropic lobe has about the E of an isotropic one in between: our fit, with an error below 0.005 of E. In a single
-// direction the error may be larger.
-float table_roughness(Surface s) {
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) return s.roughness;
-    vec2 alpha = alpha_sides(s);
-    return sqrt(sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, 0.46)));
 }
 
 // A single angle that represents the whole lobe, for a thin film, whose F changes too fast for five samples. B / E is the
