@@ -30,12 +30,19 @@ float exact_rise(Surface s, float c) {
     return saturate((f_dielectric_exact(ior_from_f0(f0), c) - f0) / (1.0 - f0));
 }
 
+// F of the thin film over a base of reflectance f0. Under a clear coat, the medium above the film is the coat, with an
+// index of 1.5 (KHR_materials_iridescence, "Clearcoat"); a partial coat counts as an index in between.
+vec3 film_fresnel(Surface s, vec3 f0, float c) {
+    float outside = (FEATURES & FEATURE_CLEARCOAT) != 0u ? mix(1.0, 1.5, s.clearcoat) : 1.0;
+    return f_film(f0, s.iridescence_ior, s.iridescence_nm, outside, c);
+}
+
 // F of the dielectric: F0 + (F90 - F0) rise (KHR_materials_specular), with the film's F mixed in by its factor
 // (KHR_materials_iridescence).
 vec3 dielectric_fresnel(Surface s, float c) {
     vec3 f90 = vec3(s.f90);
     vec3 fresnel = FRESNEL_DIELECTRIC == EXACT_DIELECTRIC ? mix(s.f0, f90, exact_rise(s, c)) : f_schlick(s.f0, f90, c);
-    if (HAS_FILM) fresnel = mix(fresnel, f_film(s.f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    if (HAS_FILM) fresnel = mix(fresnel, film_fresnel(s, s.f0, c), s.iridescence);
     return fresnel;
 }
 
@@ -66,7 +73,7 @@ vec3 metal_fresnel(Surface s, float c) {
         metal_ior(s, n, k);
         fresnel = FRESNEL_METAL == F82_METAL ? f_82(f0, f_conductor(n, k, COS_82), c) : f_conductor(n, k, c);
     }
-    if (HAS_FILM) fresnel = mix(fresnel, f_film(f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    if (HAS_FILM) fresnel = mix(fresnel, film_fresnel(s, f0, c), s.iridescence);
     return fresnel;
 }
 
