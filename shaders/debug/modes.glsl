@@ -133,7 +133,7 @@ const uint MODE_IRIDESCENCE = 121u;
 const uint MODE_IRIDESCENCE_THICKNESS = 122u;
 //@mode transmission "Transmission" group="Material" encode=data components=1 needs=transmission words="glass refraction" doc="Fraction of entering light that is transmitted."
 const uint MODE_TRANSMISSION = 123u;
-//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume, world space, meters."
+//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume along the refracted ray, world space, meters."
 const uint MODE_THICKNESS = 124u;
 //@mode attenuation-color "Attenuation color" group="Material" encode=color needs=volume doc="Color of white light after the attenuation distance."
 const uint MODE_ATTENUATION_COLOR = 125u;
