@@ -100,13 +100,23 @@ vec3 metal_albedo(Surface s, Dfg dfg) {
     return s.base_color * dfg.a + dfg.b;
 }
 
-// Whether f_diffuse is f_lambert, which is the same in all directions. The driver evaluates this when it compiles; an edit
-// of f_diffuse makes it false.
+bool equals_lambert(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
+    const vec3 COLOR = vec3(0.0, 0.5, 1.0);
+    float n_dot_h = (n_dot_l + n_dot_v) / (2.0 * v_dot_h);
+    Cosines x = Cosines(n_dot_l, n_dot_v, n_dot_h, v_dot_h, 2.0 * v_dot_h * v_dot_h - 1.0);
+    return f_diffuse(COLOR, roughness, roughness * roughness, x) == f_lambert(COLOR);
+}
+
+// Whether f_diffuse is f_lambert, which is the same in all directions. The driver evaluates this when it compiles, and an
+// edit of f_diffuse makes it false, unless the edit is Lambert at all places that are compared: light from the eye
+// (retroreflection), along the mirror direction and between, each from above, at a middle and at a grazing angle, and at low,
+// middle and high roughness.
 bool diffuse_is_lambert() {
     if (DIFFUSE != LAMBERT) return false;
-    const vec3 COLOR = vec3(0.3, 0.5, 0.7);
-    bool is_lambert = f_diffuse(COLOR, 0.3, 0.09, Cosines(0.2, 0.9, 0.7, 0.8, 0.28)) == f_lambert(COLOR);
-    return is_lambert && f_diffuse(COLOR, 0.8, 0.64, Cosines(0.7, 0.3, 0.6, 0.5, -0.5)) == f_lambert(COLOR);
+    bool from_eye = equals_lambert(1.0, 1.0, 1.0, 0.5) && equals_lambert(0.7, 0.7, 1.0, 0.9) && equals_lambert(0.1, 0.1, 1.0, 0.1);
+    bool mirrored = equals_lambert(0.8, 0.8, 0.8, 0.1) && equals_lambert(0.5, 0.5, 0.5, 0.5) && equals_lambert(0.05, 0.05, 0.05, 1.0);
+    bool between = equals_lambert(0.95, 0.6, 0.9, 0.3) && equals_lambert(0.2, 0.9, 0.8, 0.0) && equals_lambert(0.9, 0.05, 0.7, 0.7);
+    return from_eye && mirrored && between;
 }
 
 // Integral of f_diffuse NoL dl. Lambert's needs no table, since the integral of NoL is pi. Other models need not be linear
