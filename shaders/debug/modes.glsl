@@ -255,7 +255,7 @@ const uint MODE_MONTE_CARLO = 506u;
 const uint MODE_IBL_ERROR = 507u;
 //@mode energy "Energy" group="Truth" encode=data stage=paths words="furnace conservation" doc="Albedo under uniform white light; red above 1.005."
 const uint MODE_ENERGY = 508u;
-//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces words="reference ground truth ray" doc="The picture with shadows, occlusion and reflections between surfaces."
+//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces words="reference ground truth ray" doc="The picture with shadows, occlusion and light between surfaces. Glass shows what the picture shows behind it: refraction is not traced."
 const uint MODE_PATH_TRACED = 509u;
 //@mode path-error "Error of the picture" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Path traced minus the picture: the sum of the five errors below."
 const uint MODE_PATH_ERROR = 510u;
