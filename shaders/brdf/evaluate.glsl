@@ -8,7 +8,11 @@
 //
 //   f = k_d f_diffuse + k_s D V + f_multiple     (Cook & Torrance 1982 over a diffuse base; glTF 2.0, appendix B)
 //   k_s = mix(F_dielectric, F_metal, metallic)
-//   k_d = (1 - metallic) (1 - F_dielectric)      a dielectric transmits what it does not reflect; a metal absorbs it
+//   k_d = (1 - metallic) (1 - R(l)) (1 - R(v)) / (1 - R_avg)
+//
+// R(w) is the fraction of light from w that the dielectric's boundary reflects, and R_avg its mean: a dielectric lets in
+// what it does not reflect, and a metal absorbs it. (With DIFFUSE_COUPLING=GltfSample, k_d = (1 - metallic) (1 -
+// F_dielectric), as in glTF's sample implementation. See `entering`.)
 //
 // `metallic` blends the results of two materials, not their F0: the dielectric's own Fresnel term attenuates its
 // diffuse lobe and must not depend on the metal. So f = mix(f_dielectric, f_metal, metallic), exactly.

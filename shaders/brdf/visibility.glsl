@@ -49,8 +49,8 @@ float v_separable(float n_dot_l, float n_dot_v, float a2_l, float a2_v) {
 }
 
 // G1 = c / (c (1 - k) + k) (Schlick 1994, eq. 19), without a square root. k = alpha sqrt(2 / pi) is Schlick's value for
-// Beckmann; k = alpha / 2 approximates GGX (Karis 2013, eq. 4, without his remapping of roughness). Neither shadows
-// less than Smith.
+// Beckmann; k = alpha / 2 approximates GGX (Karis 2013, eq. 4, without his remapping of roughness). Both shadow at
+// least as much as Smith's G1.
 float v_schlick(float n_dot_l, float n_dot_v, float a2_l, float a2_v) {
     float scale = NDF == BECKMANN ? 0.797885 : 0.5;
     float k_l = scale * sqrt(a2_l);

@@ -153,7 +153,7 @@ const uint MODE_G = 301u;
 const uint MODE_V = 302u;
 //@mode f "Fresnel F" group="BRDF terms" encode=color key=f doc="F at V dot H, dielectric and metal mixed; by default Schlick 1994, eq. 15."
 const uint MODE_F = 303u;
-//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="Weight of the diffuse lobe below all layers; by default (1 - metallic) (1 - F)."
+//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="Weight of the diffuse lobe below all layers; by default (1 - metallic) (1 - R(l)) (1 - R(v)) / (1 - R_avg), R the boundary's reflectance."
 const uint MODE_K_D = 304u;
 //@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="F, dielectric and metal mixed, times what the layers above transmit."
 const uint MODE_K_S = 305u;
@@ -207,7 +207,7 @@ const uint MODE_IBL_DIFFUSE = 411u;
 const uint MODE_IBL_SPECULAR = 412u;
 //@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap needs=environment doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
-//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Prefiltered radiance in the mirror direction."
+//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Prefiltered radiance of the specular lobe: in the mirror direction for a mirror, nearer to n the rougher it is."
 const uint MODE_PREFILTERED = 414u;
 //@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E of the selected D and V: the lobe reflects F0 A + F90 B, or E if F is 1."
 const uint MODE_DFG = 415u;
