@@ -49,11 +49,12 @@ Dfg dfg_towards_eye(Surface s, vec3 v) {
     return dfg;
 }
 
-// The moments towards a lamp. Its table holds B and `lost` alone, from which A follows.
+// B and `lost` towards a lamp.
 vec2 lamp_texel(float cosine, float roughness) {
     return textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
 }
 
+// The lobe's moments towards a lamp. A follows from the two that the table holds.
 Dfg dfg_towards_lamp(Surface s, vec3 l) {
     float cosine = abs(dot(s.n, l));
     float roughness = table_roughness(s);
