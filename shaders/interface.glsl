@@ -24,7 +24,6 @@ const int BINDING_DFG = 7;
 const int BINDING_LTC = 8;
 const int BINDING_MEASURED = 9;
 const int BINDING_SHEEN_ALBEDO = 10;
-const int BINDING_UNUSED = 11;
 const int BINDING_DIFFUSE_ALBEDO = 12;
 const int BINDING_LAMP_DFG = 13;
 const int BINDING_BVH = 14;

@@ -37,7 +37,9 @@ vec3 user_radiance(Surface s, vec3 v, vec3 radiance) {
     // Toon: quantizes L / (1 + L), so that dark and bright luminances get equally many bands.
     if (TOON_BANDS > 0u) {
         float seen = max(luminance(radiance) * frame.exposure, 1e-6);   // 1e-6: a division by it follows
-        float band = (floor(seen / (1.0 + seen) * float(TOON_BANDS)) + 0.5) / float(TOON_BANDS);
+        // min: above 1.7e7, L / (1 + L) rounds to 1, which would be one band too many.
+        float step = min(floor(seen / (1.0 + seen) * float(TOON_BANDS)), float(TOON_BANDS) - 1.0);
+        float band = (step + 0.5) / float(TOON_BANDS);
         radiance *= band / (1.0 - band) / seen;
     }
     return radiance;

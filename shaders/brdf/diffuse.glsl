@@ -36,7 +36,8 @@ float f_renormalized_burley(float n_dot_l, float n_dot_v, float v_dot_h, float r
 //   f_single = albedo A / pi (1 + r s / t)        s = LoV - NoL NoV        t = s > 0 ? max(NoL, NoV) : 1
 //   f_multi = rho / pi (1 - E(l)) (1 - E(v)) / (1 - E_avg)     rho = albedo^2 E_avg / (1 - albedo (1 - E_avg))
 //
-// E(c) is the paper's polynomial, with an error below 0.1 %. r: roughness, 0 (Lambert) to 1 (steep grooves).
+// E(c) is the paper's polynomial, with an error below 0.1 %, which exceeds 1 by 4e-4 at c = 0, r = 1. So 1 - E is limited
+// to 0 and more, as in the authors' listing. r: roughness, 0 (Lambert) to 1 (steep grooves).
 float eon_albedo(float c, float r, float a) {
     float x = 1.0 - c;
     return a * (1.0 + r * x * (0.0571085289 + x * (0.491881867 + x * (0.0714429953 * x - 0.332181442))));
@@ -52,7 +53,9 @@ vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, floa
     // Lambert (r = 0) loses nothing, so `multi` would be 0 / 0; 1e-6 makes it 0.
     float lost = max(1.0 - average, 1e-6);
     vec3 rho = albedo * albedo * average / (1.0 - albedo * lost);
-    vec3 multi = rho * ((1.0 - eon_albedo(n_dot_l, r, a)) * (1.0 - eon_albedo(n_dot_v, r, a)) / lost);
+    float lost_l = max(1.0 - eon_albedo(n_dot_l, r, a), 0.0);
+    float lost_v = max(1.0 - eon_albedo(n_dot_v, r, a), 0.0);
+    vec3 multi = rho * (lost_l * lost_v / lost);
     return (single + multi) / PI;
 }
 

@@ -2,13 +2,17 @@
 //
 //            n                    n    shading normal                  h    half vector, (l + v) / |l + v|
 //        l   |   h                l    towards the light               F0   reflectance along the normal
-//         \  |  /   . v           v    towards the eye                 alpha = roughness^2
-//          \ | / .                NoL  max(n . l, 0), likewise NoH, VoH
+//         \  |  /   . v           v    towards the eye; mirrored at the plane of n where n faces away from the eye
+//          \ | / .                NoL  max(n . l, 0), likewise NoH, VoH           alpha = roughness^2
 //     ______\|/.______            all vectors are unit, in world space, and point away from the surface
 //
 //   f = k_d f_diffuse + k_s D V + f_multiple     (Cook & Torrance 1982 over a diffuse base; glTF 2.0, appendix B)
 //   k_s = mix(F_dielectric, F_metal, metallic)
-//   k_d = (1 - metallic) (1 - F_dielectric)      a dielectric transmits what it does not reflect; a metal absorbs it
+//   k_d = (1 - metallic) (1 - R(l)) (1 - R(v)) / (1 - R_avg)
+//
+// R(w) is the fraction of light from w that the dielectric's boundary reflects, and R_avg its mean: a dielectric lets in
+// what it does not reflect, and a metal absorbs it. (With DIFFUSE_COUPLING=GltfSample, k_d = (1 - metallic) (1 -
+// F_dielectric), as in glTF's sample implementation. See `entering`.)
 //
 // `metallic` blends the results of two materials, not their F0: the dielectric's own Fresnel term attenuates its
 // diffuse lobe and must not depend on the metal. So f = mix(f_dielectric, f_metal, metallic), exactly.
@@ -85,9 +89,9 @@ float entering(Surface s, Brdf brdf, Dfg dfg_l) {
 // The caller multiplies f by |NoL| of the base normal; the quotient `turned` replaces it by NoL of the coat normal. So
 // a bump of the base that turns away from the light does not darken the coat. Returns clearcoat F.
 float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf brdf) {
-    vec3 h = safe_normalize(l + v, s.clearcoat_n);
+    vec3 h = safe_normalize(l + mirrored_to_front(s.clearcoat_n, v), s.clearcoat_n);
     float n_dot_l = saturate(dot(s.clearcoat_n, l));
-    float n_dot_v = clamp(dot(s.clearcoat_n, v), MIN_N_DOT_V, 1.0);
+    float n_dot_v = n_dot_v_of(s.clearcoat_n, v);
     float alpha = alpha_from_roughness(s.clearcoat_roughness);
     float d = d_specular(saturate(dot(s.clearcoat_n, h)), sin2_between(s.clearcoat_n, h), alpha);
     float weight = s.clearcoat * f_schlick(0.04, n_dot_v);
@@ -121,20 +125,21 @@ void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf brdf) {
 // undefined; then h = n.
 Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     const bool transmits = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
-    vec3 h = safe_normalize((transmits ? unfolded(s.n, l) : l) + v, s.n);
+    vec3 front_v = mirrored_to_front(s.n, v);
+    vec3 h = safe_normalize((transmits ? mirrored_to_front(s.n, l) : l) + front_v, s.n);
     float cos_l = dot(s.n, l);
     float above = cos_l > 0.0 ? 1.0 : 0.0;
 
     Brdf brdf;
     brdf.n_dot_l = saturate(cos_l);
-    brdf.n_dot_v = clamp(dot(s.n, v), MIN_N_DOT_V, 1.0);
+    brdf.n_dot_v = n_dot_v_of(s.n, v);
     brdf.n_dot_h = saturate(dot(s.n, h));
-    brdf.v_dot_h = saturate(dot(v, h));
+    brdf.v_dot_h = saturate(dot(front_v, h));
     brdf.sheen = brdf.clearcoat = brdf.transmitted = brdf.diffuse_transmitted = vec3(0.0);
 
     float alpha = alpha_from_roughness(s.roughness);
     if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
-        stretched_lobe(s, l, v, h, brdf);
+        stretched_lobe(s, l, front_v, h, brdf);
     } else {
         brdf.distribution = d_specular(brdf.n_dot_h, sin2_between(s.n, h), alpha);
         brdf.visibility = v_specular(brdf.n_dot_l, brdf.n_dot_v, alpha);
@@ -147,7 +152,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
 
     Dfg dfg_l = s.dfg;
     if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) {
-        dfg_l = dfg_towards_lamp(abs(cos_l), table_roughness(s), s.dfg);
+        dfg_l = dfg_towards_lamp(s, l);
     }
     brdf.multiple = vec3(0.0);
     if (MULTI_SCATTER != SINGLE_SCATTER) brdf.multiple = f_multiple(s, dfg_l.lost);
@@ -169,7 +174,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     }
     cover(s, l, v, abs(cos_l), brdf);
 
-    Cosines cosines = Cosines(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, dot(l, v));
+    Cosines cosines = Cosines(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, dot(l, front_v));
     brdf.diffuse = f_diffuse(s.base_color, s.roughness, alpha, cosines) * (brdf.k_d * above);
     brdf.specular = brdf.k_s * (brdf.distribution * brdf.visibility);
     brdf.multiple *= above;

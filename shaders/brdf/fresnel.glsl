@@ -18,6 +18,14 @@ float f0_from_ior(float ior) {
     return ratio * ratio;
 }
 
+// The inverse, (1 + sqrt F0) / (1 - sqrt F0), for F0 < 1.
+float ior_from_f0(float f0) { return (1.0 + sqrt(f0)) / (1.0 - sqrt(f0)); }
+
+// The direction of the refracted ray below a surface seen from v, unit (Snell's law). An infinite ior (0 in glTF) refracts to
+// -n. max: an ior below 1 could cause total reflection, which has no refracted ray. It does not matter on which side of
+// n's plane v lies.
+vec3 refracted(vec3 n, vec3 v, float ior) { return refract(-v, n, ior > 0.0 ? 1.0 / max(ior, 1.0) : 0.0); }
+
 // A dielectric, by Fresnel 1823, unpolarized, with g^2 = n^2 - 1 + c^2 (Walter et al. 2007, eq. 22):
 //
 //   F = 1/2 ((g - c) / (g + c))^2 (1 + ((c (g + c) - 1) / (c (g - c) + 1))^2)

@@ -122,9 +122,8 @@ vec3 f_measured(vec3 l, vec3 v, vec3 n, vec3 t, vec3 b) {
     t = safe_normalize(t - n * dot(n, t), normalize(axis - n * dot(n, axis)));
     vec3 across = cross(n, t);
     b = dot(across, b) < 0.0 ? -across : across;
-    // A normal map can turn n away from the eye. v is then clamped to a grazing angle, as in the analytic BRDF
-    // (MIN_N_DOT_V).
-    vec3 v_ts = normalize(vec3(dot(t, v), dot(b, v), max(dot(n, v), 1e-4)));
+    // A normal map can turn n away from the eye. v is then mirrored, as in evaluate_brdf.
+    vec3 v_ts = normalize(vec3(dot(t, v), dot(b, v), max(abs(dot(n, v)), 1e-4)));
     vec3 l_ts = vec3(dot(t, l), dot(b, l), n_dot_l);
     return measured_kind == MEASURED_MERL ? f_merl(l_ts, v_ts) : f_utia(l_ts, v_ts);
 }

@@ -21,17 +21,28 @@ const bool F_IS_SAMPLED = DIELECTRIC_IS_SAMPLED || METAL_IS_SAMPLED;
 
 // How far the exact F (Walter et al. 2007, eq. 22) has risen from F0 to 1: (F(c) - F(1)) / (1 - F(1)). It replaces (1 - c)^5 in
 // Schlick 1994, eq. 15, so that KHR_materials_specular's color and factor keep their meaning. c = 1 -> 0, c = 0 -> 1.
-float exact_rise(float ior, float c) {
-    float f0 = f0_from_ior(ior);
-    return saturate((f_dielectric_exact(ior, c) - f0) / max(1.0 - f0, 1e-4));   // 1e-4: infinite ior, where F is 1
+//
+// The index is the one that has the surface's F0, its largest component, before the specular factor. It is s.ior where
+// the color is white. Materials converted from specular-glossiness have an infinite ior and give F0 by the color; F of
+// that ior is 1 at all angles and has no rise. No finite index has F0 = 1, so F0 is limited to 0.999. 1e-4: a factor of 0.
+float exact_rise(Surface s, float c) {
+    float f0 = min(max_component(s.f0) / max(s.f90, 1e-4), 0.999);
+    return saturate((f_dielectric_exact(ior_from_f0(f0), c) - f0) / (1.0 - f0));
+}
+
+// F of the thin film over a base of reflectance f0. Under a clear coat, the medium above the film is the coat, with an
+// index of 1.5 (KHR_materials_iridescence, "Clearcoat"); a partial coat counts as an index in between.
+vec3 film_fresnel(Surface s, vec3 f0, float c) {
+    float outside = (FEATURES & FEATURE_CLEARCOAT) != 0u ? mix(1.0, 1.5, s.clearcoat) : 1.0;
+    return f_film(f0, s.iridescence_ior, s.iridescence_nm, outside, c);
 }
 
 // F of the dielectric: F0 + (F90 - F0) rise (KHR_materials_specular), with the film's F mixed in by its factor
 // (KHR_materials_iridescence).
 vec3 dielectric_fresnel(Surface s, float c) {
     vec3 f90 = vec3(s.f90);
-    vec3 fresnel = FRESNEL_DIELECTRIC == EXACT_DIELECTRIC ? mix(s.f0, f90, exact_rise(s.ior, c)) : f_schlick(s.f0, f90, c);
-    if (HAS_FILM) fresnel = mix(fresnel, f_film(s.f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    vec3 fresnel = FRESNEL_DIELECTRIC == EXACT_DIELECTRIC ? mix(s.f0, f90, exact_rise(s, c)) : f_schlick(s.f0, f90, c);
+    if (HAS_FILM) fresnel = mix(fresnel, film_fresnel(s, s.f0, c), s.iridescence);
     return fresnel;
 }
 
@@ -62,11 +73,11 @@ vec3 metal_fresnel(Surface s, float c) {
         metal_ior(s, n, k);
         fresnel = FRESNEL_METAL == F82_METAL ? f_82(f0, f_conductor(n, k, COS_82), c) : f_conductor(n, k, c);
     }
-    if (HAS_FILM) fresnel = mix(fresnel, f_film(f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    if (HAS_FILM) fresnel = mix(fresnel, film_fresnel(s, f0, c), s.iridescence);
     return fresnel;
 }
 
-// The sum of F at F_COSINES and at c = 1 with these weights, of which the last is what is left of `total`.
+// Quadrature: the sum of w_j F(c_j) over F_COSINES. The rest of `total`, total - sum of w_j, is the weight of c = 1.
 vec3 sampled_dielectric(Surface s, vec4 weights, float total) {
     vec3 sum = dielectric_fresnel(s, F_COSINES.x) * weights.x + dielectric_fresnel(s, F_COSINES.y) * weights.y;
     sum += dielectric_fresnel(s, F_COSINES.z) * weights.z + dielectric_fresnel(s, F_COSINES.w) * weights.w;

@@ -41,7 +41,7 @@ struct Surface {
     float iridescence_ior;     // of the film
     float iridescence_nm;      // thickness of the film, nanometers
     float transmission;        // FEATURE_TRANSMISSION: 0 none .. 1
-    float thickness;           // FEATURE_VOLUME: meters in world space, 0 is thin-walled
+    float thickness;           // FEATURE_VOLUME: meters in world space along the refracted ray, 0 is thin-walled
     vec3 attenuation_color;    // transmittance of attenuation_distance
     float attenuation_distance; // meters
     float dispersion;          // FEATURE_DISPERSION: 20 / Abbe number

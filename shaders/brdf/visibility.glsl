@@ -10,9 +10,11 @@
 #include "brdf/models.glsl"
 #include "common/math.glsl"
 
-// A normal map can turn n away from the eye, where no BRDF is defined. The clamp shades such points as at a grazing
-// angle instead of black. 1e-4 is far below a degree; together with MIN_ALPHA it keeps V's denominator above zero.
+// A normal map can turn n away from the eye, where no BRDF is defined. All shading mirrors v at the plane of n there
+// (mirrored_to_front), so that NoV is |n . v|, as KHR_materials_clearcoat has it, and reflections stay above the surface.
+// The clamp to 1e-4, which is far below a degree, keeps V's denominator above zero, together with MIN_ALPHA.
 const float MIN_N_DOT_V = 1e-4;
+float n_dot_v_of(vec3 n, vec3 v) { return clamp(abs(dot(n, v)), MIN_N_DOT_V, 1.0); }
 
 // Smith's functions use Lambda, the ratio of masked to visible microfacets. Written as c (1 + 2 Lambda) with the cosine
 // c, they contain no tangent that diverges.
@@ -47,8 +49,8 @@ float v_separable(float n_dot_l, float n_dot_v, float a2_l, float a2_v) {
 }
 
 // G1 = c / (c (1 - k) + k) (Schlick 1994, eq. 19), without a square root. k = alpha sqrt(2 / pi) is Schlick's value for
-// Beckmann; k = alpha / 2 approximates GGX (Karis 2013, eq. 4, without his remapping of roughness). Neither shadows
-// less than Smith.
+// Beckmann; k = alpha / 2 approximates GGX (Karis 2013, eq. 4, without his remapping of roughness). Both shadow at
+// least as much as Smith's G1.
 float v_schlick(float n_dot_l, float n_dot_v, float a2_l, float a2_v) {
     float scale = NDF == BECKMANN ? 0.797885 : 0.5;
     float k_l = scale * sqrt(a2_l);

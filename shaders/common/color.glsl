@@ -18,6 +18,9 @@ vec3 linear_from_srgb(vec3 x) {
 // Y of CIE XYZ: the second row of the Rec. 709 matrix (ITU-R BT.709-6).
 float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 
+// Luma Y': the same sum of encoded values (ITU-R BT.709-6). Not the luminance, but close to how bright a pixel looks.
+float luma(vec3 encoded) { return luminance(encoded); }
+
 // 0 blue, 1/4 cyan, 1/2 green, 3/4 yellow, 1 red: each channel is a tent with a flat top. Inputs are clamped.
 vec3 heat(float t) { return saturate(1.5 - abs(4.0 * saturate(t) - vec3(3.0, 2.0, 1.0))); }
 

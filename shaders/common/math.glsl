@@ -30,6 +30,9 @@ float sin2_between(vec3 a, vec3 b) {
     return chord2 * (1.0 - 0.25 * chord2);
 }
 
+// x, mirrored at the plane of n if it points below it: x - 2 min(n . x, 0) n. n . x becomes |n . x|.
+vec3 mirrored_to_front(vec3 n, vec3 x) { return x - 2.0 * min(dot(n, x), 0.0) * n; }
+
 // A unit vector perpendicular to the unit vector n.
 vec3 any_perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.7 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));

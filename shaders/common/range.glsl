@@ -23,7 +23,7 @@ vec3 color_of_number(float t) {
     return mix(frame.colormap[low], frame.colormap[low + 1], at - float(low));
 }
 
-// Noise of half a step of 8 bits around 0, which turns the bands of smooth gradients into grain. Interleaved gradient noise
+// Dither of +-1/2 step of 8 bits, which turns the bands of smooth gradients into grain. Interleaved gradient noise
 // spreads evenly over each 3 x 3 pixels (Jimenez 2014, Next Generation Post Processing in Call of Duty: Advanced Warfare).
 float dither_noise(vec2 pixel) {
     float noise = fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));

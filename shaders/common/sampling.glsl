@@ -14,8 +14,7 @@ vec2 hammersley(uint i, uint count) {
     return vec2((float(i) + 0.5) / float(count), float(bitfieldReverse(i) >> 8) * exp2(-24.0));
 }
 
-// Azimuth of point i over 2 pi, in golden-ratio steps. On circles of growing radius such points are evenly spread,
-// whatever the radii are.
+// Azimuth of point i as a fraction of a turn. Steps of the golden angle interleave evenly on rings of any radius.
 float golden_turns(uint i) { return fract(float(i) * 0.618033988); }
 
 // Three random 32-bit words from three (pcg3d: Jarzynski & Olano 2020, section 3). Stateless: hash pixel and sample
@@ -64,9 +63,10 @@ vec3 sample_ggx(vec2 u, float alpha) {
     return direction_from_cosine(sqrt((1.0 - u.x) / (1.0 + (alpha * alpha - 1.0) * u.x)), u.y);
 }
 
-float pdf_ggx(float n_dot_h, float alpha) {
+// sin2_h: sin^2 of the angle to h, from sin2_between. 1 - NoH^2 would be off by percents where alpha is small.
+float pdf_ggx(float n_dot_h, float sin2_h, float alpha) {
     float a2 = alpha * alpha;
-    float spread = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
+    float spread = n_dot_h * n_dot_h * a2 + sin2_h;
     return a2 * max(n_dot_h, 0.0) / (PI * spread * spread);
 }
 
@@ -93,12 +93,9 @@ vec3 sample_ggx_vndf(vec2 u, vec3 v, vec2 alpha) {
     return normalize(vec3(alpha * h.xy, max(h.z, 1e-6)));   // 1e-6: an edge-on facet still has a direction
 }
 
-// Anisotropic D: Heitz 2014, eq. 85 (with equal alphas: Walter et al. 2007, eq. 33).
+// The density of sample_ggx_vndf.
 float pdf_ggx_vndf(vec3 v, vec3 h, vec2 alpha) {
-    vec3 scaled = vec3(h.xy / alpha, h.z);
-    float spread = dot(scaled, scaled);
-    float d = 1.0 / (PI * alpha.x * alpha.y * spread * spread);
-    return g1_ggx(v, alpha) * d * max(dot(v, h), 0.0) / max(v.z, 1e-6);   // 1e-6: at v.z = 0 no facet is visible
+    return g1_ggx(v, alpha) * d_ggx_reference(h, alpha) * max(dot(v, h), 0.0) / max(v.z, 1e-6);   // 1e-6: at v.z = 0 no facet is visible
 }
 
 // Density of l = reflect(-v, h) from the density of h: dh / dl = 1 / (4 VoH) (Walter et al. 2007, eq. 14). 1e-6:

@@ -133,7 +133,7 @@ const uint MODE_IRIDESCENCE = 121u;
 const uint MODE_IRIDESCENCE_THICKNESS = 122u;
 //@mode transmission "Transmission" group="Material" encode=data components=1 needs=transmission words="glass refraction" doc="Fraction of entering light that is transmitted."
 const uint MODE_TRANSMISSION = 123u;
-//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume, world space, meters."
+//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume along the refracted ray, world space, meters."
 const uint MODE_THICKNESS = 124u;
 //@mode attenuation-color "Attenuation color" group="Material" encode=color needs=volume doc="Color of white light after the attenuation distance."
 const uint MODE_ATTENUATION_COLOR = 125u;
@@ -153,13 +153,13 @@ const uint MODE_G = 301u;
 const uint MODE_V = 302u;
 //@mode f "Fresnel F" group="BRDF terms" encode=color key=f doc="F at V dot H, dielectric and metal mixed; by default Schlick 1994, eq. 15."
 const uint MODE_F = 303u;
-//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="Weight of the diffuse lobe below all layers; by default (1 - metallic) (1 - F)."
+//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="Weight of the diffuse lobe below all layers; by default (1 - metallic) (1 - R(l)) (1 - R(v)) / (1 - R_avg), R the boundary's reflectance."
 const uint MODE_K_D = 304u;
 //@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="F, dielectric and metal mixed, times what the layers above transmit."
 const uint MODE_K_S = 305u;
 //@mode n-dot-l "N dot L" group="BRDF terms" encode=data components=1 doc="0 for light behind the surface."
 const uint MODE_N_DOT_L = 306u;
-//@mode n-dot-v "N dot V" group="BRDF terms" encode=data components=1 doc="At least 0.0001. Needs no light."
+//@mode n-dot-v "N dot V" group="BRDF terms" encode=data components=1 doc="|n . v|, at least 0.0001. Needs no light."
 const uint MODE_N_DOT_V = 307u;
 //@mode n-dot-h "N dot H" group="BRDF terms" encode=data components=1 doc="h is the half vector of l and v."
 const uint MODE_N_DOT_H = 308u;
@@ -207,7 +207,7 @@ const uint MODE_IBL_DIFFUSE = 411u;
 const uint MODE_IBL_SPECULAR = 412u;
 //@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap needs=environment doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
-//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Prefiltered radiance in the mirror direction."
+//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Prefiltered radiance of the specular lobe: in the mirror direction for a mirror, nearer to n the rougher it is."
 const uint MODE_PREFILTERED = 414u;
 //@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E of the selected D and V: the lobe reflects F0 A + F90 B, or E if F is 1."
 const uint MODE_DFG = 415u;
@@ -255,7 +255,7 @@ const uint MODE_MONTE_CARLO = 506u;
 const uint MODE_IBL_ERROR = 507u;
 //@mode energy "Energy" group="Truth" encode=data stage=paths words="furnace conservation" doc="Albedo under uniform white light; red above 1.005."
 const uint MODE_ENERGY = 508u;
-//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces words="reference ground truth ray" doc="The picture with shadows, occlusion and reflections between surfaces."
+//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces words="reference ground truth ray" doc="The picture with shadows, occlusion and light between surfaces. Glass shows what the picture shows behind it: refraction is not traced."
 const uint MODE_PATH_TRACED = 509u;
 //@mode path-error "Error of the picture" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Path traced minus the picture: the sum of the five errors below."
 const uint MODE_PATH_ERROR = 510u;

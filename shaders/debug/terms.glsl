@@ -45,7 +45,7 @@ bool debug_terms(Surface s, vec3 v, Lit lit, out vec3 value) {
         value = lit.lobes.sheen;
         present = present && has_feature(FEATURE_SHEEN);
     } else {
-        value = vec3(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0));   // MODE_N_DOT_V needs no light
+        value = vec3(n_dot_v_of(s.n, v));   // MODE_N_DOT_V needs no light
         present = true;
     }
     value = if_present(present, value);

@@ -61,7 +61,7 @@ const float SHARE[DENSITIES] = float[](1.0, 0.05, 0.01);
 
 float alpha_of_density(uint i, float alpha) { return i == 0u ? alpha : i == 1u ? sqrt(alpha) : 1.0; }
 
-// Up to the factor that is the same for all densities: G1 VoH / NoV and dh / dl = 1 / (4 VoH) of each.
+// Density of l from sampler i, 1/sr: the density of visible normals, G1 D VoH / NoV, times dh / dl = 1 / (4 VoH).
 float pdf_of_density(uint i, vec3 v, vec3 h, float alpha) {
     return pdf_reflected(pdf_ggx_vndf(v, h, vec2(alpha_of_density(i, alpha))), dot(v, h));
 }

@@ -16,6 +16,7 @@
 #include "brdf/models.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
 struct Albedo {
@@ -28,8 +29,6 @@ struct Albedo {
     vec3 diffuse_transmitted;  // transmitted and scattered
     float under_coat;          // transmittance of the coat, for light from below it
 };
-
-float n_dot_v_of(vec3 n, vec3 v) { return clamp(dot(n, v), MIN_N_DOT_V, 1.0); }
 
 // The fraction of light that enters the dielectric and leaves towards v.
 //

@@ -19,6 +19,7 @@ struct Strip {
     float weight;              // relative; 0 if the strip reflects nothing towards v
 };
 
+// v: towards the eye, above the surface (mirrored_to_front).
 Strip strip_of_lobe(Surface s, vec3 v, int i) {
     vec2 alpha = alpha_sides(s);
     float spread = sqrt(max(alpha.x * alpha.x - alpha.y * alpha.y, 0.0));
@@ -29,7 +30,7 @@ Strip strip_of_lobe(Surface s, vec3 v, int i) {
     float n_dot_l = dot(s.n, l);
     float v_dot_h = dot(v, h);
     if (n_dot_l <= 0.0 || v_dot_h <= 0.0) return Strip(h, 0.0);
-    float n_dot_v = clamp(dot(s.n, v), MIN_N_DOT_V, 1.0);
+    float n_dot_v = n_dot_v_of(s.n, v);
     float a2_l = a2_towards(ts_from_ws * l, alpha);
     float a2_v = a2_towards(ts_from_ws * v, alpha);
     vec3 h_ts = ts_from_ws * h;

@@ -86,7 +86,7 @@ AreaLight integrate_rect(Light light, vec3 position_ws, vec3 n, vec3 v, float ro
     vec3 x = to_tangent * light.half_x_ws;
     vec3 y = to_tangent * light.half_y_ws;
 
-    vec4 m = ltc_inverse(roughness, clamp(dot(n, v), MIN_N_DOT_V, 1.0));
+    vec4 m = ltc_inverse(roughness, n_dot_v_of(n, v));
     mat3 inverse_m = mat3(m.x, 0.0, m.z, 0.0, 1.0, 0.0, m.y, 0.0, m.w);
     Rim horizon = Rim(vec3(0.0), vec3(0.0));
     Rim rim = horizon;

@@ -29,11 +29,12 @@
 vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     float alpha = pow(ggx_roughness(roughness), 2.0);
     float smoothness = 1.0 - alpha;
-    return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
+    return mix(n, reflect(-mirrored_to_front(n, v), n), smoothness * (sqrt(smoothness) + alpha));
 }
 
 // Mean incident radiance of an anisotropic lobe, without the sun.
 vec3 stretched_radiance(Surface s, vec3 v) {
+    v = mirrored_to_front(s.n, v);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < STRIPS; ++i) {
         Strip strip = strip_of_lobe(s, v, i);
@@ -96,7 +97,7 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
         light.clearcoat = reflected_coat(s, v, albedo.clearcoat) * occlusion;
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        vec3 sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness);
+        vec3 sheen = albedo.sheen * prefiltered_sheen(reflect(-mirrored_to_front(s.n, v), s.n), s.sheen_roughness);
         if ((FEATURES & FEATURE_SUN) != 0u) sheen += frame.environment_intensity * sun_from_sheen(s, v);
         light.sheen = sheen * s.occlusion;
     }

@@ -6,6 +6,7 @@
 #include "interface.glsl"
 #include "brdf/energy/albedo.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 
@@ -16,11 +17,10 @@ struct LobeFrame {
     vec2 alpha;                // along the frame's x and y
 };
 
-// A normal map can turn n away from the eye; v is then clamped to a grazing angle. The estimate stays correct, since any
-// density above 0 will do.
+// A normal map can turn n away from the eye; v is then mirrored, as in evaluate_brdf.
 LobeFrame lobe_frame(mat3 world_from_lobe, vec3 v, vec2 alpha) {
     vec3 v_lobe = v * world_from_lobe;
-    return LobeFrame(world_from_lobe, normalize(vec3(v_lobe.xy, max(v_lobe.z, 1e-4))), alpha);
+    return LobeFrame(world_from_lobe, normalize(vec3(v_lobe.xy, max(abs(v_lobe.z), MIN_N_DOT_V))), alpha);
 }
 
 LobeFrame specular_frame(Surface s, vec3 v) {

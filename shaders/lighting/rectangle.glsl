@@ -6,6 +6,7 @@
 #include "brdf/energy/albedo.glsl"
 #include "brdf/layers/transmission.glsl"
 #include "brdf/surface.glsl"
+#include "common/math.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/anisotropy.glsl"
 #include "lighting/area.glsl"
@@ -27,6 +28,7 @@ AreaLight covered(Light light, vec3 position_ws, vec3 n, vec3 v, float roughness
 
 // The same for the specular lobe of an anisotropic surface.
 float covered_of_stretched(Light light, Surface s, vec3 v) {
+    v = mirrored_to_front(s.n, v);
     vec2 sum = vec2(0.0);
     for (int i = 0; i < STRIPS; ++i) {
         Strip strip = strip_of_lobe(s, v, i);

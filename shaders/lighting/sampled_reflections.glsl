@@ -63,7 +63,7 @@ vec3 reflected_sky(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_c
     float ratio = width / max(roughness, 1e-3);
     lobe.alpha = clamp(lobe.alpha * (ratio * ratio), MIN_ALPHA, 1.0);
     float offset = level_offset(width * pow(float(REFLECTION_SAMPLES), -0.25));   // of the lobe's middle
-    v = lobe.world_from_lobe * lobe.v;   // raised to the horizon if a normal map has turned n away
+    v = lobe.world_from_lobe * lobe.v;   // mirrored if a normal map has turned n away
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < REFLECTION_SAMPLES; ++i) {
         vec2 u = vec2((float(i) + 0.5) / float(REFLECTION_SAMPLES), golden_turns(i));

@@ -9,6 +9,7 @@
 #define LIGHTING_TRANSMISSION_GLSL
 
 #include "interface.glsl"
+#include "brdf/fresnel.glsl"
 #include "brdf/layers/transmission.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
@@ -26,10 +27,6 @@ vec3 attenuation(Surface s, float path) {
     if ((FEATURES & FEATURE_VOLUME) == 0u) return vec3(1.0);
     return exp(log(max(s.attenuation_color, 1e-6)) * min(path / s.attenuation_distance, 1e30));
 }
-
-// The refracted ray inside the volume (Snell's law), unit. An infinite ior (0 in glTF) refracts to -n. max: an ior
-// below 1 could cause total reflection, which has no refracted ray.
-vec3 refracted(Surface s, vec3 v, float ior) { return refract(-v, s.n, ior > 0.0 ? 1.0 / max(ior, 1.0) : 0.0); }
 
 // Position of a point in the picture of the scene, 0..1. If the thickness reaches behind the eye, this falls back to
 // the current pixel.
@@ -51,7 +48,7 @@ vec3 surroundings(vec3 direction, float roughness) {
 // getTransmissionSample).
 vec3 radiance_behind(Surface s, vec3 v, float ior) {
     bool thin = (FEATURES & FEATURE_VOLUME) == 0u;
-    vec3 direction = thin ? -v : refracted(s, v, ior);
+    vec3 direction = thin ? -v : refracted(s.n, v, ior);
     vec2 uv = picture_uv(thin ? s.position_ws : s.position_ws + direction * s.thickness);
     float roughness = transmission_roughness(s.roughness, ior);
     vec4 scene = textureLod(behind, uv, log2(float(textureSize(behind, 0).x)) * roughness);

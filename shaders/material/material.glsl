@@ -121,20 +121,24 @@ void read_layers(Fragment f, vec3 v, inout Surface s) {
     }
 }
 
-// Mean scale from object to world: KHR_materials_volume gives thickness in object space.
-float object_scale() {
-    mat4x3 m = draw.world_from_object;
-    return (length(m[0]) + length(m[1]) + length(m[2])) / 3.0;
+// The length in the world, along the unit vector d_ws, of a path of length 1 in object space, in which
+// KHR_materials_volume gives the thickness: 1 / |M^-1 d|. M^-1 = (b x c, c x a, a x b)^T / det for M with the columns a, b,
+// c. 0 for a model without depth along d. 1e-30: a model that is a line.
+float object_scale(vec3 d_ws) {
+    mat3 m = mat3(draw.world_from_object);
+    vec3 b_x_c = cross(m[1], m[2]);
+    vec3 d_times_det = vec3(dot(b_x_c, d_ws), dot(cross(m[2], m[0]), d_ws), dot(cross(m[0], m[1]), d_ws));
+    return abs(dot(m[0], b_x_c)) / max(length(d_times_det), 1e-30);
 }
 
-void read_transmission(Fragment f, inout Surface s) {
+void read_transmission(Fragment f, vec3 v, inout Surface s) {
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         vec2 uv = texture_uv(f, TEXTURE_TRANSMISSION);
         s.transmission = material.transmission_factor * texture(transmission_texture, uv).r;
     }
     if ((FEATURES & FEATURE_VOLUME) != 0u) {
         float texel = texture(thickness_texture, texture_uv(f, TEXTURE_THICKNESS)).g;
-        s.thickness = material.thickness * texel * object_scale();
+        s.thickness = material.thickness * texel * object_scale(refracted(s.n, v, s.ior));
         s.attenuation_color = material.attenuation_color;
         s.attenuation_distance = material.attenuation_distance;
     }
@@ -183,7 +187,7 @@ Surface make_surface(Fragment f, vec3 v) {
         s.conductor_k = material.conductor_k;
     }
     read_layers(f, v, s);
-    read_transmission(f, s);
+    read_transmission(f, v, s);
     return s;
 }
 

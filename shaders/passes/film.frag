@@ -29,6 +29,6 @@ void main() {
     // numbers is closer to a normal distribution than a single number is.
     vec3 random = random_numbers(uvec3(gl_FragCoord.xy, 0u));
     float noise = random.x + random.y - 1.0;
-    float tone = luminance(shown);
+    float tone = luma(shown);
     color = vec4(shown + film_grain * 0.25 * noise * sqrt(saturate(tone * (1.0 - tone))), scene.a);
 }

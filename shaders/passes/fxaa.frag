@@ -27,7 +27,7 @@ vec4 pixel_at(ivec2 pixel) {
 }
 
 // Brightness as the display shows it, 0..1, plus alpha: the edge of an opaque pixel beside a transparent one is at least 1.
-float brightness(vec4 value) { return luminance(value.rgb) + value.a; }
+float brightness(vec4 value) { return luma(value.rgb) + value.a; }
 
 float brightness_at(ivec2 pixel) { return brightness(pixel_at(pixel)); }
 

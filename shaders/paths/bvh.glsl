@@ -12,13 +12,22 @@ layout(set = SET_FRAME, binding = BINDING_BVH, scalar) readonly buffer BoundingV
 
 const float NO_HIT = 3.4e38;
 
+// 1 / d for each axis, finite. With a d of 0, a ray that starts on a face of a box would have a distance of 0 times infinity
+// to it, a NaN, of which min and max are undefined. 1e-20 is far below the rounding errors of a unit vector, and its inverse
+// times a distance of less than 1e18 m is finite.
+vec3 inverse_of(vec3 d) { return 1.0 / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20))); }
+
 // Distance at which the ray enters the box, or NO_HIT if it misses it or enters beyond `farthest`. The slabs of the three
-// axes overlap inside the box (Kay & Kajiya 1986). A direction of 0 along an axis gives infinities of the right signs.
+// axes overlap inside the box (Kay & Kajiya 1986).
+//
+// All factors are finite (inverse_of), so no product is a NaN. The boxes are 1e-10 m larger, so that a ray along a box's face
+// is inside of that face's slab. `leave` is 2 ulp larger, so that rounding does not let a ray pass between two boxes (Ize
+// 2013, "Robust BVH Ray Traversal").
 float box_distance(BvhNode node, vec3 origin, vec3 inverse_direction, float farthest) {
-    vec3 low = (node.min_ws - origin) * inverse_direction;
-    vec3 high = (node.max_ws - origin) * inverse_direction;
+    vec3 low = (node.min_ws - origin - 1e-10) * inverse_direction;
+    vec3 high = (node.max_ws - origin + 1e-10) * inverse_direction;
     float enter = max(max_component(min(low, high)), 0.0);
-    float leave = min(min_component(max(low, high)), farthest);
+    float leave = min(min_component(max(low, high)) * 1.00000024, farthest);
     return enter <= leave ? enter : NO_HIT;
 }
 
@@ -40,7 +49,7 @@ bool hits_triangle(Ray ray, uint index, float farthest, out Hit hit) {
 // The nearest hit closer than `farthest`, or with `any_hit` the first one found, which is all that a shadow needs. Returns
 // false if nothing stops the ray.
 bool trace(Ray ray, float farthest, bool any_hit, out Hit nearest) {
-    vec3 inverse_direction = 1.0 / ray.direction_ws;
+    vec3 inverse_direction = inverse_of(ray.direction_ws);
     nearest = Hit(farthest, 0u, vec2(0.0));
     bool found = false;
     uint waiting[MAX_BVH_DEPTH];

@@ -33,8 +33,9 @@ Kernel lobe_kernel(vec3 axis, float roughness) {
 // Density with which the kernel's own sampler draws l.
 float pdf_kernel(Kernel kernel, vec3 l) {
     if (kernel.alpha == 0.0) return pdf_cosine(dot(kernel.axis, l));
-    float n_dot_h = dot(kernel.axis, safe_normalize(kernel.axis + l, kernel.axis));
-    return pdf_reflected(pdf_ggx(n_dot_h, kernel.alpha), n_dot_h);
+    vec3 h = safe_normalize(kernel.axis + l, kernel.axis);
+    float n_dot_h = dot(kernel.axis, h);
+    return pdf_reflected(pdf_ggx(n_dot_h, sin2_between(kernel.axis, h), kernel.alpha), n_dot_h);
 }
 
 vec3 sample_kernel(Kernel kernel, vec2 u) {

@@ -31,7 +31,7 @@ bool can_contribute(float n_dot_l) { return n_dot_l > 0.0 || (n_dot_l < 0.0 && (
 // Density with which sample_lobes draws l, 1/sr. Each lobe also exists mirrored behind a surface that transmits light.
 float pdf_lobes(Surface s, vec3 v, vec3 l) {
     LobeFrame specular = specular_frame(s, v);
-    vec3 front = LIGHT_PASSES ? unfolded(s.n, l) : l;
+    vec3 front = LIGHT_PASSES ? mirrored_to_front(s.n, l) : l;
     float pdf = pdf_lobe(specular, front) + pdf_cosine(dot(s.n, front));
     if (HAS_COAT) {
         LobeFrame coat = coat_frame(s, v);

@@ -9,7 +9,7 @@
 
 layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
     float roughness_scale;     //@ui "Roughness scale" 0..2 group="Material" doc="Roughness of all materials, times this" = 1.0
-    float rim_strength;        //@ui "Rim" 0..1 group="Material" doc="Brightness where the surface turns away from the eye. No light makes it" = 0.0
+    float rim_strength;        //@ui "Rim" 0..1 group="Material" doc="A glow along silhouettes. Not physical: no light source causes it" = 0.0
     float rim_power;           //@ui "Rim power" 1..8 group="Material" doc="How narrow the rim is" = 3.0
     vec3 rim_color;            //@ui "Rim color" color group="Material" = 1 0.8 0.6
     float bloom_strength;      //@ui "Bloom strength" 0..1 when=BLOOM = 0.12

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec3};
 
-/// A thin film in air.
+/// A thin film in air, or under a clear coat.
 #[derive(Clone, Debug)]
 pub struct Film {
     /// 0..1.
@@ -12,6 +12,8 @@ pub struct Film {
     pub ior: f64,
     /// Nanometers.
     pub thickness: f64,
+    /// Index of the medium above: that of air, 1, or of the coat, 1.5 (KHR_materials_iridescence, "Clearcoat").
+    pub outside: f64,
 }
 
 /// Reflectance of a smooth boundary at normal incidence, from the indices on both sides.
@@ -45,17 +47,18 @@ impl Film {
     /// 1e-4 to avoid a reflectance of 1; this does not. Clamps to 0 from below (the specification) and to 1 from above
     /// (the renderer).
     pub fn fresnel(&self, f0: DVec3, cosine: f64) -> DVec3 {
-        // Snell's law.
+        // Snell's law, from air into the film, and into what is above it.
         let cosine2 = 1.0 - (1.0 - cosine * cosine) / (self.ior * self.ior);
+        let cosine1 = (1.0 - (1.0 - cosine * cosine) / (self.outside * self.outside)).sqrt();
         if cosine2 < 0.0 {
             return DVec3::ONE;
         }
         let cosine2 = cosine2.sqrt();
         let path = 2.0 * self.ior * self.thickness * 1e-9 * cosine2;
-        // The outer face: from air into the film, and back out.
-        let r12 = schlick(r0(self.ior, 1.0), cosine);
+        // The outer face: from above into the film, and back out.
+        let r12 = schlick(r0(self.ior, self.outside), cosine1);
         let t121 = 1.0 - r12;
-        let phase21 = if self.ior < 1.0 { 0.0 } else { PI };
+        let phase21 = if self.ior < self.outside { 0.0 } else { PI };
         let rgb_from_xyz = DMat3::from_cols_array_2d(&RGB_FROM_XYZ).transpose();
         let channel = |c: usize| {
             let base_ior = (1.0 + f0[c].sqrt()) / (1.0 - f0[c].sqrt());

@@ -93,6 +93,8 @@ impl Inputs {
                 strength: number("iridescence"),
                 ior: material.iridescence.ior.into(),
                 thickness: 1e3 * number("iridescence-thickness"),
+                // A partial coat counts as an index in between.
+                outside: 1.0 + 0.5 * number("clearcoat"),
             },
             transmission: number("transmission"),
             diffuse_transmission: number("diffuse-transmission"),

@@ -5,10 +5,12 @@
 
 #include "interface.glsl"
 #include "brdf/diffuse.glsl"
+#include "brdf/energy/anisotropy.glsl"
 #include "brdf/energy/dfg.glsl"
 #include "brdf/energy/dfg_table.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_LAMP_DFG) uniform sampler2D lamp_dfg_table;
@@ -24,18 +26,53 @@ Dfg dfg_at(float cosine, float roughness) {
     return dfg_of(dfg_texel(cosine, roughness, DFG_DIRECTION), weights);
 }
 
+// The same moments for a lobe of another E, whose facets F meets at the same angles. 1e-3: a lobe that masking takes away
+// entirely.
+Dfg with_lost(Dfg dfg, float lost) {
+    float ratio = (1.0 - lost) / max(1.0 - dfg.lost, 1e-3);
+    return Dfg(dfg.a * ratio, dfg.b * ratio, dfg.e * ratio, lost, dfg.weights * ratio);
+}
+
 // A + B. f_schlick(1, 1, c) does not depend on c, so A + B is proportional to E, which is proportional to 1 - lost; the factor
 // is that of the direction to the eye. 1e-3: a lobe that masking takes away entirely.
 float sum_of_terms(float lost, Dfg towards_eye) {
     return (1.0 - lost) * (towards_eye.a + towards_eye.b) / max(1.0 - towards_eye.lost, 1e-3);
 }
 
-// The moments towards a lamp. Its table holds B and `lost` alone, from which A follows.
-Dfg dfg_towards_lamp(float cosine, float roughness, Dfg towards_eye) {
-    if (F_IS_SAMPLED) return dfg_at(cosine, roughness);
-    vec2 b_lost = textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
-    float sum = sum_of_terms(b_lost.y, towards_eye);
-    return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+// The lobe's moments towards v.
+Dfg dfg_towards_eye(Surface s, vec3 v) {
+    Dfg dfg = dfg_at(n_dot_v_of(s.n, v), table_roughness(s));
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
+        RoundLobe equal = lobe_of_equal_albedo(s, v);
+        dfg = with_lost(dfg, dfg_texel(equal.cosine, equal.roughness, DFG_DIRECTION).a);
+    }
+    return dfg;
+}
+
+// B and `lost` towards a lamp.
+vec2 lamp_texel(float cosine, float roughness) {
+    return textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
+}
+
+// The lobe's moments towards a lamp. A follows from the two that the table holds.
+Dfg dfg_towards_lamp(Surface s, vec3 l) {
+    float cosine = abs(dot(s.n, l));
+    float roughness = table_roughness(s);
+    Dfg dfg;
+    if (F_IS_SAMPLED) {
+        dfg = dfg_at(cosine, roughness);
+    } else {
+        vec2 b_lost = lamp_texel(cosine, roughness);
+        float sum = sum_of_terms(b_lost.y, s.dfg);
+        dfg = Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+    }
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
+        RoundLobe equal = lobe_of_equal_albedo(s, l);
+        float lost = F_IS_SAMPLED ? dfg_texel(equal.cosine, equal.roughness, DFG_DIRECTION).a
+                                  : lamp_texel(equal.cosine, equal.roughness).y;
+        dfg = with_lost(dfg, lost);
+    }
+    return dfg;
 }
 
 // Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu. Likewise, the table has no A.
@@ -45,22 +82,6 @@ Dfg dfg_mean(float roughness, Dfg towards_eye) {
     if (!F_IS_SAMPLED) return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
     float e = texelFetch(dfg_table, fine_texel(roughness, DFG_LOBE), 0).r;
     return Dfg(sum - b_lost.x, b_lost.x, e, b_lost.y, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
-}
-
-// alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
-vec2 alpha_sides(Surface s) {
-    float alpha = alpha_from_roughness(s.roughness);
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) return vec2(alpha);
-    return vec2(mix(alpha, 1.0, s.anisotropy * s.anisotropy), alpha);
-}
-
-// The roughness at which to look up the table. The table holds isotropic lobes only. Averaged over the azimuth, an
-// anisotropic lobe has about the E of an isotropic one in between: our fit, with an error below 0.005 of E. In a single
-// direction the error may be larger.
-float table_roughness(Surface s) {
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) return s.roughness;
-    vec2 alpha = alpha_sides(s);
-    return sqrt(sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, 0.46)));
 }
 
 // A single angle that represents the whole lobe, for a thin film, whose F changes too fast for five samples. B / E is the
@@ -80,13 +101,23 @@ vec3 metal_albedo(Surface s, Dfg dfg) {
     return s.base_color * dfg.a + dfg.b;
 }
 
-// Whether f_diffuse is f_lambert, which is the same in all directions. The driver evaluates this when it compiles; an edit
-// of f_diffuse makes it false.
+bool equals_lambert(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
+    const vec3 COLOR = vec3(0.0, 0.5, 1.0);
+    float n_dot_h = (n_dot_l + n_dot_v) / (2.0 * v_dot_h);
+    Cosines x = Cosines(n_dot_l, n_dot_v, n_dot_h, v_dot_h, 2.0 * v_dot_h * v_dot_h - 1.0);
+    return f_diffuse(COLOR, roughness, roughness * roughness, x) == f_lambert(COLOR);
+}
+
+// Whether f_diffuse is f_lambert, which is the same in all directions. The driver evaluates this when it compiles, and an
+// edit of f_diffuse makes it false, unless the edit is Lambert at all places that are compared: light from the eye
+// (retroreflection), along the mirror direction and between, each from above, at a middle and at a grazing angle, and at low,
+// middle and high roughness.
 bool diffuse_is_lambert() {
     if (DIFFUSE != LAMBERT) return false;
-    const vec3 COLOR = vec3(0.3, 0.5, 0.7);
-    bool is_lambert = f_diffuse(COLOR, 0.3, 0.09, Cosines(0.2, 0.9, 0.7, 0.8, 0.28)) == f_lambert(COLOR);
-    return is_lambert && f_diffuse(COLOR, 0.8, 0.64, Cosines(0.7, 0.3, 0.6, 0.5, -0.5)) == f_lambert(COLOR);
+    bool from_eye = equals_lambert(1.0, 1.0, 1.0, 0.5) && equals_lambert(0.7, 0.7, 1.0, 0.9) && equals_lambert(0.1, 0.1, 1.0, 0.1);
+    bool mirrored = equals_lambert(0.8, 0.8, 0.8, 0.1) && equals_lambert(0.5, 0.5, 0.5, 0.5) && equals_lambert(0.05, 0.05, 0.05, 1.0);
+    bool between = equals_lambert(0.95, 0.6, 0.9, 0.3) && equals_lambert(0.2, 0.9, 0.8, 0.0) && equals_lambert(0.9, 0.05, 0.7, 0.7);
+    return from_eye && mirrored && between;
 }
 
 // Integral of f_diffuse NoL dl. Lambert's needs no table, since the integral of NoL is pi. Other models need not be linear

@@ -67,9 +67,9 @@ float cosine_of_column(uint column, uint side) {
 }
 float column_of_cosine(float cosine, uint side) { return (sqrt(cosine) * float(side - 1u) + 0.5) / float(side); }
 
-// A slice with fine rows does not depend on a cosine. So it has 128 x 127 + 1 values of roughness, one after the other: the
-// one of the nearest is as exact as a half float, and a software device reads it faster than it interpolates four texels.
-// Rust interpolates them between the rows that ibl/dfg.comp writes.
+// Slices that do not depend on the angle store 16,257 steps of roughness instead, enough that the nearest one is as precise
+// as the half floats themselves. Reading one texel is cheaper than interpolating four. Rust interpolates the steps between
+// the rows that ibl/dfg.comp writes.
 ivec2 fine_texel(float roughness, uint slice) {
     int last = int(DFG_SIDE * (DFG_SIDE - 1u));
     int i = clamp(int(roughness * float(last) + 0.5), 0, last);

@@ -64,7 +64,7 @@ float boundary_albedo(Surface s, Dfg dfg) {
 void complete_surface(inout Surface s, vec3 v) {
     s.dielectric_average = dielectric_mean(s, F_MEAN_WEIGHTS);
     s.metal_average = metal_mean(s, F_MEAN_WEIGHTS);
-    s.dfg = dfg_at(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), table_roughness(s));
+    s.dfg = dfg_towards_eye(s, v);
     s.mean_dfg = dfg_mean(table_roughness(s), s.dfg);
     s.multiple = vec3(0.0);
     if (MULTI_SCATTER == KULLA_CONTY) {

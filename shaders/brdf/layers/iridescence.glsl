@@ -23,21 +23,26 @@ vec3 film_sensitivity(float path_nm, vec3 shift) {
     return RGB_FROM_XYZ * (xyz / 1.0685e-7);
 }
 
-// F of a film in air. f0: reflectance of the base in air; a metal is treated as a dielectric with that f0. The series
-// of reflections between the faces ignores polarization and is cut off after the second order:
+// F of a film. f0: reflectance of the base in air; a metal is treated as a dielectric with that f0. outside: index of the
+// medium above the film. c: the cosine in air, which Snell's law refracts into that medium. The series of reflections
+// between the faces ignores polarization and is cut off after the second order:
 //
 //   F = R12 + Rs + sum over m of 2 (Rs - T12) (R12 R23)^(m/2) S(m path, m shift)     Rs = T12^2 R23 / (1 - R12 R23)
 //   path = 2 ior nm cos2                                                      cos2: cosine of the refracted angle
 //
-// Reflection at a denser medium shifts the phase by pi. Below 30 nm the film's index fades to that of air, so that zero
-// thickness means no film. The truncated series and colors outside sRGB can leave 0..1, so the result is clamped.
-vec3 f_film(vec3 f0, float ior, float nm, float c) {
-    ior = mix(1.0, ior, smoothstep(0.0, 30.0, nm));
-    float cos2_squared = 1.0 - (1.0 - c * c) / (ior * ior);
+// Reflection at a denser medium shifts the phase by pi. Below 30 nm the film's index fades to that of the medium above,
+// so that zero thickness means no film. Belcour & Barla's code fades below 0.03 micrometers; the text of
+// KHR_materials_iridescence has the same 0.03, but of a thickness in nanometers, which is surely a slip. Viewers that
+// follow it to the letter show a film of 15 nm with its full index, and this one with half of the step. The truncated
+// series and colors outside sRGB can leave 0..1, so the result is clamped.
+vec3 f_film(vec3 f0, float ior, float nm, float outside, float c) {
+    ior = mix(outside, ior, smoothstep(0.0, 30.0, nm));
+    float sin2 = 1.0 - c * c;
+    float cos2_squared = 1.0 - sin2 / (ior * ior);
     if (cos2_squared < 0.0) return vec3(1.0);   // total internal reflection: film index below that of air
     float cos2 = sqrt(cos2_squared);
 
-    float r12 = f_schlick(f0_from_ior(ior), c);
+    float r12 = f_schlick(f0_from_ior(ior / outside), sqrt(1.0 - sin2 / (outside * outside)));
     float t12 = 1.0 - r12;
     // 0.9999: f0 = 1 would need an infinite index.
     vec3 root = sqrt(min(f0, 0.9999));
@@ -45,7 +50,7 @@ vec3 f_film(vec3 f0, float ior, float nm, float c) {
     vec3 ratio = (base_ior - ior) / (base_ior + ior);
     vec3 r23 = f_schlick(ratio * ratio, vec3(1.0), cos2);
 
-    vec3 shift = vec3(ior < 1.0 ? 0.0 : PI) + vec3(lessThan(base_ior, vec3(ior))) * PI;
+    vec3 shift = vec3(ior < outside ? 0.0 : PI) + vec3(lessThan(base_ior, vec3(ior))) * PI;
     float path_nm = 2.0 * ior * nm * cos2;
     vec3 r123 = clamp(r12 * r23, 1e-5, 0.9999);   // keeps the square root and the quotient below finite
     vec3 r = sqrt(r123);

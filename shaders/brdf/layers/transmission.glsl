@@ -16,12 +16,8 @@ float transmission_roughness(float roughness, float ior) {
     return ior > 0.0 ? roughness * saturate(2.0 * ior - 2.0) : roughness;
 }
 
-// Mirrors the l of a light behind the surface into the hemisphere of v, l - 2 (n . l) n, where the transmitted lobe equals the
-// reflected one and F uses the same h (KHR_materials_transmission). An l in front is returned as it is.
-vec3 unfolded(vec3 n, vec3 l) { return l - 2.0 * min(dot(n, l), 0.0) * n; }
-
-// f = (1 - F) D V base_color with h = (v + l') / |v + l'|, l' the mirrored l (KHR_materials_transmission, specular
-// BTDF). f_dielectric: F at v . h. A colored F counts by its largest component (KHR_materials_specular).
+// f = (1 - F) D V base_color with h = (v + l') / |v + l'|, l' the l of a light behind the surface, mirrored into the
+// hemisphere of v (mirrored_to_front; KHR_materials_transmission, specular BTDF). f_dielectric: F at v . h. A colored F counts by its largest component (KHR_materials_specular).
 //
 // With multiple scattering, light that the lobe loses between the facets is transmitted in the end, so the lobe is divided
 // by its albedo for F = 1, towards v (as Turquin 2019, "Practical multiple scattering compensation for microfacet models",

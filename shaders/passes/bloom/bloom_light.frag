@@ -8,7 +8,8 @@
 uniform sampler2D picture;
 
 // Sixteen pixels make one. Weighted by 1 / (1 + luminance), a single very bright pixel does not flicker as a square
-// (Karis 2013, "Real Shading in Unreal Engine 4", tone-mapped average).
+// (Karis 2013, "Real Shading in Unreal Engine 4", tone-mapped average). The price is light: one pixel of 1000 among
+// fifteen black ones gives 0.33 instead of the mean of 62.5.
 void main() {
     vec2 texel = 0.5 / pass.size_px;
     vec3 sum = vec3(0.0);

@@ -5,7 +5,8 @@
 
 uniform sampler2D dof_soft;
 
-// Also searched by a sharp pixel, so that there is background to blend with behind its edge. Pixels.
+// Smallest gather radius, in pixels. Even in-focus pixels gather this far, so that there is background to blend in at their
+// edges.
 const float SMALLEST_SEARCH = 5.0;
 
 void main() {

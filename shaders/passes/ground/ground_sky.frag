@@ -7,9 +7,9 @@
 #include "lighting/shadows/ground.glsl"
 
 // In each direction of the compass the model hides the sky above some elevation: that of the lowest surface over the ground, as if
-// the model were solid above it. The sky up to an elevation t has the integral of 2 sin cos from 0 to t, sin^2 t, of the
-// irradiance of its direction, if its radiance is constant. Below and above t that radiance is the environment's, blurred, at the
-// elevation which divides the irradiance of this part in half. So a softbox above throws a shadow to the other side.
+// the model were solid above it. Under a uniform sky, the band from the horizon to the elevation t contributes sin^2 t of
+// that azimuth's irradiance. The bands below and above t each use one blurred lookup of the environment, at the elevation
+// that halves the band's irradiance. So a softbox above throws a shadow to the other side.
 //
 // Horizons of a height field hide the sky in the same way (Max 1988, "Horizon Mapping: Shadows for Bump-Mapped Surfaces").
 //

@@ -3,8 +3,8 @@
 #version 460
 #include "pass.glsl"
 
-// Grading by a table of three dimensions (Selan 2005, GPU Gems 2, chapter 24, "Using Lookup Tables to Accelerate Color Transformations"), as programs for video export it: put your own .cube file beside this one and its name
-// above. The table maps what the display shows, sRGB-encoded 0..1. Its slices of equal blue lie side by side in the image.
+// Grading by a 3-D lookup table (Selan 2005, GPU Gems 2, chapter 24, "Using Lookup Tables to Accelerate Color
+// Transformations"). Programs for color grading export such .cube files: put yours beside this one, and its name above. The table maps what the display shows, sRGB-encoded 0..1. Its slices of equal blue lie side by side in the image.
 //
 // Limits: it grades what the display can show, so it brings back nothing beyond white. DOMAIN_MIN and DOMAIN_MAX must be 0 and 1. Between
 // the entries colors are mixed along the axes, which dulls grays of coarse tables a little.

@@ -5,7 +5,8 @@
 #include "lighting/shadows/occlusion_texel.glsl"
 
 // Ambient occlusion from the horizons around a pixel (Jimenez, Wu, Pesce & Jarabo 2016, "Practical Real-Time Strategies for
-// Accurate Indirect Occlusion"). Limits: it knows only what the camera sees, and takes everything for as thick as it looks.
+// Accurate Indirect Occlusion"). Limits: it sees only the nearest surface of each pixel, and
+// treats everything as infinitely thick.
 //
 // pack_occlusion() of the hidden part of the cosine-weighted hemisphere, 0 open .. 1 hidden in the mean over the directions; 0 where
 // there is nothing.

@@ -6,9 +6,9 @@
 #include "passes/temporal/compress.glsl"
 
 // Each frame samples the pixels at other points, and their mean over some frames is a smooth picture. A pixel finds its mean
-// where its surface was one frame before (reverse reprojection: Nehab et al. 2007). What does not fit the 3 x 3 pixels around
-// it is another surface, so the old mean is moved to the colors that occur there: the mean and 1.25 standard deviations of
-// YCoCg (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in Temporal Supersampling").
+// where its surface was one frame before (reverse reprojection: Nehab et al. 2007). Variance clipping: history outside of
+// 1.25 standard deviations of the 3 x 3 pixels around it, in YCoCg, is probably another surface, so it is pulled back to that
+// range (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in Temporal Supersampling").
 //
 // Limits: a surface that moves by itself, as by user_vertex, is looked for where it is now. Reflections move with their surface.
 

@@ -7,7 +7,7 @@
 // antialiased and exports keep their alpha. Materials that the G-buffer cannot hold (blended, transmissive, layered) stay as the
 // model's own pass draws them: the forward pass of a deferred renderer.
 //
-// Limits: the G-buffer has one sample for each pixel, so edges inside the model have stairs. So do outlines before an environment,
+// Limits: the G-buffer has one sample for each pixel, so edges inside the model are aliased. So are outlines before an environment,
 // where coverage is 1 everywhere. Where a blended surface covers a deferred one, the pixel stays as the forward pass draws it.
 
 uniform sampler2D picture;

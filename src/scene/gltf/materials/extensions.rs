@@ -146,19 +146,23 @@ fn specular(reader: &mut Reader<'_, '_>) -> Result<(), Problem> {
     reader.texture("specularColorTexture", contract::TEXTURE_SPECULAR_COLOR)
 }
 
-/// In KHR_materials_ior, 0 stands for an infinite index, whose Fresnel factor is 1. The specular color is then the whole
-/// reflectance. This is for materials converted from specular-glossiness; others would become white mirrors.
+/// In KHR_materials_ior, 0 stands for an infinite index, whose Fresnel factor is 1. With a specular color, that color is the
+/// whole reflectance, as in materials converted from specular-glossiness. Without, the material is a white mirror, as its file
+/// says; that is rarely meant, so the warning says how to get another reflectance.
 fn ior(reader: &mut Reader<'_, '_>, reflects: bool) -> Result<(), Problem> {
     let value = reader.fields.number("ior", 1.5)?;
     let place = reader.fields.at("ior");
-    let expected = format!(
-        "an index of refraction of 1 to 10000 (1.5 for glass), or 0 beside {SPECULAR}, whose color is the \
-         reflectance then"
-    );
-    if value == 0.0 && reflects {
-        let warning = format!("{place} is 0, for infinity: the reflectance is 1 times the specular color.");
+    if value == 0.0 {
+        let warning = if reflects {
+            format!("{place} is 0, for infinity: the reflectance is 1 times the specular color.")
+        } else {
+            format!(
+                "{place} is 0, for infinity: the material reflects all light. Glass has 1.5; {SPECULAR} gives another color."
+            )
+        };
         reader.collector.warnings.push(warning);
     } else if !(1.0..=LARGEST_IOR).contains(&value) {
+        let expected = "an index of refraction of 1 to 10000 (1.5 for glass), or 0 for infinity";
         return Err(Problem::invalid(place, expected, value.to_string()));
     }
     reader.material.ior = value;

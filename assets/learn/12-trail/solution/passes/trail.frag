@@ -1,4 +1,4 @@
-//@pass trail "Trail: mean" after=tonemap keep doc="The moving mean of the last pictures"
+//@pass trail "Trail: mean" keep doc="The moving mean of the last pictures"
 #version 460
 #include "pass.glsl"
 

@@ -1,4 +1,4 @@
-//@pass trail "Trail: mean" after=tonemap doc="The moving mean of the last pictures"
+//@pass trail "Trail: mean" doc="The moving mean of the last pictures"
 #version 460
 #include "pass.glsl"
 

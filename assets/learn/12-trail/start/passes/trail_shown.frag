@@ -1,4 +1,4 @@
-//@pass trail_shown "Trail" to=picture after=tonemap doc="The moving mean in place of the picture"
+//@pass trail_shown "Trail" to=picture doc="The moving mean in place of the picture"
 #version 460
 #include "pass.glsl"
 
