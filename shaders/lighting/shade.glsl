@@ -67,7 +67,7 @@ float light_visibility(uint i, Surface s, bool for_terms) {
     vec3 l = illuminate(light, s.position_ws).l;
     bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && light.kind == LIGHT_RECT;
     if (!has_size && is_below_horizon(dot(s.n, l), for_terms)) return 1.0;
-    return shadow_visibility(i, s.position_ws, s.n, l);
+    return shadow_visibility(i, s.position_ws, s.ng, l);
 }
 
 // Adds what the surface reflects of light `i`, of which the part `visibility` arrives. `for_terms`: see LightRange.
