@@ -102,8 +102,9 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
         if ((FEATURES & FEATURE_SUN) != 0u) sheen += frame.environment_intensity * sun_from_sheen(s, v);
         light.sheen = sheen * s.occlusion;
     }
+    // Occlusion is that of the side that the eye sees; light from behind has not come through it.
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * s.occlusion;
+        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n);
     }
     return light;
 }
