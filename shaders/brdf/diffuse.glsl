@@ -52,7 +52,10 @@ vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, floa
 
     // Lambert (r = 0) loses nothing, so `multi` would be 0 / 0; 1e-6 makes it 0.
     float lost = max(1.0 - average, 1e-6);
-    vec3 rho = albedo * albedo * average / (1.0 - albedo * lost);
+    // The series of reflections between the walls diverges for an albedo above 1, which only an edit gives. From there on it grows
+    // in proportion to the albedo, as in diffuse_albedo (brdf/energy/albedo.glsl).
+    vec3 bounced = min(albedo, 1.0);
+    vec3 rho = albedo * bounced * average / (1.0 - bounced * lost);
     float lost_l = max(1.0 - eon_albedo(n_dot_l, r, a), 0.0);
     float lost_v = max(1.0 - eon_albedo(n_dot_v, r, a), 0.0);
     vec3 multi = rho * (lost_l * lost_v / lost);

@@ -27,6 +27,7 @@
 #include "brdf/energy/albedo.glsl"
 #include "brdf/energy/multiscatter.glsl"
 #include "brdf/fresnel.glsl"
+#include "brdf/horizon.glsl"
 #include "brdf/layers/sheen.glsl"
 #include "brdf/layers/transmission.glsl"
 #include "brdf/models.glsl"
@@ -95,7 +96,7 @@ float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf brdf) {
     float alpha = alpha_from_roughness(s.clearcoat_roughness);
     float d = d_specular(saturate(dot(s.clearcoat_n, h)), sin2_between(s.clearcoat_n, h), alpha);
     float weight = s.clearcoat * f_schlick(0.04, n_dot_v);
-    float turned = n_dot_l / max(abs(dot(s.n, l)), MIN_N_DOT_V);
+    float turned = n_dot_l / max(abs(dot(s.n, l)), MIN_N_DOT_V) * bump_visibility(s.ng, s.clearcoat_n, l);
     brdf.clearcoat = vec3(weight * d * v_specular(n_dot_l, n_dot_v, alpha) * turned);
     return weight;
 }
@@ -121,14 +122,15 @@ void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf brdf) {
 }
 
 // The caller multiplies f by |n . l| and the light's irradiance. For l below the horizon only the transmitted lobes,
-// and a coat whose normal still faces l, can be nonzero; D, G and V are 0. Without transmission, l = -v leaves h
-// undefined; then h = n.
+// and a coat whose normal still faces l, can be nonzero; D, G and V are 0. Where n and the geometric normal disagree on the
+// side of l, no lobe of the base is (brdf/horizon.glsl). Without transmission, l = -v leaves h undefined; then h = n.
 Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     const bool transmits = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
     vec3 front_v = mirrored_to_front(s.n, v);
     vec3 h = safe_normalize((transmits ? mirrored_to_front(s.n, l) : l) + front_v, s.n);
     float cos_l = dot(s.n, l);
     float above = cos_l > 0.0 ? 1.0 : 0.0;
+    float visible = bump_visibility(s.ng, s.n, l);
 
     Brdf brdf;
     brdf.n_dot_l = saturate(cos_l);
@@ -159,7 +161,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
 
     brdf.k_s = mix(brdf.f_dielectric, brdf.f_metal, s.metallic);
     brdf.k_d = (1.0 - s.metallic) * entering(s, brdf, dfg_l);
-    float below = 1.0 - above;
+    float below = (1.0 - above) * visible;
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         // Lambertian, on the far side (KHR_materials_diffuse_transmission).
         brdf.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * brdf.k_d * s.diffuse_transmission);
@@ -175,8 +177,9 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     cover(s, l, v, abs(cos_l), brdf);
 
     Cosines cosines = Cosines(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, dot(l, front_v));
+    above *= visible;
     brdf.diffuse = f_diffuse(s.base_color, s.roughness, alpha, cosines) * (brdf.k_d * above);
-    brdf.specular = brdf.k_s * (brdf.distribution * brdf.visibility);
+    brdf.specular = brdf.k_s * (brdf.distribution * brdf.visibility * visible);
     brdf.multiple *= above;
     brdf.sheen *= above;
     brdf.value = brdf.diffuse + brdf.specular + brdf.multiple + brdf.sheen + brdf.clearcoat + brdf.transmitted + brdf.diffuse_transmitted;

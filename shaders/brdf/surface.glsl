@@ -7,6 +7,7 @@
 struct Surface {
     vec3 position_ws;
     vec3 n;                    // shading normal, world space, unit
+    vec3 ng;                   // geometric normal: the mesh's own, without normal textures; on the eye's side, unit
     vec3 base_color;           // linear RGB: albedo of a dielectric, F0 of a metal
     float coverage;            // glTF's alpha; the name `alpha` means roughness^2
     float metallic;            // 0 dielectric .. 1 metal

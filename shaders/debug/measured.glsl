@@ -3,6 +3,7 @@
 #define DEBUG_MEASURED_GLSL
 
 #include "interface.glsl"
+#include "brdf/horizon.glsl"
 #include "brdf/measured.glsl"
 #include "brdf/surface.glsl"
 #include "common/color.glsl"
@@ -28,7 +29,7 @@ MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
         Light light = light_at(i, s.position_ws);
         if (light.kind == LIGHT_RECT) continue;
         Illumination arriving = illuminate(light, s.position_ws);
-        vec3 irradiance = arriving.irradiance * saturate(dot(s.n, arriving.l));
+        vec3 irradiance = arriving.irradiance * (saturate(dot(s.n, arriving.l)) * bump_visibility(s.ng, s.n, arriving.l));
         sum.radiance += f_measured(arriving.l, v, s.n, t, b) * irradiance;
         sum.irradiance += luminance(irradiance);
     }

@@ -236,7 +236,7 @@ const uint MODE_MEASURED_SPLIT = 601u;
 //@mode measured-error "Error" group="Measured" encode=color doc="Against the measured BRDF: blue too dark, red too bright."
 const uint MODE_MEASURED_ERROR = 602u;
 
-//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" colors="-|#ff00ff|#ffff00|#00ffff" key=x words="not finite infinity invalid" doc="NaN magenta, Inf yellow, negative cyan."
+//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative|out of range" colors="-|#ff00ff|#ffff00|#00ffff|#ff8100" key=x words="not finite infinity invalid out of range" doc="NaN magenta, Inf yellow, negative cyan; orange where the surface has a value that no material has, as a base color above 1."
 const uint MODE_NAN = 500u;
 //@mode negative "Negative" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" colors="-|#ff0000|#00ff00|#ffff00|#0000ff|#ff00ff|#00ffff|#ffffff" doc="Channels below 0; valid pixels are dimmed."
 const uint MODE_NEGATIVE = 501u;
@@ -244,9 +244,9 @@ const uint MODE_NEGATIVE = 501u;
 const uint MODE_CLIPPED = 502u;
 //@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat words="exposure stops zebra" doc="Stops from middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
-//@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" colors="-|#3f6cff|#ff4530" doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
+//@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" colors="-|#3f6cff|#ff4530" doc="Blue below sRGB 30, red above 240 (McDermott 2018); metals only outside 0..1."
 const uint MODE_ALBEDO_RANGE = 504u;
-//@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" colors="-|#3f6cff|#ff4530" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
+//@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" colors="-|#3f6cff|#ff4530" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180), and above 1."
 const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
 //@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths words="reference random samples" doc="The picture with an exact integral of the unoccluded environment."

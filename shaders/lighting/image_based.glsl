@@ -12,6 +12,7 @@
 #define LIGHTING_IMAGE_BASED_GLSL
 
 #include "interface.glsl"
+#include "brdf/horizon.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
@@ -57,10 +58,10 @@ vec3 specular_radiance(Surface s, vec3 v) {
     return radiance + missing_sun(s.roughness) * sun_radiance(direction, s.roughness);
 }
 
-// Environment light that the base's specular lobe reflects.
+// Environment light that the base's specular lobe reflects. evaluate_brdf knows the mesh's horizon; a lookup does not.
 vec3 reflected_specular(Surface s, vec3 v, vec3 albedo) {
     if (REFLECTIONS_ARE_SAMPLED) return sampled_specular(s, v);
-    vec3 light = albedo * specular_sky(s, v);
+    vec3 light = albedo * specular_sky(s, v) * reflection_visibility(s.ng, lobe_direction(s.n, v, s.roughness));
     if ((FEATURES & FEATURE_SUN) != 0u) light += missing_sun(s.roughness) * reflected_sun(s, v, false);
     return light;
 }
@@ -69,7 +70,7 @@ vec3 reflected_specular(Surface s, vec3 v, vec3 albedo) {
 vec3 reflected_coat(Surface s, vec3 v, vec3 albedo) {
     if (REFLECTIONS_ARE_SAMPLED) return sampled_coat(s, v);
     vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
-    vec3 light = albedo * prefiltered_without_sun(direction, s.clearcoat_roughness);
+    vec3 light = albedo * prefiltered_without_sun(direction, s.clearcoat_roughness) * reflection_visibility(s.ng, direction);
     if ((FEATURES & FEATURE_SUN) != 0u) light += missing_sun(s.clearcoat_roughness) * reflected_sun(s, v, true);
     return light;
 }
@@ -97,12 +98,14 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
         light.clearcoat = reflected_coat(s, v, albedo.clearcoat) * occlusion;
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        vec3 sheen = albedo.sheen * prefiltered_sheen(reflect(-mirrored_to_front(s.n, v), s.n), s.sheen_roughness);
+        vec3 r = reflect(-mirrored_to_front(s.n, v), s.n);
+        vec3 sheen = albedo.sheen * prefiltered_sheen(r, s.sheen_roughness) * reflection_visibility(s.ng, r);
         if ((FEATURES & FEATURE_SUN) != 0u) sheen += frame.environment_intensity * sun_from_sheen(s, v);
         light.sheen = sheen * s.occlusion;
     }
+    // Occlusion is that of the side that the eye sees; light from behind has not come through it.
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * s.occlusion;
+        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n);
     }
     return light;
 }

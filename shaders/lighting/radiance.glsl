@@ -9,7 +9,8 @@
 vec3 reflected_radiance(Lit lit) { return lit.punctual.all + lit.area.all + lit.ambient.all + lit.behind; }
 
 vec3 outgoing_radiance(Surface s, vec3 v, Lit lit) {
-    if ((FEATURES & FEATURE_UNLIT) != 0u) return s.base_color;   // KHR_materials_unlit: a constant color
+    // The base color alone with KHR_materials_unlit, whose emission is 0; points and lines without normals add theirs (glTF 2.0, 3.9).
+    if ((FEATURES & FEATURE_UNLIT) != 0u) return s.base_color + s.emissive;
 
     // Emission is added, since light is additive. max() would hide the weaker of the two and leave a seam where they
     // are equal.

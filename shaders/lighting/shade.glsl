@@ -55,10 +55,11 @@ void cross_volume(Surface s, inout Lobes light) {
     light.all += light.transmitted;
 }
 
-// Whether a light is below the horizon and adds nothing. It still adds light if the surface transmits light or the coat has its own
-// normal, and its terms can be asked for.
-bool is_below_horizon(float n_dot_l, bool for_terms) {
-    return n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms;
+// True if light from l can be skipped: it is behind the mesh, or below the horizon of the shading normal and there is no coat with a
+// normal of its own. A surface that transmits light skips none, and neither does a debug mode that wants the terms.
+bool is_below_horizon(Surface s, vec3 l, bool for_terms) {
+    if (LIGHT_PASSES || for_terms) return false;
+    return dot(s.ng, l) <= 0.0 || (dot(s.n, l) <= 0.0 && !coat_lies_apart());
 }
 
 // Part of light `i` that other surfaces let through, 0..1.
@@ -66,8 +67,8 @@ float light_visibility(uint i, Surface s, bool for_terms) {
     Light light = light_at(i, s.position_ws);
     vec3 l = illuminate(light, s.position_ws).l;
     bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && light.kind == LIGHT_RECT;
-    if (!has_size && is_below_horizon(dot(s.n, l), for_terms)) return 1.0;
-    return shadow_visibility(i, s.position_ws, s.n, l);
+    if (!has_size && is_below_horizon(s, l, for_terms)) return 1.0;
+    return shadow_visibility(i, s.position_ws, s.ng, l);
 }
 
 // Adds what the surface reflects of light `i`, of which the part `visibility` arrives. `for_terms`: see LightRange.
@@ -81,12 +82,11 @@ void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float vi
     }
     // L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
     Illumination illumination = illuminate(light, s.position_ws);
-    float n_dot_l = dot(s.n, illumination.l);
-    if (is_below_horizon(n_dot_l, for_terms)) return;
+    if (is_below_horizon(s, illumination.l, for_terms)) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
-    add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visibility));
+    add(lit.punctual, lobes, illumination.irradiance * (abs(dot(s.n, illumination.l)) * visibility));
 }
 
 Lit shade(Surface s, vec3 v, LightRange range) {

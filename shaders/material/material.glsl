@@ -168,6 +168,7 @@ Surface make_surface(Fragment f, vec3 v) {
     Surface s;
     s.position_ws = f.position_ws;
     s.n = shading_normal(f, v);
+    s.ng = geometric_normal(f, v);
     s.base_color = base_color.rgb;
     s.coverage = ALPHA_MODE == ALPHA_OPAQUE ? 1.0 : base_color.a;
     s.metallic = saturate(metallic_roughness.b * material.metallic_factor);

@@ -13,7 +13,7 @@
 Surface measured_surface(float roughness, vec3 v) {
     Surface s;
     s.position_ws = vec3(0.0);
-    s.n = vec3(0.0, 0.0, 1.0);
+    s.n = s.ng = vec3(0.0, 0.0, 1.0);
     s.base_color = task.base_color;
     s.coverage = 1.0;
     s.metallic = task.metallic;

@@ -5,6 +5,7 @@
 
 #include "interface.glsl"
 #include "brdf/energy/albedo.glsl"
+#include "brdf/horizon.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
@@ -70,13 +71,15 @@ vec3 lookup_difference(Surface s, vec3 v, Albedo albedo, uint path) {
     vec3 u = numbers_of(numbers, 0u, false);
     vec3 sum = (albedo.diffuse + albedo.multiple) * (exact_mean(cosine_kernel(s.n), u) - irradiance_over_pi(s.n));
     if ((FEATURES & FEATURE_ANISOTROPY) == 0u && !REFLECTIONS_ARE_SAMPLED) {
-        Kernel kernel = lobe_kernel(lobe_direction(s.n, v, s.roughness), s.roughness);
-        sum += albedo.specular * (exact_mean(kernel, u) - specular_radiance(s, v));
+        vec3 direction = lobe_direction(s.n, v, s.roughness);
+        vec3 difference = exact_mean(lobe_kernel(direction, s.roughness), u) - specular_radiance(s, v);
+        sum += albedo.specular * difference * reflection_visibility(s.ng, direction);
     }
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u && !REFLECTIONS_ARE_SAMPLED) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
         vec3 baked = prefiltered_radiance(direction, s.clearcoat_roughness);
-        sum += albedo.clearcoat * (exact_mean(lobe_kernel(direction, s.clearcoat_roughness), u) - baked);
+        vec3 difference = exact_mean(lobe_kernel(direction, s.clearcoat_roughness), u) - baked;
+        sum += albedo.clearcoat * difference * reflection_visibility(s.ng, direction);
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         vec3 difference = exact_mean(cosine_kernel(-s.n), u) - irradiance_over_pi(-s.n);

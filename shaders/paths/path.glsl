@@ -97,6 +97,13 @@ PathLight trace_path(Surface s, vec3 v, vec3 facet_n, uint path, bool traces) {
             vec3 lamp = vec3(0.0);
             if (to_light && !towards.is_sky) lamp = weight * towards.radiance * balance(drawn.pdf, other);
             if (vertex == 0u) light.unoccluded += sky;
+            // Opaque triangles block what their shading normals let pass to the wrong side: a ray would start behind its own surface.
+            // (Vertex normals may point away from the eye, and then count for both sides.)
+            float is_through = dot(facet_n, drawn.l) * dot(s.ng, drawn.l) * dot(facet_n, s.ng);
+            if (traces && is_through <= 0.0) {
+                weight = vec3(0.0);
+                if (!to_light) throughput = vec3(0.0);
+            }
             if (!traces || max_component(abs(weight)) == 0.0) continue;
 
             Ray ray = ray_from(s.position_ws, facet_n, drawn.l, seed_of(numbers, vertex, to_light));

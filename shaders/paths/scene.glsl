@@ -116,7 +116,7 @@ Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
 
     Surface s;
     s.position_ws = ray.origin_ws + ray.direction_ws * hit.distance;
-    s.n = hit_normal(hit, facet_n, v);
+    s.n = s.ng = hit_normal(hit, facet_n, v);
     // An unlit surface emits its color and reflects nothing.
     s.base_color = is_unlit ? vec3(0.0) : base_color.rgb;
     s.coverage = 1.0;

@@ -215,7 +215,7 @@ impl Scene {
                     AlphaMode::Mask => interface::ALPHA_MASK,
                     AlphaMode::Blend => interface::ALPHA_BLEND,
                 },
-                features: scene::features(&self.model, material, attributes),
+                features: scene::features(&self.model, material, attributes, primitive.topology),
                 class: match primitive.topology {
                     Topology::Points => PrimitiveClass::Points,
                     Topology::Lines | Topology::LineStrip => PrimitiveClass::Lines,

@@ -22,7 +22,7 @@ constants! {
     /// glTF `alphaMode` BLEND.
     ALPHA_BLEND = 2;
 
-    /// KHR_materials_unlit.
+    /// Drawn without lighting: KHR_materials_unlit, and points and lines without normals (glTF 2.0, section 3.9).
     FEATURE_UNLIT = 1;
     /// The material has a normal texture, and the mesh has a tangent frame for it.
     FEATURE_NORMAL_TEXTURE = 1 << 1;

@@ -3,9 +3,9 @@
 
 use glam::{Affine2, Vec3};
 
-use super::model::{Material, Model, TextureUse};
+use super::model::{Material, Model, TextureUse, Topology};
 use crate::interface::{
-    ATTRIBUTE_COLOR, ATTRIBUTE_TANGENT_FRAME, ATTRIBUTE_UV1, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT,
+    ATTRIBUTE_COLOR, ATTRIBUTE_NORMAL, ATTRIBUTE_TANGENT_FRAME, ATTRIBUTE_UV1, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT,
     FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR, FEATURE_DIFFUSE_TRANSMISSION, FEATURE_DISPERSION, FEATURE_IRIDESCENCE,
     FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS,
     FEATURE_TEXTURE_COORDINATES, FEATURE_TRANSMISSION, FEATURE_UNLIT, FEATURE_UV1, FEATURE_VERTEX_COLOR,
@@ -13,9 +13,9 @@ use crate::interface::{
     TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR, TEXTURE_SPECULAR_COLOR,
 };
 
-/// The `interface::FEATURE_*` bits of a material of `model`, on a mesh with these `interface::ATTRIBUTE_*` bits. Bits
-/// that depend on the frame (environment, rectangular lights) are not included.
-pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
+/// The `interface::FEATURE_*` bits of a material of `model`, on a mesh with these `interface::ATTRIBUTE_*` bits and this
+/// topology. Bits that depend on the frame (environment, rectangular lights) are not included.
+pub fn features(model: &Model, material: &Material, attributes: u32, topology: Topology) -> u32 {
     let has_frame = attributes & ATTRIBUTE_TANGENT_FRAME != 0;
     let has = |texture: u32| material.textures[texture as usize].is_some();
     let is_moved = |used: &TextureUse| used.uv_set != 0 || used.uv_from_mesh != Affine2::IDENTITY;
@@ -24,7 +24,9 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let color = if attributes & ATTRIBUTE_COLOR != 0 { FEATURE_VERTEX_COLOR } else { 0 };
     let read = moved | uv1 | color;
     let normal = if has_frame && has(TEXTURE_NORMAL) { FEATURE_NORMAL_TEXTURE } else { 0 };
-    if material.unlit {
+    // Points and lines without normals have no direction to be lit from, so they are drawn without lighting (glTF 2.0, section 3.9).
+    let has_faces = matches!(topology, Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan);
+    if material.unlit || (!has_faces && attributes & ATTRIBUTE_NORMAL == 0) {
         return FEATURE_UNLIT | normal | read;
     }
     let clearcoat = material.clearcoat.factor > 0.0;

@@ -11,7 +11,8 @@ pub fn pack_material(material: &Material, id: u32) -> interface::Material {
     let (sin, cos) = material.anisotropy.rotation.sin_cos();
     let mut packed = interface::Material {
         base_color_factor: material.base_color_factor.to_array(),
-        emissive_factor: material.emissive_factor.to_array(),
+        // KHR_materials_unlit ignores emission; points and lines without normals, which are unlit as well, add it.
+        emissive_factor: if material.unlit { [0.0; 3] } else { material.emissive_factor.to_array() },
         metallic_factor: material.metallic_factor,
         roughness_factor: material.roughness_factor,
         normal_scale: material.normal_scale,

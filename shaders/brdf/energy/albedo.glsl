@@ -122,12 +122,12 @@ bool diffuse_is_lambert() {
 
 // Integral of f_diffuse NoL dl. Lambert's needs no table, since the integral of NoL is pi. Other models need not be linear
 // in the base color x (Oren-Nayar's is not): albedo / x is interpolated by the parabola through its values at x = 1/3, 2/3
-// and 1.
+// and 1. Beyond 0..1, where a parabola says nothing, it stays as at the end.
 vec3 diffuse_albedo(vec3 base_color, float roughness, float n_dot_v) {
     if (diffuse_is_lambert()) return PI * f_lambert(base_color);
     vec2 uv = table_uv(n_dot_v, roughness, DIFFUSE_COLORS, DIFFUSE_SIDE, DIFFUSE_SLICES);
     vec3 q = textureLod(diffuse_table, uv, 0.0).rgb;
-    vec3 x = 3.0 * base_color;
+    vec3 x = 3.0 * saturate(base_color);
     return base_color * (q.x * 0.5 * (x - 2.0) * (x - 3.0) - q.y * (x - 1.0) * (x - 3.0) + q.z * 0.5 * (x - 1.0) * (x - 2.0));
 }
 

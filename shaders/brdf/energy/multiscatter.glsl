@@ -10,12 +10,23 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
+// Limits the factors of the series of reflections, sum over k of (F (1 - E))^k = 1 / (1 - F (1 - E)), to those that physics allows. No surface
+// reflects more than it receives, so F is at most 1. 0.999: an E of 0, which a D of 0 has.
+void limit_series(inout vec3 f_avg, inout float lost) {
+    f_avg = min(f_avg, 1.0);
+    lost = min(lost, 0.999);
+}
+
 // F of all further orders: after each reflection E_avg of the light leaves and the rest hits another facet. The first of
 // them lies behind one reflection that lost its light between the facets, hence the square (Hill 2018, "A Multi-Faceted
 // Exploration", a correction of Kulla & Conty 2017, whose term has one F_avg less):
 //
 //   F_ms = F_avg^2 E_avg / (1 - F_avg (1 - E_avg))        F_avg = 1 -> 1: a white metal loses nothing
+//
+// The quotient is the sum of a geometric series, so it holds for F_avg (1 - E_avg) < 1 only. A base color above 1, which user_surface
+// or COLOR_0 can give, would reach its pole: at roughness 1, where E_avg = 0.41, a base color of 1.73.
 vec3 multiple_fresnel(vec3 f_avg, float lost_avg) {
+    limit_series(f_avg, lost_avg);
     return f_avg * f_avg * (1.0 - lost_avg) / (1.0 - f_avg * lost_avg);
 }
 
@@ -29,7 +40,10 @@ float f_kulla_conty(float lost_l, float lost_v, float lost_mean) { return lost_l
 // Albedo of multiple scattering towards v (Fdez-Aguera 2019, derived for uniform lighting):
 //
 //   F_ms E_ms = F_ss E_ss F_avg / (1 - F_avg (1 - E)) (1 - E)     single = F_ss E_ss; F = 1 -> 1 - E
-vec3 fdez_aguera_albedo(vec3 single, vec3 f_avg, float lost) { return single * f_avg * lost / (1.0 - f_avg * lost); }
+vec3 fdez_aguera_albedo(vec3 single, vec3 f_avg, float lost) {
+    limit_series(f_avg, lost);
+    return single * f_avg * lost / (1.0 - f_avg * lost);
+}
 
 // Albedo of the selected model. single: albedo of one reflection; lost_mean: of the mean over directions.
 vec3 multiple_albedo(vec3 single, vec3 f_avg, Dfg dfg, float lost_mean) {

@@ -14,7 +14,8 @@ layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
 uniform sampler2D occlusion;
 
 // Open part of the hemisphere over the pixel's surface, 0..1: of the four nearest texels, those at about its distance count.
-// `distance_m`: along the camera's axis.
+// `distance_m`: along the camera's axis. The image holds no blended surface (passes/occlusion/geometry.frag). What lies behind one
+// does not hide the sky from it, so a blended surface is open as far as no texel fits.
 float screen_visibility(float distance_m) {
     if (!AMBIENT_OCCLUSION) return 1.0;
     vec2 size = ceil(0.5 * frame.viewport_px);
@@ -22,8 +23,12 @@ float screen_visibility(float distance_m) {
     vec2 part = fract(texel);
     vec4 texels = textureGather(occlusion, (floor(texel) + 1.0) / size);
     vec4 error = abs(unpack_radii(texels) * (frame.scene_radius / distance_m) - 1.0);
-    // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this surface, all count.
+    // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this opaque surface, which is thinner than one, all count.
     vec4 weight = vec4((1.0 - part.x) * part.y, part.x * part.y, part.x * (1.0 - part.y), (1.0 - part.x) * (1.0 - part.y));
+    if (ALPHA_MODE == ALPHA_BLEND) {
+        weight *= max(1.0 - 50.0 * error, 0.0);
+        return saturate(1.0 - dot(texels, weight));
+    }
     weight *= max(1.0 - 50.0 * error, 1e-4);
     return saturate(1.0 - dot(texels, weight) / dot(weight, vec4(1.0)));
 }

@@ -107,8 +107,9 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, vec2 s
     return lit / float(TAPS);
 }
 
-// Part of light `i` that reaches a point with this normal, 0..1. The point is moved along the normal and towards the light, by
-// what a texel of the map spans on the surface, so that the surface does not hide itself. `l`: unit, towards the light.
+// Part of light `i` that reaches a point of a surface with the geometric normal n, 0..1. The point is moved along the normal and
+// towards the light, by what a texel of the map spans on the surface, so that the surface does not hide itself. The map holds the
+// mesh without normal textures, so a shading normal would offset the point wrongly. `l`: unit, towards the light.
 float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     if (SHADOWS == NO_SHADOWS || i >= MAX_LIGHT_VIEWS) return 1.0;
     mat4 view = frame.light_clip_from_world[i];

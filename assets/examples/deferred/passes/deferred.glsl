@@ -5,6 +5,7 @@
 #include "brdf/energy/multiscatter.glsl"
 #include "brdf/fresnel.glsl"
 #include "common/math.glsl"
+#include "ibl/maps/octahedral.glsl"
 #include "lighting/shadows/ambient_occlusion.glsl"
 
 uniform sampler2D gbuffer;
@@ -26,10 +27,11 @@ Surface surface_at(ivec2 pixel, vec3 direction) {
     vec4 base = texelFetch(gbuffer, pixel, 0);
     vec4 normal = texelFetch(gbuffer_normal, pixel, 0);
     vec4 emission = texelFetch(gbuffer_emission, pixel, 0);
-    vec2 place = texelFetch(gbuffer_distance, pixel, 0).rg;
+    vec4 place = texelFetch(gbuffer_distance, pixel, 0);
     Surface s;
     s.position_ws = frame.eye_ws + place.x * direction;
     s.n = normalize(normal.xyz);
+    s.ng = octahedral_direction(place.zw);
     s.base_color = base.rgb;
     s.coverage = 1.0;
     s.metallic = base.a;

@@ -13,12 +13,12 @@ vec3 radiance_by_light(uint i, Surface s, vec3 v, Albedo albedo) {
     Light light = light_at(i, s.position_ws);
     if ((FEATURES & FEATURE_RECT_LIGHTS) != 0u && light.kind == LIGHT_RECT) {
         vec3 to_center = safe_normalize(light.position_ws.xyz - s.position_ws, s.n);
-        return rectangle_light(s, v, albedo, light).all * shadow_visibility(i, s.position_ws, s.n, to_center);
+        return rectangle_light(s, v, albedo, light).all * shadow_visibility(i, s.position_ws, s.ng, to_center);
     }
     Illumination from = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, from.l);
     if (n_dot_l <= 0.0) return vec3(0.0);
-    float visible = shadow_visibility(i, s.position_ws, s.n, from.l);
+    float visible = shadow_visibility(i, s.position_ws, s.ng, from.l);
     return evaluate_brdf(s, from.l, v).value * from.irradiance * (n_dot_l * visible);
 }
 

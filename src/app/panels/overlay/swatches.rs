@@ -142,11 +142,12 @@ mod tests {
             list.split('|').map(color).collect::<Vec<_>>()
         };
         let [good, bad] = ["GOOD", "BAD"].map(|name| constant("debug/geometry.glsl", name));
-        let [low, high] = ["TOO_LOW", "TOO_HIGH"].map(|name| constant("debug/truth.glsl", name));
+        let [low, high, outside] =
+            ["TOO_LOW", "TOO_HIGH", "OUT_OF_RANGE"].map(|name| constant("debug/truth.glsl", name));
         assert_eq!(colors("face-orientation"), [good, bad]);
         assert_eq!(colors("tangent-sign"), [bad, good]);
         assert_eq!(colors("albedo-range"), [None, low, high]);
         assert_eq!(colors("f0-range"), [None, low, high]);
-        assert_eq!(colors("nan"), [None, Some([255, 0, 255]), Some([255, 255, 0]), Some([0, 255, 255])]);
+        assert_eq!(colors("nan"), [None, Some([255, 0, 255]), Some([255, 255, 0]), Some([0, 255, 255]), outside]);
     }
 }

@@ -1,13 +1,15 @@
 //! The features that a material needs of the shaders, and the variants of a model.
 
 use super::super::super::features;
+use super::super::super::model::Topology;
 use super::*;
 use crate::interface as contract;
 
 /// The features of the one material of a square, but for how its occlusion is read.
 fn bits(builder: &Builder) -> u32 {
     let model = builder.model();
-    features(&model, &model.materials[1], model.primitives[0].attributes) & !contract::FEATURE_PACKED_OCCLUSION
+    features(&model, &model.materials[1], model.primitives[0].attributes, Topology::Triangles)
+        & !contract::FEATURE_PACKED_OCCLUSION
 }
 
 /// A square with a material of these extensions, which may use texture 0.
@@ -115,7 +117,7 @@ fn occlusion_is_packed_when_it_can_be_read_with_metallic_roughness() {
             builder.json["materials"][0]["occlusionTexture"] = info;
         }
         let model = builder.model();
-        features(&model, &model.materials[1], 0) == contract::FEATURE_PACKED_OCCLUSION
+        features(&model, &model.materials[1], 0, Topology::Triangles) == contract::FEATURE_PACKED_OCCLUSION
     };
     assert!(packed(json!(null)), "nothing to read");
     assert!(packed(json!({ "index": 0 })), "one texture");
@@ -221,7 +223,11 @@ fn what_a_mesh_has_not_is_no_feature() {
         for unlit in [false, true] {
             let mut material = model.materials[1].clone();
             material.unlit = unlit;
-            assert_eq!(features(&model, &material, attributes) & asked, expected, "{attributes} {unlit}");
+            assert_eq!(
+                features(&model, &material, attributes, Topology::Triangles) & asked,
+                expected,
+                "{attributes} {unlit}"
+            );
         }
     }
 }
