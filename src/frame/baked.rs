@@ -48,12 +48,14 @@ impl TablesKey {
     }
 }
 
-/// Identifies a baked environment: its name, the revision of its file, and the stages of each part.
+/// Identifies a baked environment: its name, the revision of its file, what becomes of its suns, and the stages of each part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentKey {
     /// Built-in name or file.
     pub name: String,
     pub(crate) revision: u64,
+    /// Whether suns are taken out of the maps.
+    pub(crate) suns: bool,
     /// The stages of the cube map and the irradiance, which depend on the map alone.
     pub(crate) radiance: Vec<BakeStage>,
     /// Those of the prefilter, which depend on the selected NDF too.
@@ -63,10 +65,17 @@ pub struct EnvironmentKey {
 }
 
 impl EnvironmentKey {
-    pub(crate) fn new(name: &str, revision: u64, shaders: &ShaderSet, constants: &Specialization) -> Self {
+    pub(crate) fn new(
+        name: &str,
+        revision: u64,
+        suns: bool,
+        shaders: &ShaderSet,
+        constants: &Specialization,
+    ) -> Self {
         Self {
             name: name.to_owned(),
             revision,
+            suns,
             radiance: stages(shaders, &RADIANCE_STAGES, constants),
             prefilter: stages(shaders, &PREFILTER_STAGES, constants),
             sheen: stages(shaders, &SHEEN_STAGES, constants),
@@ -75,12 +84,13 @@ impl EnvironmentKey {
 
     /// Whether the cube map and the irradiance are the same.
     pub(crate) fn has_radiance_of(&self, other: &Self) -> bool {
-        self.name == other.name && self.revision == other.revision && self.radiance == other.radiance
+        (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)
+            && self.radiance == other.radiance
     }
 
-    /// Whether both are for the same map and models: they differ by an edit of the shaders or of the file at most.
+    /// Whether both are for the same map, suns and models: they differ by an edit of the shaders or of the file at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
-        self.name == other.name
+        (&self.name, self.suns) == (&other.name, other.suns)
             && same_constants(&self.prefilter, &other.prefilter)
             && same_constants(&self.sheen, &other.sheen)
     }
