@@ -65,13 +65,7 @@ pub struct EnvironmentKey {
 }
 
 impl EnvironmentKey {
-    pub(crate) fn new(
-        name: &str,
-        revision: u64,
-        suns: bool,
-        shaders: &ShaderSet,
-        constants: &Specialization,
-    ) -> Self {
+    pub(crate) fn new(name: &str, revision: u64, suns: bool, shaders: &ShaderSet, constants: &Specialization) -> Self {
         Self {
             name: name.to_owned(),
             revision,

@@ -318,13 +318,7 @@ impl FrameState {
 
     /// The frame constants for a picture at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
     /// `sample_index` counts the frames of an accumulated picture from 0. `before`: `clip_from_world` of the frame before.
-    pub(crate) fn constants(
-        &self,
-        rect: Rect,
-        environment: (f32, &[Sun]),
-        sample_index: u32,
-        before: Mat4,
-    ) -> Frame {
+    pub(crate) fn constants(&self, rect: Rect, environment: (f32, &[Sun]), sample_index: u32, before: Mat4) -> Frame {
         let (scale, suns) = environment;
         let mut frame = Frame {
             clip_from_world_before: before.to_cols_array_2d(),

@@ -18,7 +18,9 @@ use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
 use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance, SHARED_EXPONENT};
-use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, set_suns, small_lights, small_lights_size, suns_of};
+use crate::render::environment::passes::{
+    IRRADIANCE_LEVEL, Lobes, Passes, set_suns, small_lights, small_lights_size, suns_of,
+};
 use crate::render::environment::transfer;
 
 const CUBE_SIDE: u32 = 512;

@@ -9,8 +9,8 @@ use crate::interface::{
     BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MAX_SUNS, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
-use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
 use crate::frame::BakeStage;
+use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
 use crate::pipeline::PipelineSet;
 use crate::render::compute;
 use crate::render::environment::transfer;
