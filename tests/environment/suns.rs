@@ -23,8 +23,11 @@ const MAP: (usize, usize) = (512, 256);
 const SIZE: (u32, u32) = (64, 48);
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 3.2);
 
-/// Texels with another radiance than the gradient.
-type Bright = Vec<((usize, usize), f64)>;
+/// Parts of a texel with a sun along each axis, which the reference sums over.
+const PARTS: usize = 8;
+
+/// A texel with another radiance than the gradient.
+type Bright = ((usize, usize), f64);
 
 /// Radiance of the gradient.
 fn dim(direction: DVec3) -> f64 {
@@ -42,7 +45,7 @@ fn texel(d: Vec3) -> (usize, usize) {
 }
 
 /// Writes a map as an EXR file of 32-bit floats.
-fn write(path: &Path, bright: &Bright) {
+fn write(path: &Path, bright: &[Bright]) {
     let radiance = |at: exr::prelude::Vec2<usize>| {
         let found = bright.iter().find(|(texel, _)| *texel == (at.x(), at.y()));
         let value = found.map_or_else(|| dim(direction(at.x() as f64 + 0.5, at.y() as f64 + 0.5)), |(_, value)| *value);
@@ -54,7 +57,7 @@ fn write(path: &Path, bright: &Bright) {
 }
 
 /// The map as points: directions, and radiance times solid angle.
-fn points(bright: &Bright) -> Vec<(DVec3, f64)> {
+fn points(bright: &[Bright]) -> Vec<(DVec3, f64)> {
     let mut points = Vec::new();
     let (columns, rows) = (96, 48);
     for (column, row) in (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))) {
@@ -64,7 +67,6 @@ fn points(bright: &Bright) -> Vec<(DVec3, f64)> {
         let d = direction(center(column, MAP.0, columns), center(row, MAP.1, rows));
         points.push((d, dim(d) * solid_angle));
     }
-    const PARTS: usize = 8;
     for ((x, y), radiance) in bright {
         for part in 0..PARTS * PARTS {
             let [s, t] = [part % PARTS, part / PARTS].map(|i| (i as f64 + 0.5) * 2.0 / PARTS as f64 - 1.0);
@@ -129,11 +131,11 @@ fn set(headless: &mut Headless, assignment: &str) {
 }
 
 /// One sun, and one that is weaker on the other side.
-fn two_suns() -> Bright {
-    vec![(texel(Vec3::new(0.5, 0.5, 0.7)), 1.2e4), (texel(Vec3::new(-0.7, -0.2, 0.5)), 3e3)]
+fn two_suns() -> [Bright; 2] {
+    [(texel(Vec3::new(0.5, 0.5, 0.7)), 1.2e4), (texel(Vec3::new(-0.7, -0.2, 0.5)), 3e3)]
 }
 
-fn folder(bright: &Bright) -> TempDir {
+fn folder(bright: &[Bright]) -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     write(&directory.path().join("map.exr"), bright);
     directory
@@ -141,13 +143,14 @@ fn folder(bright: &Bright) -> TempDir {
 
 #[test]
 fn a_metal_ball_under_suns_of_a_file_is_as_bright_as_a_sum_over_the_map() {
-    for bright in [two_suns()[..1].to_vec(), two_suns()] {
-        let directory = folder(&bright);
+    let suns = two_suns();
+    for bright in [&suns[..1], &suns] {
+        let directory = folder(bright);
         let mut headless = ball(&directory.path().join("map.exr"));
-        let (shown, points) = (pixels(&mut headless), points(&bright));
+        let (shown, points) = (pixels(&mut headless), points(bright));
         assert!(shown.len() > 400, "{} pixels", shown.len());
         let sums = |weight: &dyn Fn(DVec3, DVec3, DVec3) -> f64| -> Vec<(usize, f64)> {
-            let sum = |n: DVec3, v: DVec3| points.iter().map(|(l, light)| light * weight(n, *l, v)).sum();
+            let sum = |n: DVec3, v: DVec3| points.iter().map(|(l, light)| light * weight(n, *l, v)).sum::<f64>();
             shown.iter().map(|(i, n, v)| (*i, sum(*n, *v))).collect()
         };
         for roughness in [0.2, 0.5, 0.8, 1.0] {
@@ -158,10 +161,10 @@ fn a_metal_ball_under_suns_of_a_file_is_as_bright_as_a_sum_over_the_map() {
             assert!(bias.abs() < 0.03 && off < 0.15, "roughness {roughness}: off by {off}, all in all by {bias}");
         }
         let expected = sums(&|n, l, _| n.dot(l).max(0.0));
-        for suns in [true, false] {
-            set(&mut headless, &format!("environment.suns={suns}"));
+        for on in [true, false] {
+            set(&mut headless, &format!("environment.suns={on}"));
             let [bias, off] = error(&render(&mut headless, "irradiance"), &expected);
-            assert!(bias.abs() < 0.01 && off < 0.01, "irradiance, suns {suns}: off by {off}, all in all by {bias}");
+            assert!(bias.abs() < 0.01 && off < 0.01, "irradiance, suns {on}: off by {off}, all in all by {bias}");
         }
         set(&mut headless, "material.roughness=0.5");
         let [_, off] = error(&render(&mut headless, "final"), &sums(&|n, l, v| ggx(n, l, v, 0.5)));
@@ -173,7 +176,7 @@ fn a_metal_ball_under_suns_of_a_file_is_as_bright_as_a_sum_over_the_map() {
 #[test]
 fn a_map_without_suns_gives_the_same_picture_with_and_without_the_setting() {
     // A window is no sun.
-    let window = (0..24 * 24).map(|i| ((300 + i % 24, 60 + i / 24), 40.0)).collect();
+    let window: Vec<Bright> = (0..24 * 24).map(|i| ((300 + i % 24, 60 + i / 24), 40.0)).collect();
     for (what, bright, most) in [("a gradient", Vec::new(), 0.0), ("a window", window, 1e-3)] {
         let directory = folder(&bright);
         let mut headless = ball(&directory.path().join("map.exr"));
@@ -192,12 +195,12 @@ fn a_map_without_suns_gives_the_same_picture_with_and_without_the_setting() {
 /// Half floats end long before a sun in cd/m^2 does.
 #[test]
 fn a_sun_beyond_half_floats_keeps_its_light() {
-    let bright = vec![(texel(Vec3::new(0.5, 0.5, 0.7)), 1e9)];
+    let bright = [(texel(Vec3::new(0.5, 0.5, 0.7)), 1e9)];
     let directory = folder(&bright);
     let mut headless = ball(&directory.path().join("map.exr"));
     set(&mut headless, "environment.intensity=1e-4");
     let (shown, points) = (pixels(&mut headless), points(&bright));
-    let irradiance = |n: DVec3| points.iter().map(|(l, light)| 1e-4 * light * n.dot(*l).max(0.0)).sum();
+    let irradiance = |n: DVec3| points.iter().map(|(l, light)| 1e-4 * light * n.dot(*l).max(0.0)).sum::<f64>();
     let expected: Vec<(usize, f64)> = shown.iter().map(|(i, n, _)| (*i, irradiance(*n))).collect();
     let [bias, off] = error(&render(&mut headless, "irradiance"), &expected);
     assert!(bias.abs() < 0.01 && off < 0.01, "off by {off}, all in all by {bias}");
@@ -206,7 +209,7 @@ fn a_sun_beyond_half_floats_keeps_its_light() {
 /// A ball over a slab: shadows as those of random paths, which do not change with the setting.
 #[test]
 fn suns_of_a_file_throw_shadows() {
-    let directory = folder(&vec![(texel(Vec3::new(0.4, 0.8, 0.3)), 1.2e5)]);
+    let directory = folder(&[(texel(Vec3::new(0.4, 0.8, 0.3)), 1.2e5)]);
     let matte = json!({"pbrMetallicRoughness": {
         "baseColorFactor": [0.3, 0.3, 0.3, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}});
     let slab = glb::cuboid([-2.0, -1.4, -2.0], [2.0, -1.1, 2.0], true);
