@@ -138,7 +138,8 @@ const uint TEXTURE_THICKNESS = 16u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION = 17u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION_COLOR = 18u;
 const int TEXTURE_COUNT = 19;
-const int MAX_LIGHTS = 204;
+const int MAX_LIGHTS = 200;
+const int MAX_SUNS = 4;
 const int MAX_LIGHT_VIEWS = 16;
 const int COLORMAP_STEPS = 17;
 
@@ -174,9 +175,8 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec2 environment_rotation;         // Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
     float environment_intensity;       // Factor from the values of the environment's images to cd/m^2.
     float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
-    vec3 sun_direction;                // The environment's sun, which the specular levels leave out: unit vector to its center, in the map.
-    vec3 sun_intensity;                // Its irradiance on a surface that faces it, in the unit of the environment's images; 0: the map has no sun.
-    float sun_variance;                // Variance of its directions along one axis, radians squared.
+    uint sun_count;                    // Number of suns of the environment, which its irradiance and specular levels leave out. They follow the lights in BINDING_LIGHTS, as directional lights.
+    float sun_variance[MAX_SUNS];      // Variance of each sun's directions along one axis, radians squared.
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
     uint path_bounces;                 // Modes that trace the model: number of times that a path goes on from the surface that it has hit.
@@ -184,7 +184,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint frame_index;                  // Frames drawn before this one. Stays while nothing moves.
     vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while the left button was down, zw where it went down; z < 0 once it is up, w < 0 after the first frame of a click.
     mat4 clip_from_world_before;       // clip_from_world of the last picture before this one; in the first the same as now.
-    mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
+    mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights, with the suns after them: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
     vec4 date;                         // Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
     uint keys[24];                     // Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
     float range_low;                   // The value that the display shows as 0, if range_scale is not 0.
@@ -211,7 +211,7 @@ struct Light {
 };
 
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS];
+    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then frame.sun_count suns
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {
@@ -256,7 +256,7 @@ layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task {
     uint levels;                       // Number of mip levels of the image.
     uint samples;                      // Samples for each texel or result.
     float radiance_scale;              // Factor that fits radiance into half floats.
-    uint separates_sun;                // 1: a sun is taken out of the list of small lights. Else 0.
+    uint separates_suns;               // 1: suns are taken out of the list of small lights. Else 0.
     float roughness_first;             // Roughness of the first row.
     float roughness_last;              // Roughness of the last row.
     float theta_first;                 // Angle to the normal of the first column, degrees.

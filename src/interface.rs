@@ -43,8 +43,12 @@ pub const PUSH_CONSTANT_SIZE: u32 = 128;
 /// Size in bytes of the author's parameter block `Params`, whose members have `//@ui` annotations.
 pub const PARAMS_SIZE: u32 = 4096;
 
-/// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees.
-pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>();
+/// Maximum number of suns of an environment map that light the scene as directional lights.
+pub const MAX_SUNS: usize = 4;
+
+/// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees, with the suns of
+/// the environment after them.
+pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>() - MAX_SUNS;
 
 /// Number of colors in `Frame::colormap`.
 pub const COLORMAP_STEPS: usize = 17;
@@ -165,11 +169,14 @@ pub const BINDINGS: &[Binding] = &{
     all
 };
 
+/// Bytes of the block of lights and suns.
+pub(crate) const LIGHT_BYTES: usize = (MAX_LIGHTS + MAX_SUNS) * size_of::<Light>();
+
 /// Every descriptor that is not a material's texture.
 const OTHERS: &[Binding] = &[
     binding(SET_FRAME, BINDING_FRAME, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
     // Lights are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
-    binding(SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
+    binding(SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, LIGHT_BYTES),
     binding(SET_FRAME, BINDING_PARAMS, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
     binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
     binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),

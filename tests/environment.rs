@@ -1,5 +1,8 @@
 //! Environments: the bake matches the file or name, a bad file keeps the last good one, and the cache is reliable.
 
+mod environment {
+    mod suns;
+}
 mod support;
 
 use std::fs;

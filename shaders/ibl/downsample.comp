@@ -9,7 +9,8 @@
 // keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
 // fifth of the solid angle of a center texel, so an unweighted mean would move light.)
 //
-// From level 0 to 1 small lights are removed (ibl/small_lights/list.glsl). With the last level their list is complete.
+// From level 0 to 1 small lights are removed (ibl/small_lights/list.glsl). With the last level their list is complete, and the suns
+// are taken out of it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
@@ -19,11 +20,20 @@ const float NO_LIMIT = 1e38;
 
 shared float limit;
 
+// The integral of the map's radiance, at the last level. The level above it has 2 x 2 texels to a face, all of the same solid angle.
+vec3 whole_light() {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 24; ++i) sum += imageLoad(level_above, ivec3(i & 1, (i >> 1) & 1, i >> 2)).rgb;
+    sum *= 4.0 * PI / 24.0;
+    for (uint i = 0u; i < min(found.count, LARGEST_COUNT); ++i) sum += found.lights[i].intensity;
+    return sum;
+}
+
 void main() {
     if (gl_LocalInvocationIndex == 0u) limit = task.level == 1u ? brightness_limit() : NO_LIMIT;
     barrier();
     uvec3 texel = gl_GlobalInvocationID;
-    if (task.separates_sun != 0u && task.level == task.levels - 1u && texel == uvec3(0u)) separate_sun();
+    if (task.separates_suns != 0u && task.level == task.levels - 1u && texel == uvec3(0u)) separate_suns(whole_light());
     if (any(greaterThanEqual(texel.xy, task.size))) return;
 
     float reach = 0.5 / float(task.size.x);

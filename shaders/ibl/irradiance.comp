@@ -33,8 +33,7 @@ void main() {
     }
     vec3 radiance = sum.rgb / sum.w;
 
-    // Adds the small lights, which the levels below 0 do not have.
-    radiance += listed.sun.intensity * (max(dot(n, listed.sun.direction), 0.0) / PI);
+    // Adds the small lights but the suns. The levels below 0 do not have them.
     for (uint i = 0u; i < listed_lights(); ++i) {
         radiance += listed.lights[i].intensity * (max(dot(n, listed.lights[i].direction), 0.0) / PI);
     }

@@ -36,7 +36,7 @@ Radiances filtered_means(vec3 n) {
     return Radiances(sum.even / max(weight.x, 1e-30), sum.odd / max(weight.y, 1e-30));
 }
 
-// The small lights but the sun: sum of K intensity over the integral of K.
+// The small lights but the suns: sum of K intensity over the integral of K.
 void add_small_lights(vec3 n, inout Radiances to) {
     vec2 alpha = alpha_of_lobes(task.level);
     vec2 scale = 1.0 / max(lobe.integral, vec2(1e-30));

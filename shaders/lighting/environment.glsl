@@ -19,16 +19,20 @@ vec3 prefiltered_at(vec2 p, Tile tile) {
     return textureLod(prefiltered_levels, place / vec2(SPECULAR_WIDTH, SPECULAR_HEIGHT), 0.0).rgb;
 }
 
-// The sun's part of that mean, exact for every roughness: intensity K over the integral of K, where K is the lobe's weight
-// (ibl/sampling/lobe_weight.glsl). The levels from 1 on do not have the sun (ibl/small_lights/list.glsl). d: of any
-// length, in the map.
-vec3 sun_radiance(vec3 d, float roughness) {
-    vec3 chord = frame.sun_direction - normalize(d);
-    float weight = lobe_weight_of_light(0.25 * dot(chord, chord), lobe_alpha(roughness), frame.sun_variance);
-    return frame.sun_intensity * (weight / max(facing_albedo(roughness), 1e-3));   // 1e-3: a D of 0
+// The suns' part of that mean, exact for every roughness: intensity K over the integral of K, where K is the lobe's weight
+// (ibl/sampling/lobe_weight.glsl). The levels from 1 on do not have the suns (ibl/small_lights/list.glsl).
+vec3 sun_radiance(vec3 r, float roughness) {
+    vec3 d = normalize(r);
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < sun_count(); ++i) {
+        Light sun = sun_at(i);
+        vec3 chord = sun.position_ws.xyz - d;
+        sum += sun.intensity * lobe_weight_of_light(0.25 * dot(chord, chord), lobe_alpha(roughness), frame.sun_variance[i]);
+    }
+    return sum / max(facing_albedo(roughness), 1e-3);   // 1e-3: a D of 0
 }
 
-// The prefiltered radiance at a level, interpolated between an even and an odd one (ibl/maps/levels.glsl), without the sun and
+// The prefiltered radiance at a level, interpolated between an even and an odd one (ibl/maps/levels.glsl), without suns and
 // without the environment's intensity. d: of any length, in the map.
 vec3 prefiltered_sky(vec3 d, float level) {
     vec2 p = octahedral_point(d);
@@ -41,20 +45,21 @@ vec3 prefiltered_sky(vec3 d, float level) {
 }
 
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013), without the sun. But level 0 shows the sun itself.
-vec3 prefiltered_without_sun(vec3 r, float roughness) {
+// (Karis 2013), without suns. But level 0 shows the suns themselves.
+vec3 prefiltered_without_suns(vec3 r, float roughness) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
     vec3 sky = prefiltered_sky(map_from_world(r), specular_level(roughness));
     return frame.environment_intensity * sky;
 }
 
-// How much of the sun prefiltered_without_sun lacks at this roughness, 0..1, and the environment's intensity.
-float missing_sun(float roughness) { return frame.environment_intensity * min(specular_level(roughness), 1.0); }
+// The part of the suns that prefiltered_without_suns leaves out at this roughness: 0 for a mirror, whose level shows them, 1 from
+// level 1 on.
+float missing_suns(float roughness) { return min(specular_level(roughness), 1.0); }
 
-// The same with the sun, as a lobe for v = n.
+// The same with the suns, as lobes for v = n.
 vec3 prefiltered_radiance(vec3 r, float roughness) {
-    vec3 radiance = prefiltered_without_sun(r, roughness);
-    if ((FEATURES & FEATURE_SUN) != 0u) radiance += missing_sun(roughness) * sun_radiance(map_from_world(r), roughness);
+    vec3 radiance = prefiltered_without_suns(r, roughness);
+    if ((FEATURES & FEATURE_SUN) != 0u) radiance += missing_suns(roughness) * sun_radiance(r, roughness);
     return radiance;
 }
 

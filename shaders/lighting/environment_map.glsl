@@ -1,9 +1,10 @@
 // Light of the environment that no model of a surface has a part in: unfiltered and diffuse, as baked by ibl/cube.comp and
-// ibl/irradiance.comp. Directions are in world space and need not be unit.
+// ibl/irradiance.comp, and its suns. Directions are in world space and need not be unit.
 #ifndef LIGHTING_ENVIRONMENT_MAP_GLSL
 #define LIGHTING_ENVIRONMENT_MAP_GLSL
 
 #include "interface.glsl"
+#include "common/math.glsl"
 #include "ibl/maps/levels.glsl"
 #include "ibl/maps/octahedral.glsl"
 
@@ -32,11 +33,30 @@ vec3 environment_radiance(vec3 direction, float lod) {
 // Without an environment, the ambient light of the settings arrives from everywhere.
 const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
 
-// E / pi: the radiance that a white Lambertian surface with the normal n reflects.
-vec3 irradiance_over_pi(vec3 n) {
+// The suns of the map, which irradiance and prefiltered levels leave out where FEATURE_SUN is set (ibl/small_lights/list.glsl). With a
+// limit that the compiler can see, loops over them need no budget of rounds.
+uint sun_count() { return min(frame.sun_count, uint(MAX_SUNS)); }
+
+// Sun i as a directional light. Its intensity includes that of the environment.
+Light sun_at(uint i) { return lights[frame.light_count + i]; }
+
+// E / pi of all but the suns.
+vec3 irradiance_over_pi_without_suns(vec3 n) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
     vec2 place = place_in_tile(octahedral_point(map_from_world(n)), irradiance_tile());
     return frame.environment_intensity * textureLod(irradiance_map, place / float(IRRADIANCE_SIDE), 0.0).rgb;
+}
+
+// E / pi: the radiance that a white Lambertian surface with the normal n reflects. n: unit if the map has suns.
+vec3 irradiance_over_pi(vec3 n) {
+    vec3 radiance = irradiance_over_pi_without_suns(n);
+    if ((FEATURES & FEATURE_SUN) != 0u) {
+        for (uint i = 0u; i < sun_count(); ++i) {
+            Light sun = sun_at(i);
+            radiance += sun.intensity * (max(dot(n, sun.position_ws.xyz), 0.0) / PI);
+        }
+    }
+    return radiance;
 }
 
 #endif

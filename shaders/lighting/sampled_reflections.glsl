@@ -18,12 +18,12 @@
 
 #include "interface.glsl"
 #include "brdf/energy/dfg_table.glsl"
+#include "brdf/evaluate.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobe_frame.glsl"
-#include "lighting/sun.glsl"
 
 const uint PREFILTERED = 0u;
 //@ui "Reflections" choice Prefiltered=0 "Maps filtered by roughness and a table: the split sum (Karis 2013)" Sampled32=32 "32 directions in each pixel: follows every edit of D, V and F" Sampled64=64 "64 directions: half the streaks, twice the samples" Sampled128=128 "128 directions: closest to random paths" group="Sampling" doc="Of the environment: from prefiltered maps, or by a sum over directions in each pixel, which follows every edit of D, V and F and costs time"
@@ -47,13 +47,19 @@ float level_offset(float width) {
 }
 
 // The mean radiance around l, for a sample of density `pdf`. The peak of GGX reflected at v = n is D / 4 = 1 / (4 pi alpha^2),
-// and it equals N p for alpha = (4 pi N p)^(-1/2); roughness is its root. With a sun, level 0 is not read, since it shows
-// the sun; reflected_sun adds it.
+// and it equals N p for alpha = (4 pi N p)^(-1/2); roughness is its root. With suns, level 0 is not read, since it shows
+// them; lighting/sun.glsl adds them.
 vec3 mean_radiance_around(vec3 l, float pdf, float offset) {
     float alpha = FILTER_WIDTH * inversesqrt(4.0 * PI * float(REFLECTION_SAMPLES) * pdf);
-    float finest = (FEATURES & FEATURE_SUN) != 0u ? 1.0 : 0.0;
+    float finest = (FEATURES & FEATURE_SUN) != 0u && frame.sun_count > 0u ? 1.0 : 0.0;
     float level = clamp(specular_level(sqrt(alpha)) + offset, finest, float(SPECULAR_LEVELS));
     return prefiltered_sky(map_from_world(l), level);
+}
+
+// f |NoL| of the coat or of the base's specular lobe.
+vec3 weight_of(Surface s, vec3 v, vec3 l, bool is_coat) {
+    Brdf brdf = evaluate_brdf(s, l, v);
+    return (is_coat ? brdf.clearcoat : brdf.specular) * abs(dot(s.n, l));
 }
 
 // The sum over samples. Their density is that of the GGX whose facets spread as widely as those of the selected D
@@ -75,9 +81,7 @@ vec3 reflected_sky(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_c
 }
 
 vec3 sampled_reflection(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_coat) {
-    vec3 light = reflected_sky(s, v, lobe, roughness, is_coat);
-    if ((FEATURES & FEATURE_SUN) != 0u) light += reflected_sun(s, v, is_coat);
-    return frame.environment_intensity * light;
+    return frame.environment_intensity * reflected_sky(s, v, lobe, roughness, is_coat);
 }
 
 // A frame that turns the samples from pixel to pixel without a jump, which would show as a seam. In view space, no visible

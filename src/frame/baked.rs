@@ -85,12 +85,14 @@ impl TablesKey {
     }
 }
 
-/// Identifies a baked environment: its name, the revision of its file, and the stages of each part.
+/// Identifies a baked environment: its name, the revision of its file, what becomes of its suns, and the stages of each part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentKey {
     /// Built-in name or file.
     pub name: String,
     pub(crate) revision: u64,
+    /// Whether suns are taken out of the maps.
+    pub(crate) suns: bool,
     /// The stages of the cube map and the irradiance, which depend on the map alone.
     pub(crate) radiance: Vec<BakeStage>,
     /// Those of the prefilter, which depend on the selected NDF too.
@@ -100,10 +102,11 @@ pub struct EnvironmentKey {
 }
 
 impl EnvironmentKey {
-    pub(crate) fn new(name: &str, revision: u64, shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
+    pub(crate) fn new(name: &str, revision: u64, suns: bool, shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
         Self {
             name: name.to_owned(),
             revision,
+            suns,
             radiance: stages(shaders, &RADIANCE_STAGES, values),
             prefilter: stages(shaders, &PREFILTER_STAGES, values),
             sheen: stages(shaders, &SHEEN_STAGES, values),
@@ -112,20 +115,21 @@ impl EnvironmentKey {
 
     /// Whether the cube map and the irradiance are the same.
     pub(crate) fn has_radiance_of(&self, other: &Self) -> bool {
-        self.name == other.name && self.revision == other.revision && self.radiance == other.radiance
+        (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)
+            && self.radiance == other.radiance
     }
 
     /// Whether both differ at most by values of parameters, as two steps of a slider do.
     pub(crate) fn is_step_of(&self, other: &Self) -> bool {
-        (&self.name, self.revision) == (&other.name, other.revision)
+        (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)
             && same_modules(&self.radiance, &other.radiance)
             && same_modules(&self.prefilter, &other.prefilter)
             && same_modules(&self.sheen, &other.sheen)
     }
 
-    /// Whether both are for the same map and models: they differ by an edit of the shaders or of the file at most.
+    /// Whether both are for the same map, suns and models: they differ by an edit of the shaders or of the file at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
-        self.name == other.name
+        (&self.name, self.suns) == (&other.name, other.suns)
             && same_constants(&self.prefilter, &other.prefilter)
             && same_constants(&self.sheen, &other.sheen)
     }

@@ -32,12 +32,11 @@ pub use pipelines::{MaterialVariant, PipelineRequest};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
-use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
 use crate::gpu::Rect;
-use crate::interface::{Frame, Light, MAX_LIGHTS};
-use crate::scene::{CameraView, Model, frame, lights, view_of_light};
+use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS, MAX_SUNS};
+use crate::scene::{Bounds, CameraView, Model, Sun, frame, lights, separates_suns, view_of_light};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, Part};
 use crate::shader::{Mode, ShaderSet, values};
@@ -153,19 +152,6 @@ pub struct FrameState {
     constants: Frame,
 }
 
-/// A source so small that lighting evaluates it instead of looking it up; all zeros: none. It has the layout of `SmallLight`
-/// in ibl/small_lights/list.glsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub(crate) struct Sun {
-    /// Unit vector to its center, in the environment's map.
-    pub(crate) direction: [f32; 3],
-    /// Irradiance on a surface that faces it, in the unit of the environment's images.
-    pub(crate) intensity: [f32; 3],
-    /// Variance of its directions along one axis, radians squared.
-    pub(crate) variance: f32,
-}
-
 impl FrameState {
     /// The state of a picture. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
@@ -237,7 +223,8 @@ impl FrameState {
             tables: TablesKey::new(shaders, values),
             environment: lit.then(|| {
                 let (name, revision) = (&settings.environment.name, revisions.environment);
-                EnvironmentKey::new(name, revision, shaders, values)
+                let suns = separates_suns(&settings.environment);
+                EnvironmentKey::new(name, revision, suns, shaders, values)
             }),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
@@ -319,20 +306,38 @@ impl FrameState {
         &self.pass_blocks
     }
 
-    /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`,
-    /// and its specular levels leave out `sun`. `sample_index` counts the frames of an accumulated picture from 0. `before`:
-    /// `clip_from_world` of the frame before.
-    pub(crate) fn constants(&self, rect: Rect, (scale, sun): (f32, Sun), sample_index: u32, before: Mat4) -> Frame {
-        Frame {
+    /// The suns as lights of this frame. The environment's images hold radiance times `scale`.
+    fn suns<'a>(&'a self, (scale, suns): (f32, &'a [Sun])) -> impl Iterator<Item = Light> + 'a {
+        let factor = self.constants.environment_intensity / scale;
+        suns.iter().take(MAX_SUNS).map(move |sun| sun.light(self.constants.environment_rotation, factor))
+    }
+
+    /// The content of the block of lights: those of the frame, then the suns of the environment. `environment`: the scale of its
+    /// images, and its suns.
+    pub(crate) fn lights_and_suns(&self, environment: (f32, &[Sun])) -> Vec<Light> {
+        self.lights.iter().copied().chain(self.suns(environment)).collect()
+    }
+
+    /// The frame constants for a picture at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
+    /// `sample_index` counts the frames of an accumulated picture from 0. `before`: `clip_from_world` of the frame before.
+    pub(crate) fn constants(&self, rect: Rect, environment: (f32, &[Sun]), sample_index: u32, before: Mat4) -> Frame {
+        let (scale, suns) = environment;
+        let mut frame = Frame {
             clip_from_world_before: before.to_cols_array_2d(),
             environment_intensity: self.constants.environment_intensity / scale,
-            sun_direction: sun.direction,
-            sun_intensity: sun.intensity,
-            sun_variance: sun.variance,
+            sun_count: suns.len().min(MAX_SUNS) as u32,
             sample_index,
             viewport_origin_px: [rect.x as f32, rect.y as f32],
             ..self.constants
+        };
+        let bounds = self.scene.as_ref().map_or_else(Bounds::default, |scene| scene.model().bounds);
+        for (index, (sun, light)) in suns.iter().zip(self.suns(environment)).enumerate() {
+            frame.sun_variance[index] = sun.variance;
+            if let Some(view) = frame.light_clip_from_world[..MAX_LIGHT_VIEWS].get_mut(self.lights.len() + index) {
+                *view = view_of_light(&light, &bounds).to_cols_array_2d();
+            }
         }
+        frame
     }
 }
 

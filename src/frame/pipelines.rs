@@ -10,7 +10,7 @@ use super::formats::{MEAN_FORMAT, TargetFormat};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Specialization, vk};
 use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
-use crate::scene::{has_exact_sun, light_count};
+use crate::scene::{light_count, separates_suns};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, Part};
@@ -267,7 +267,7 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
     if settings.environment.is_lit() {
         features |= interface::FEATURE_ENVIRONMENT;
     }
-    if has_exact_sun(&settings.environment.name) {
+    if separates_suns(&settings.environment) {
         features |= interface::FEATURE_SUN;
     }
     if settings.lights.rect.enabled && settings.lights.source != LightSource::None {

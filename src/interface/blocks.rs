@@ -7,7 +7,7 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
+use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
 
 /// A struct of the contract.
 #[derive(Debug)]
@@ -138,12 +138,10 @@ blocks! {
         environment_intensity: float,
         /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
         environment_blur: float,
-        /// The environment's sun, which the specular levels leave out: unit vector to its center, in the map.
-        sun_direction: vec3,
-        /// Its irradiance on a surface that faces it, in the unit of the environment's images; 0: the map has no sun.
-        sun_intensity: vec3,
-        /// Variance of its directions along one axis, radians squared.
-        sun_variance: float,
+        /// Number of suns of the environment, which its irradiance and specular levels leave out. They follow the lights in BINDING_LIGHTS, as directional lights.
+        sun_count: uint,
+        /// Variance of each sun's directions along one axis, radians squared.
+        sun_variance: [float; MAX_SUNS],
         /// Accumulating modes: frames since the picture changed.
         sample_index: uint,
         /// Accumulating modes: random paths a pixel in each frame.
@@ -158,7 +156,7 @@ blocks! {
         mouse_px: vec4,
         /// clip_from_world of the last picture before this one; in the first the same as now.
         clip_from_world_before: mat4,
-        /// The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
+        /// The first lights, with the suns after them: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
         light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],
         /// Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
         date: vec4,
@@ -288,8 +286,8 @@ blocks! {
         samples: uint,
         /// Factor that fits radiance into half floats.
         radiance_scale: float,
-        /// 1: a sun is taken out of the list of small lights. Else 0.
-        separates_sun: uint,
+        /// 1: suns are taken out of the list of small lights. Else 0.
+        separates_suns: uint,
         /// Roughness of the first row.
         roughness_first: float,
         /// Roughness of the last row.

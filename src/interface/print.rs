@@ -35,6 +35,7 @@ pub fn glsl() -> String {
     }
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
     constant("int", "MAX_LIGHTS", MAX_LIGHTS.to_string());
+    constant("int", "MAX_SUNS", MAX_SUNS.to_string());
     constant("int", "MAX_LIGHT_VIEWS", MAX_LIGHT_VIEWS.to_string());
     constant("int", "COLORMAP_STEPS", COLORMAP_STEPS.to_string());
     out.push('\n');
@@ -73,7 +74,7 @@ fn print_block(out: &mut String, block: &Block) -> std::fmt::Result {
 
 const LIGHTS: &str = "
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS];
+    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then frame.sun_count suns
 };
 ";
 

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use glam::Mat4;
+
 use super::brdf::tables::Tables;
 use super::environment::maps::GpuEnvironment;
 use super::paths::Traced;
 use super::scene::GpuScene;
 use crate::frame::FrameState;
-use crate::gpu::Buffer;
-use crate::interface::{CLOCK, KEYS, MOTION};
+use crate::gpu::{Buffer, Rect};
+use crate::interface::{CLOCK, Frame, KEYS, Light, MOTION};
 use crate::pipeline::BoundPipelines;
 use crate::shader::graph::Part;
 
@@ -30,6 +32,16 @@ impl BoundFrame {
     #[must_use]
     pub fn with_state(&self, state: FrameState) -> Self {
         Self { state: Arc::new(state), ..self.clone() }
+    }
+
+    /// [`FrameState::constants`] with this environment.
+    pub(super) fn constants(&self, rect: Rect, sample_index: u32, before: Mat4) -> Frame {
+        self.state.constants(rect, self.environment.scale_and_suns(), sample_index, before)
+    }
+
+    /// The lights of the frame, then the suns of its environment.
+    pub(super) fn lights(&self) -> Vec<Light> {
+        self.state.lights_and_suns(self.environment.scale_and_suns())
     }
 
     /// Whether both draw the same picture, bit for bit.

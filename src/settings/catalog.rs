@@ -71,6 +71,11 @@ const DESCRIBED: &[(&str, &str, &str)] = &[
     ("environment.rotation", "degrees", "Angle around +Y"),
     ("environment.intensity", "", "Factor on the map, whose values are cd/m^2"),
     ("environment.blur", "", "Blur behind the model, as a roughness"),
+    (
+        "environment.suns",
+        "",
+        "Whether suns of the map light the model as lamps do; otherwise they are a part of the prefiltered light",
+    ),
     ("view.tonemap", "", "Tone map"),
     ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100), so +1 is half as bright; Exposure in the window is -EV100"),
     ("view.channels", "", "Channels that the picture shows; a is coverage"),

@@ -17,11 +17,13 @@ pub struct EnvironmentSettings {
     pub intensity: f32,
     /// Blur of the background: 0 sharp .. 1, as a roughness.
     pub blur: f32,
+    /// Whether suns of the map light the model as lamps do. Otherwise they are a part of the prefiltered light.
+    pub suns: bool,
 }
 
 impl Default for EnvironmentSettings {
     fn default() -> Self {
-        Self { name: "studio".into(), rotation: 0.0, intensity: 1.0, blur: 0.0 }
+        Self { name: "studio".into(), rotation: 0.0, intensity: 1.0, blur: 0.0, suns: true }
     }
 }
 

@@ -18,10 +18,15 @@ float lobe_weight(float x, float alpha) {
 // False for values that D and V must not have. They count as 0.
 bool is_weight(float k) { return k >= 0.0 && k < 1e20; }
 
-// K of a small light, whose directions have the variance `spread` along one axis. x: of its center. The variance widens the
-// lobe.
+// alpha of a lobe that light from directions with the variance `spread` along one axis widens. Half vectors have a quarter of that
+// variance. Around its peak, GGX is proportional to exp(-2 theta^2 / alpha^2), so its half vectors have the variance alpha^2 / 4,
+// and alpha^2 grows by the variance. Beckmann's exp(-theta^2 / alpha^2) has alpha^2 / 2, and grows by half of it. Exact to the second
+// order of the ratio of the widths; an edited D counts as the one that it replaces.
+float widened_alpha(float alpha, float spread) { return sqrt(alpha * alpha + (NDF == BECKMANN ? 0.5 : 1.0) * spread); }
+
+// K of a small light, whose directions have the variance `spread` along one axis. x: of its center.
 float lobe_weight_of_light(float x, float alpha, float spread) {
-    float k = lobe_weight(x, sqrt(alpha * alpha + spread));
+    float k = lobe_weight(x, widened_alpha(alpha, spread));
     return is_weight(k) ? k : 0.0;
 }
 

@@ -4,9 +4,9 @@
 // with 64 samples; 0.02 % once they are removed). So level 0 keeps the full picture, while the levels below clip texels
 // at a limit. The clipped light becomes a list of directions, which the bake adds exactly.
 //
-// Where FEATURE_SUN is set, the brightest of these sources, if it is as small as a sun, is not in the list: the prefiltered
-// levels leave it out, and lighting/environment.glsl adds it at each lookup. For a sun, a level would need texels much smaller
-// than its lobe.
+// Where FEATURE_SUN is set, the brightest of these sources that are as small as a sun are not in the list: irradiance and
+// prefiltered levels leave them out, and lighting/sun.glsl lights the surface with them as with lamps. For a sun, a level would
+// need texels much smaller than its lobe, and the split sum, whose lobe is that of v = n, would be off by up to half of the light.
 #ifndef IBL_SMALL_LIGHTS_LIST_GLSL
 #define IBL_SMALL_LIGHTS_LIST_GLSL
 
@@ -22,9 +22,10 @@ struct SmallLight {
     float spread;              // variance of its directions along one axis, radians squared
 };
 
-// One buffer for the whole bake, zeroed at its start. Rust reads the sun, so its place is the first.
+// One buffer for the whole bake, zeroed at its start. Rust reads the suns, so their place is the first.
 struct SmallLightList {
-    SmallLight sun;                            // no intensity: there is none
+    uint sun_count;
+    SmallLight suns[MAX_SUNS];                 // the brightest first
     uint brightness_count[BRIGHTNESS_STEPS];   // histogram of level 0 by brightness_step
     uint count;                                // can exceed the list, see brightness_limit
     SmallLight lights[LARGEST_COUNT];

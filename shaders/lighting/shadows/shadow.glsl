@@ -1,4 +1,4 @@
-// Shadows of punctual and rectangular lights, by shadow maps (Williams 1978). passes/shadows/shadow_map.frag draws the map.
+// Shadows of punctual and rectangular lights and of suns, by shadow maps (Williams 1978). passes/shadows/shadow_map.frag draws the map.
 //
 // Limits: a light sees the model from its middle, and the mean distance of what hides a point from there decides how wide the penumbra is,
 // so penumbras that overlap are only about right. Soft shadows take 24 samples, whose noise shows in wide penumbras.
@@ -107,9 +107,9 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, vec2 s
     return lit / float(TAPS);
 }
 
-// Part of light `i` that reaches a point of a surface with the geometric normal n, 0..1. The point is moved along the normal and
-// towards the light, by what a texel of the map spans on the surface, so that the surface does not hide itself. The map holds the
-// mesh without normal textures, so a shading normal would offset the point wrongly. `l`: unit, towards the light.
+// Part of light `i` that reaches a point of a surface with the geometric normal n, 0..1; suns follow the lights. The point is moved
+// along the normal and towards the light, by what a texel of the map spans on the surface, so that the surface does not hide itself.
+// The map holds the mesh without normal textures, so a shading normal would offset the point wrongly. `l`: unit, towards the light.
 float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     if (SHADOWS == NO_SHADOWS || i >= MAX_LIGHT_VIEWS) return 1.0;
     mat4 view = frame.light_clip_from_world[i];
@@ -138,6 +138,8 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
         float to_light_m = length(to_light_ws);
         float size_m = light.kind == LIGHT_RECT ? length(light.half_x_ws + light.half_y_ws) : shadow_softness * to_light_m;
         float angle = size_m / max(to_light_m, 1e-6);
+        // The radius of a disk is twice the root of its variance along one axis.
+        if ((FEATURES & FEATURE_SUN) != 0u && i >= frame.light_count) angle = 2.0 * sqrt(frame.sun_variance[i - frame.light_count]);
         vec2 slope = depth_slope(view, light_ndc, n, side * dot(n, to_light_ws) > 0.0, tile_size);
         return soft_visibility(view, seen, uv, low, low + tile_size, slope, per_meter / seen.w, angle);
     }

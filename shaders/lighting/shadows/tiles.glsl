@@ -1,4 +1,5 @@
-// The shadow map is an image with a tile for each of the first MAX_LIGHT_VIEWS lights. Others throw no shadow.
+// The shadow map is an image with a tile for each of the first MAX_LIGHT_VIEWS lights, suns of the environment after the others.
+// The rest throws no shadow.
 #ifndef LIGHTING_TILES_GLSL
 #define LIGHTING_TILES_GLSL
 
@@ -10,6 +11,7 @@ const float SHADOW_MAP_PX = 2048.0;
 // Tiles in a row of the shadow map, and rows.
 uint shadow_tiles() {
     uint lights = LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count;
+    if ((FEATURES & FEATURE_SUN) != 0u) lights += frame.sun_count;
     return lights <= 1u ? 1u : lights <= 4u ? 2u : lights <= 9u ? 3u : 4u;
 }
 

@@ -16,17 +16,23 @@ uniform sampler2D ground_sky;
 
 const vec3 UP = vec3(0.0, 1.0, 0.0);
 
-// The part of the sky's irradiance that comes from the sun.
-vec3 sun_irradiance() {
-    if ((FEATURES & FEATURE_SUN) == 0u) return vec3(0.0);
-    return frame.environment_intensity * frame.sun_intensity * max(frame.sun_direction.y, 0.0);
+// Part of sun i that reaches the point. With shadows it is that of its shadow map. Without them, the first sun is hidden below the
+// elevation up to which its direction is free, sin^2; the edge is soft, as the model is known in a few steps only. Further suns
+// then are a part of the sky.
+float sun_visibility(uint i, vec3 position_ws, vec3 l, vec2 open) {
+    if (SHADOWS != NO_SHADOWS) return shadow_visibility(frame.light_count + i, position_ws, UP, l);
+    return i == 0u ? 1.0 - smoothstep(0.7 * open.g, 1.3 * open.g + 0.05, l.y * l.y) : open.r;
 }
 
-// Part of the sun that is below the elevation up to which its direction is free, sin^2. The edge is soft, as the model is known in a
-// few steps only.
-float sun_visibility(float open) {
-    float elevation = frame.sun_direction.y * frame.sun_direction.y;
-    return 1.0 - smoothstep(0.7 * open, 1.3 * open + 0.05, elevation);
+// Adds the irradiance by the suns, and what is left of it.
+void add_suns(inout vec3 whole, inout vec3 left, vec3 position_ws, vec2 open) {
+    for (uint i = 0u; i < sun_count(); ++i) {
+        Light sun = sun_at(i);
+        vec3 l = sun.position_ws.xyz;
+        if (l.y <= 0.0) continue;
+        whole += sun.intensity * l.y;
+        left += sun.intensity * (l.y * sun_visibility(i, position_ws, l, open));
+    }
 }
 
 // Adds the irradiance by light `i`, and what is left of it in the light's shadow.
@@ -40,9 +46,9 @@ void add_light(inout vec3 whole, inout vec3 left, uint i, vec3 position_ws) {
 // Part of the irradiance of a point of the ground that reaches it.
 vec3 lit_part_of(vec3 position_ws) {
     vec2 open = texture(ground_sky, uv).rg;
-    vec3 whole = PI * irradiance_over_pi(UP);
-    vec3 sun = min(sun_irradiance(), whole);
-    vec3 left = (whole - sun) * open.r + sun * sun_visibility(open.g);
+    vec3 whole = PI * irradiance_over_pi_without_suns(UP);
+    vec3 left = whole * open.r;
+    if ((FEATURES & FEATURE_SUN) != 0u) add_suns(whole, left, position_ws, open);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) add_light(whole, left, i, position_ws);
     } else {

@@ -1,4 +1,4 @@
-//@pass ground_sky "Ground: sky" size=64x64 format=rg16f doc="Red: part of the sky's irradiance that reaches the ground, without the sun; green: sin^2 of the elevation up to which the direction of the sun is free"
+//@pass ground_sky "Ground: sky" size=64x64 format=rg16f doc="Red: part of the sky's irradiance that reaches the ground, without suns; green: sin^2 of the elevation up to which the direction of the brightest sun is free"
 #version 460
 #include "pass.glsl"
 #include "common/color.glsl"
@@ -60,8 +60,8 @@ void main() {
         left += seen;
     }
     float sun = 1.0;
-    if ((FEATURES & FEATURE_SUN) != 0u) {
-        vec2 towards = world_from_map(frame.sun_direction).xz * vec2(1.0, -1.0);
+    if ((FEATURES & FEATURE_SUN) != 0u && frame.sun_count > 0u) {
+        vec2 towards = sun_at(0u).position_ws.xz * vec2(1.0, -1.0);
         sun = open_sky(towards / max(length(towards), 1e-3), 16);
     }
     // Without light there is no shadow.

@@ -72,7 +72,7 @@ impl Panel {
             Self::Parameters => "sliders values defaults",
             Self::Passes => "clock time effects switch",
             Self::Inspector => "pixel values texels BRDF lobe albedo furnace plot",
-            Self::Environment => "HDR map rotation background blur",
+            Self::Environment => "HDR map rotation background blur suns",
             Self::Lights => "color orbit rectangle ambient",
             Self::Output => "exposure tone map range channels colors samples",
             Self::Camera => "field of view bookmarks",

@@ -57,11 +57,12 @@ pub(super) fn of_settings(viewer: &Viewer) -> Vec<Entry> {
     entries
 }
 
-fn switches(settings: &Settings) -> [(&'static str, &'static str, &'static str, bool); 4] {
+fn switches(settings: &Settings) -> [(&'static str, &'static str, &'static str, bool); 5] {
     let view = &settings.view;
     [
         ("Output", "Wireframe over the picture", "view.wireframe", view.wireframe),
         ("Output", "Dither", "view.dither", view.dither),
+        ("Environment", "Suns of the map", "environment.suns", settings.environment.suns),
         ("Lights", "Rectangular light", "lights.rect.enabled", settings.lights.rect.enabled),
         ("Material", "One material for all", "material.enabled", settings.material.enabled),
     ]

@@ -34,6 +34,7 @@ pub(super) fn show(
     });
     number(ui, settings, &ROTATION);
     number(ui, settings, &INTENSITY);
+    suns(ui, &mut settings.environment);
     visible(ui, &mut settings.view, is_lit);
     number(ui, settings, &BLUR);
 }
@@ -58,6 +59,16 @@ fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
                 }
             }
         })
+    });
+}
+
+/// Whether suns of the map are lamps.
+fn suns(ui: &mut Ui, environment: &mut EnvironmentSettings) {
+    let is_lit = environment.is_lit();
+    let doc = "Suns of the map light the model as lamps do. Off: they are a part of the prefiltered light, which blurs their highlights";
+    let default = EnvironmentSettings::default().suns;
+    setting(ui, ("Suns", doc, "environment.suns"), &mut environment.suns, default, |ui, on| {
+        ui.add_enabled_ui(is_lit, |ui| check(ui, on)).inner
     });
 }
 

@@ -13,11 +13,14 @@ use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::pipeline::PipelineSet;
-use crate::scene::{EnvironmentError, EnvironmentFile, has_exact_sun};
+use crate::scene::environment::restore_clipped;
+use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
 use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance, SHARED_EXPONENT};
-use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size, sun_of};
+use crate::render::environment::passes::{
+    IRRADIANCE_LEVEL, Lobes, Passes, set_suns, small_lights, small_lights_size, suns_of,
+};
 use crate::render::environment::transfer;
 
 const CUBE_SIDE: u32 = 512;
@@ -168,7 +171,7 @@ impl Bake<'_> {
     /// The cache's key of the specular levels of a map.
     fn prefiltered_key(&self, map: u128) -> Option<String> {
         let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
-        let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT];
+        let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT, self.key.suns.into()];
         sizes.extend(SPECULAR_SAMPLES);
         key(&[map], &stages, &sizes)
     }
@@ -176,7 +179,7 @@ impl Bake<'_> {
     /// The cache's key of the sheen levels of a map.
     fn sheen_key(&self, map: u128) -> Option<String> {
         let stages = [&*self.key.radiance, &*self.key.sheen].concat();
-        key(&[map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES])
+        key(&[map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES, self.key.suns.into()])
     }
 
     /// The stages of all parts that have to be computed for a map whose radiance is not in the cache.
@@ -201,23 +204,22 @@ impl Bake<'_> {
         let file = Running::start(move || EnvironmentFile::open(&name)).wait_unless(self.control.superseded);
         let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         self.report.environment.clone_from(&file.name);
-        let sun = has_exact_sun(&self.key.name);
-        let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits(), sun.into()];
+        let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits(), self.key.suns.into()];
         let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
         let cube = self.cube("environment", CUBE_SIDE, CUBE_LEVELS)?;
         let irradiance = self.octahedral("irradiance", [IRRADIANCE_SIDE; 2])?;
         let images = [&cube, &irradiance];
         let lights = small_lights_size(self.set);
         let bytes: u64 = images.iter().map(|image| image.desc().bytes()).sum();
-        // An entry holds the images, the small lights, and the scale.
+        // An entry holds the images, the small lights with the suns, and the scale.
         if let Some(entry) = self.cached(disk_key.as_ref(), bytes + lights + 4) {
             self.report.decode_ms = ms(time);
             let (images_part, rest) = entry.split_at(bytes as usize);
             self.fill(&images, images_part)?;
             let (lights, scale) = rest.split_at(rest.len() - 4);
-            let (sun, small_lights) = (sun_of(lights), Some(small_lights(self.gpu, lights)?));
+            let (suns, small_lights) = (suns_of(lights), Some(small_lights(self.gpu, lights)?));
             let scale = bytemuck::pod_read_unaligned(scale);
-            return Ok(Arc::new(Radiance { cube, irradiance, scale, sun, small_lights, map: file.fingerprint }));
+            return Ok(Arc::new(Radiance { cube, irradiance, scale, suns, small_lights, map: file.fingerprint }));
         }
         self.report.decode_ms = ms(time);
         // The pipelines are created while another thread decodes.
@@ -244,12 +246,11 @@ impl Bake<'_> {
         let desc = ImageDesc::new(map.width, map.height, vk::Format::R32G32B32A32_SFLOAT, usage);
         let equirect = Image::new(self.gpu, "environment map", desc)?;
         compute::upload(self.gpu, &[(&equirect, bytemuck::cast_slice(&map.pixels))])?;
-        drop(map);
         self.report.upload_ms = ms(time);
 
         let lights = small_lights(self.gpu, &vec![0; lights as usize])?;
         let time = self.begin(0.15, "cube map")?;
-        self.passes(&lights).cube(&equirect, &cube, scale, has_exact_sun(&self.key.name))?;
+        self.passes(&lights).cube(&equirect, &cube, scale, self.key.suns)?;
         self.report.cube_ms = ms(time);
 
         let time = self.begin(0.25, "irradiance")?;
@@ -260,13 +261,15 @@ impl Bake<'_> {
         let time = Instant::now();
         let buffers = [(&texels, texels.size()), (&lights, lights.size())];
         let mut entry = transfer::read(self.gpu, &[&cube], &buffers)?;
-        let sun = sun_of(&entry[bytes as usize..]);
+        let mut suns = suns_of(&entry[bytes as usize..]);
+        restore_clipped(&mut suns, &map, scale, LARGEST_HALF);
+        set_suns(&mut entry[bytes as usize..], &suns);
         entry.extend(f32::to_ne_bytes(scale));
         if let Some(key) = disk_key {
             disk_cache::store(&key, &entry);
         }
         self.storing_ms += ms(time);
-        Ok(Arc::new(Radiance { cube, irradiance, scale, sun, small_lights: Some(lights), map: file.fingerprint }))
+        Ok(Arc::new(Radiance { cube, irradiance, scale, suns, small_lights: Some(lights), map: file.fingerprint }))
     }
 
     /// The levels of the specular lobe.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::frame::Sun;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Sampler, vk};
 
 use crate::render::compute;
+use crate::scene::Sun;
 
 /// Format of the cube maps.
 pub(super) const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
@@ -30,8 +30,8 @@ pub(crate) struct Radiance {
     pub(crate) irradiance: Arc<Image>,
     /// The images hold radiance times this factor.
     pub(crate) scale: f32,
-    /// The sun that the specular levels leave out.
-    pub(super) sun: Sun,
+    /// The suns that irradiance, specular levels and sheen leave out.
+    pub(super) suns: Vec<Sun>,
     /// The list of ibl/small_lights/list.glsl. `None` in an environment that is never prefiltered.
     pub(super) small_lights: Option<Arc<Buffer>>,
     /// Fingerprint of the map.
@@ -66,7 +66,7 @@ impl GpuEnvironment {
         let (sheen, cube) = (image("uniform sheen", cube)?, image("uniform cube", cube)?);
         let prefiltered = Arc::new(Prefiltered { levels, wrong: false });
         let radiance =
-            Arc::new(Radiance { cube, irradiance, scale: 1.0, sun: Sun::default(), small_lights: None, map: 0 });
+            Arc::new(Radiance { cube, irradiance, scale: 1.0, suns: Vec::new(), small_lights: None, map: 0 });
         Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
     }
 
@@ -80,9 +80,9 @@ impl GpuEnvironment {
         Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
     }
 
-    /// The factor from radiance to the values of the images, and the sun that is not in the specular levels.
-    pub(crate) fn scale_and_sun(&self) -> (f32, Sun) {
-        (self.radiance.scale, self.radiance.sun)
+    /// The factor from radiance to the values of the images, and the suns that the images leave out.
+    pub(crate) fn scale_and_suns(&self) -> (f32, &[Sun]) {
+        (self.radiance.scale, &self.radiance.suns)
     }
 
     /// The functions that returned values which are no densities, and count as 0 in this light.

@@ -8,14 +8,15 @@ use crate::gpu::{
 };
 use crate::interface::{
     BINDING_LEVEL_ABOVE, BINDING_LOBE, BINDING_LOBE_TARGET, BINDING_PACKED, BINDING_RESULTS, BINDING_SMALL_LIGHTS,
-    BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
+    BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MAX_SUNS, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
+use crate::frame::BakeStage;
 use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
-use crate::frame::{BakeStage, Sun};
 use crate::pipeline::PipelineSet;
 use crate::render::compute;
 use crate::render::environment::transfer;
+use crate::scene::Sun;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;
@@ -33,9 +34,19 @@ pub(crate) fn small_lights_size(set: &PipelineSet) -> u64 {
     declared_size(set, DOWNSAMPLE, BINDING_RESULTS)
 }
 
-/// The first member of the list of ibl/small_lights/list.glsl.
-pub(crate) fn sun_of(list: &[u8]) -> Sun {
-    list.get(..size_of::<Sun>()).map_or_else(Sun::default, bytemuck::pod_read_unaligned)
+/// The suns at the start of the list of ibl/small_lights/list.glsl.
+pub(crate) fn suns_of(list: &[u8]) -> Vec<Sun> {
+    let Some((count, rest)) = list.split_first_chunk() else { return Vec::new() };
+    let suns = rest.chunks_exact(size_of::<Sun>()).take(MAX_SUNS.min(u32::from_ne_bytes(*count) as usize));
+    suns.map(bytemuck::pod_read_unaligned).collect()
+}
+
+/// Replaces them by as many others.
+pub(crate) fn set_suns(list: &mut [u8], suns: &[Sun]) {
+    let bytes = bytemuck::cast_slice(suns);
+    if let Some(place) = list.get_mut(size_of::<u32>()..size_of::<u32>() + bytes.len()) {
+        place.copy_from_slice(bytes);
+    }
 }
 
 /// The buffer of ibl/small_lights/list.glsl with these bytes; zeros for a new bake.
@@ -111,13 +122,13 @@ impl Passes<'_> {
     }
 
     /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
-    /// `separates_sun`: takes the sun, if there is one, out of the list of small lights.
+    /// `separates_suns`: takes suns out of the list of small lights.
     pub(crate) fn cube(
         &self,
         map: &Arc<Image>,
         cube: &Arc<Image>,
         radiance_scale: f32,
-        separates_sun: bool,
+        separates_suns: bool,
     ) -> Result<(), GpuError> {
         let desc = *cube.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
@@ -129,7 +140,7 @@ impl Passes<'_> {
             levels: desc.mips,
             samples: (finer as u32).min(8),
             radiance_scale,
-            separates_sun: separates_sun.into(),
+            separates_suns: separates_suns.into(),
             ..Task::default()
         };
         let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {

@@ -223,9 +223,9 @@ impl View {
 
         // Uniforms and set 0.
         let [_, before] = self.cameras.unwrap_or([frame.state.camera.clip_from_world(); 2]);
-        let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index, before);
+        let constants = frame.constants(rect, self.sample_index, before);
         let constants = frame.state.display.constants(constants, limits);
-        in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
+        in_flight.uniforms.write(&constants, &frame.lights(), frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.

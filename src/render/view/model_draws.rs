@@ -119,7 +119,7 @@ impl ModelDraws<'_> {
 pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
     match pass.note.model {
         Some(Instances::Count(count)) => count,
-        Some(Instances::Lights) => frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
+        Some(Instances::Lights) => frame.lights().len().min(MAX_LIGHT_VIEWS) as u32,
         None => 0,
     }
 }

@@ -54,14 +54,14 @@ impl PixelModes {
         let view = &mut self.view;
         let sets = [view.frame_set(of_passes, frame)?, view.frame_set(of_pixel, frame)?];
         let Some(targets) = &self.targets else { return Ok(()) };
-        let (state, light) = (&frame.state, frame.environment.scale_and_sun());
+        let state = &frame.state;
         let whole = Rect { x: 0, y: 0, width: state.size.0, height: state.size.1 };
-        let constants = state.constants(whole, light, 0, state.camera.clip_from_world());
+        let constants = frame.constants(whole, 0, state.camera.clip_from_world());
         let origin = (at.0 / Self::QUAD * Self::QUAD, at.1 / Self::QUAD * Self::QUAD);
         let mut at_pixel = constants;
         at_pixel.viewport_origin_px = [-(origin.0 as f32), -(origin.1 as f32)];
         for (slot, constants) in [(of_passes, &constants), (of_pixel, &at_pixel)] {
-            view.in_flight[slot].uniforms.write(constants, &state.lights, state.params());
+            view.in_flight[slot].uniforms.write(constants, &frame.lights(), state.params());
         }
 
         let drawn = |slot: usize| {

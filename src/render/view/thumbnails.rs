@@ -86,14 +86,14 @@ impl Thumbnails {
         let (width, height) = frame.state.size;
         let rect = Rect { x: 0, y: 0, width, height };
         let camera = frame.state.camera.clip_from_world();
-        let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), 0, camera);
+        let constants = frame.constants(rect, 0, camera);
         // Each mode has its own range and colors, and so its own constants.
         for (index, in_flight) in view.in_flight[first..].iter().take(corners.len().max(1)).enumerate() {
             let (mode, _, display) = frame.state.displays.get(index).copied().unwrap_or((0, 3, frame.state.display));
             let limits =
                 if display.is_measured() { self.limits.get(&mode).copied() } else { display.limits(None, None) };
             let constants = crate::interface::Frame { mode, ..display.constants(constants, limits) };
-            in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
+            in_flight.uniforms.write(&constants, &frame.lights(), frame.state.params());
         }
         encoder.bind_set(&view.layouts, &set);
 

@@ -60,9 +60,8 @@ pub(crate) struct Uniforms {
 impl Uniforms {
     pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
-        let light_bytes = (interface::MAX_LIGHTS * size_of::<Light>()) as u64;
         let frame = Buffer::new(gpu, "frame", size_of::<Frame>() as u64, uniform, Memory::Upload)?;
-        let lights = Buffer::new(gpu, "lights", light_bytes, uniform, Memory::Upload)?;
+        let lights = Buffer::new(gpu, "lights", interface::LIGHT_BYTES as u64, uniform, Memory::Upload)?;
         let params = Buffer::new(gpu, "params", interface::PARAMS_SIZE.into(), uniform, Memory::Upload)?;
         Ok(Self { frame, lights, params, set: None })
     }

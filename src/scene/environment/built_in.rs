@@ -15,12 +15,6 @@ use super::{Environment, sky, studio};
 /// | `sky` | sun and clear sky over gray ground; 1024x512 | see `sky.rs` |
 pub const BUILT_IN: [&str; 3] = ["studio", "furnace", "sky"];
 
-/// Whether this environment has a sun that lighting adds with the exact lobe, instead of the bake
-/// (ibl/small_lights/list.glsl). Of files this is not known before they are decoded; their suns are baked.
-pub fn has_exact_sun(name: &str) -> bool {
-    name == "sky"
-}
-
 /// Columns of the 2:1 images of `studio` and `sky`.
 const WIDTH: u32 = 1024;
 const FURNACE_WIDTH: u32 = 64;

@@ -12,6 +12,7 @@ mod open_exr;
 mod radiance;
 mod sky;
 mod studio;
+mod suns;
 #[cfg(test)]
 mod tests;
 
@@ -19,10 +20,11 @@ use std::path::{Path, PathBuf};
 
 use xxhash_rust::xxh3::xxh3_128_with_seed;
 
-pub use built_in::{BUILT_IN, has_exact_sun};
+pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 pub use importance::CubeLuminance;
+pub use suns::{Sun, restore_clipped, separates_suns};
 
 /// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;

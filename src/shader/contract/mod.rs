@@ -220,7 +220,7 @@ fn check_lights(block: &Block, texts: Texts<'_>) -> Option<Diagnostic> {
         [only] if only.offset == 0 && only.stride == size => None,
         _ => {
             let message = format!(
-                "shader says `{}` is not an array of {size}-byte lights, Specula says it is `Light lights[MAX_LIGHTS]` alone",
+                "shader says `{}` is not an array of {size}-byte lights, Specula says it is `Light lights[MAX_LIGHTS + MAX_SUNS]` alone",
                 block.name
             );
             Some(texts.error(&[block.name.as_str(), "uniform"], message))

@@ -73,7 +73,7 @@ impl DrawnFrom {
             from.bytes.extend(constants.get(bytes.start..bytes.end.min(constants.len())).into_iter().flatten());
         }
         if uses.frame_bindings.contains(&BINDING_LIGHTS) {
-            from.bytes.extend_from_slice(bytemuck::cast_slice(&state.lights));
+            from.bytes.extend_from_slice(bytemuck::cast_slice(&frame.lights()));
         }
         if uses.frame_bindings.contains(&BINDING_PARAMS) {
             from.bytes.extend_from_slice(state.params());
