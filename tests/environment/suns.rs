@@ -130,9 +130,9 @@ fn set(headless: &mut Headless, assignment: &str) {
     headless.settings_mut().assign(assignment).unwrap();
 }
 
-/// One sun, and one that is weaker on the other side.
+/// A sun on the far side, whose highlight is at a grazing angle, and a weaker one on the near side.
 fn two_suns() -> [Bright; 2] {
-    [(texel(Vec3::new(0.5, 0.5, 0.7)), 1.2e4), (texel(Vec3::new(-0.7, -0.2, 0.5)), 3e3)]
+    [(texel(Vec3::new(0.7, 0.5, -0.4)), 1.2e4), (texel(Vec3::new(-0.7, -0.2, 0.5)), 3e3)]
 }
 
 fn folder(bright: &[Bright]) -> TempDir {
@@ -168,7 +168,7 @@ fn a_metal_ball_under_suns_of_a_file_is_as_bright_as_a_sum_over_the_map() {
         }
         set(&mut headless, "material.roughness=0.5");
         let [_, off] = error(&render(&mut headless, "final"), &sums(&|n, l, v| ggx(n, l, v, 0.5)));
-        assert!(off > 0.3, "the split sum of a sun is off by {off} only: the map tests nothing");
+        assert!(off > 0.2, "the split sum of a sun is off by {off} only: the map tests nothing");
     }
     assert_validated();
 }
@@ -218,7 +218,7 @@ fn suns_of_a_file_throw_shadows() {
         &format!("environment.name={}", directory.path().join("map.exr").display()),
         "view.msaa=1",
         "view.background=none",
-        "view.frames=32",
+        "view.frames=256",
         "view.bounces=0",
         "lights.source=none",
     ]);
@@ -246,8 +246,10 @@ fn suns_of_a_file_throw_shadows() {
     assert!(off(&beside) < 0.35 * open, "{} of {open}", off(&beside));
     set(&mut headless, "lights.source=none");
     set(&mut headless, "SHADOWS=Off");
+    set(&mut headless, "view.frames=4");
+    let paths = render(&mut headless, "path-traced");
     set(&mut headless, "environment.suns=false");
-    assert_same(&truth, &render(&mut headless, "path-traced"), "random paths have found the sun before");
+    assert_same(&paths, &render(&mut headless, "path-traced"), "random paths sample the map, whose suns it still has");
     assert_validated();
 }
 
