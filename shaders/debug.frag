@@ -8,9 +8,9 @@
 #include "debug/debug.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material/material.glsl"
 #include "material/antialiasing.glsl"
-#include "user.glsl"
+#include "material/material.glsl"
+#include "material/user_surface.glsl"
 
 // One fragment of the model in a debug mode: what pbr.frag is for the picture. A stage of its own, so that an edit of the
 // picture shows before the modes are compiled.
@@ -21,7 +21,7 @@ layout(location = 0) out vec4 out_color;
 void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     Surface surface = make_surface(fragment, v);
-    user_surface(surface);
+    apply_user_surface(surface, fragment, v);
     antialias_specular(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
     if (MODE == EDGES_MODE) {

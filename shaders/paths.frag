@@ -7,7 +7,7 @@
 #include "debug/absent.glsl"
 #include "debug/paths.glsl"
 #include "material/material.glsl"
-#include "user.glsl"
+#include "material/user_surface.glsl"
 
 // One fragment of the model in a mode of random paths: what pbr.frag is for the picture.
 
@@ -21,7 +21,7 @@ void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     vec3 facet_n = facet_normal(fragment, v);
     Surface surface = make_surface(fragment, v);
-    user_surface(surface);
+    apply_user_surface(surface, fragment, v);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
     complete_surface(surface, v);
 

@@ -6,9 +6,9 @@
 #include "common/pixel.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material/material.glsl"
 #include "material/antialiasing.glsl"
-#include "user.glsl"
+#include "material/material.glsl"
+#include "material/user_surface.glsl"
 
 // One fragment of the model in the picture: scene-referred linear RGB as common/pixel.glsl stores it. debug.frag and
 // paths.frag do the same for the debug modes and for random paths.
@@ -19,7 +19,7 @@ layout(location = 0) out vec4 out_color;
 void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     Surface surface = make_surface(fragment, v);
-    user_surface(surface);
+    apply_user_surface(surface, fragment, v);
     antialias_specular(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
     complete_surface(surface, v);

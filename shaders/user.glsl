@@ -14,18 +14,30 @@
 #include "interface.glsl"
 #include "brdf/surface.glsl"
 #include "common/color.glsl"
+#include "common/fragment.glsl"
 #include "user/params.glsl"
 
 // Give your own constants the ids USER_CONSTANTS + 16 and up. The ids below belong to the files that come with Specula.
 layout(constant_id = USER_CONSTANTS + 1) const uint TOON_BANDS = 0u;   //@ui "Toon" choice Off=0 Two=2 Three=3 Four=4 group="Material" doc="Steps of brightness in place of a gradient"
 
-// The surface before it is lit: change the material here. The debug modes show the surface as you leave it.
-void user_surface(inout Surface s) {
+// The surface before it is lit: change the material here. `f`: what the vertices give, such as texture coordinates (f.uv0, f.uv1)
+// and COLOR_0 (f.color). `v`: towards the viewer, unit. brdf/surface.glsl lists the members of Surface.
+//
+//     s.base_color = mix(s.base_color, vec3(0.02), step(0.5, fract(8.0 * f.uv0.x)));
+//     s.clearcoat = 1.0;                   an extension that the material lacks is switched on by a line that sets it
+//     s.coverage *= step(0.3, f.uv0.y);    cuts a masked material, and its shadow
+//
+// s.f0 follows s.ior unless you set it; the frame s.t, s.b follows s.n. The debug modes show the surface as you leave it, and
+// shadow maps, ambient occlusion, the ground and random paths see it too. What random paths hit has no neighboring pixels:
+// texture() reads level 0 there, dFdx, dFdy and fwidth are 0. They know one set of texture coordinates, that of the material's
+// textures, as f.uv0 and as f.uv1.
+void user_surface(inout Surface s, Fragment f, vec3 v) {
     s.roughness = saturate(s.roughness * roughness_scale);
 }
 
 // A light before it shines on a point: change its color, place or reach here. `index`: its number, from 0. Intensities are
-// in candela (point, spot), lux (directional) or cd/m^2 (rectangle). The environment is no light of this kind.
+// in candela (point, spot), lux (directional) or cd/m^2 (rectangle). The environment is no light of this kind. A light has one
+// shadow map, so its shadow is that of the light which shines on the center of the model.
 void user_light(inout Light light, uint index, vec3 position_ws) {
 }
 

@@ -65,7 +65,8 @@ impl Session {
 
     /// `FEATURE_*` bits of the materials in use and of the light. `None` without a model.
     pub fn features(&self) -> Option<u32> {
-        self.scene().map(|scene| scene.features(&self.settings))
+        let hook = self.shaders.as_ref().map_or(0, |shaders| shaders.hook_features());
+        self.scene().map(|scene| scene.features(&self.settings) | hook)
     }
 
     /// The pipelines that the settings need from `shaders`.

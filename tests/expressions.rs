@@ -36,10 +36,10 @@ fn tree() -> Tree {
     let code = "float looped(float x) {\n    float sum = 0.0;\n    for (int i = 0; i < 5; ++i) sum += 0.1;\n    \
         if (x < -1.0) {\n        sum = 2.0;\n    }\n    return sum + x;\n}\n\nvoid user_surface(";
     let user = tree.read("user.glsl");
-    assert!(user.contains("void user_surface(inout Surface s) {"), "{user}");
+    assert!(user.contains("void user_surface(inout Surface s, Fragment f, vec3 v) {"), "{user}");
     let user = user.replacen("void user_surface(", code, 1);
-    let call = "void user_surface(inout Surface s) {\n    s.occlusion *= looped(0.5);";
-    tree.write("user.glsl", &user.replacen("void user_surface(inout Surface s) {", call, 1));
+    let call = "void user_surface(inout Surface s, Fragment f, vec3 v) {\n    s.occlusion *= looped(0.5);";
+    tree.write("user.glsl", &user.replacen("void user_surface(inout Surface s, Fragment f, vec3 v) {", call, 1));
     tree
 }
 

@@ -1,6 +1,10 @@
 //! The hooks of user.glsl and user/: each changes what its comment says, and nothing as it ships.
 
 mod support;
+mod hooks {
+    mod everywhere;
+    mod surface;
+}
 
 use specula::render::Capture;
 use support::{Session, assert_differ, assert_same, glb, load, passes_check, ready, settings, srgb};
@@ -32,6 +36,11 @@ fn add_parameter(session: &mut Session, declaration: &str) {
 fn covered(capture: &Capture) -> Vec<(usize, [f32; 3])> {
     let values = capture.raw.iter().enumerate().filter(|(_, v)| v[3] == 1.0);
     values.map(|(i, v)| (i, [v[0], v[1], v[2]])).collect()
+}
+
+/// Sum of the green channel of the pixels that something covers.
+fn sum(capture: &Capture) -> f64 {
+    covered(capture).iter().map(|(_, v)| f64::from(v[1])).sum()
 }
 
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
@@ -142,7 +151,6 @@ fn the_light_hook_changes_one_light_at_one_point() {
 fn the_light_hook_reaches_random_paths() {
     let more = ["lights.rect.enabled=true", "view.frames=24", "view.bounces=0", "lights.ambient_strength=0"];
     let mut session = sphere(64, &more);
-    let sum = |capture: &Capture| covered(capture).iter().map(|(_, v)| f64::from(v[1])).sum::<f64>();
     let all = sum(&session.mode("path-traced"));
     fill(&mut session, USER, LIGHT_HOOK, "if (index != 0u) light.intensity = vec3(0.0);");
     let [picture, paths] = ["final", "path-traced"].map(|mode| sum(&session.mode(mode)));

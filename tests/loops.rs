@@ -10,7 +10,7 @@ use support::{Session, Tree, assert_same, assert_validated, glb, line_of, lines,
 
 const USER: &str = "user.glsl";
 const PARAMS: &str = "user/params.glsl";
-const HOOK: &str = "void user_surface(inout Surface s) {";
+const HOOK: &str = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
 
 fn sphere() -> Session {
     Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&["environment.name=none"]))

@@ -408,8 +408,8 @@ fn a_pass_adds_to_the_model_in_the_picture() {
     let shares = half.replace("void main", "readonly buffer Shared { float shared_value; };\nvoid main");
     ready(&session.save("passes/red.frag", &shares.replace("0.5);", "0.5 + shared_value);")));
     let user = session.tree.read("user.glsl");
-    let reads = "readonly buffer Shared { float shared_value; };\nvoid user_surface(inout Surface s) {\n    s.roughness += shared_value;";
-    ready(&session.save("user.glsl", &user.replace("void user_surface(inout Surface s) {", reads)));
+    let reads = "readonly buffer Shared { float shared_value; };\nvoid user_surface(inout Surface s, Fragment f, vec3 v) {\n    s.roughness += shared_value;";
+    ready(&session.save("user.glsl", &user.replace("void user_surface(inout Surface s, Fragment f, vec3 v) {", reads)));
     assert_same(&mode, &session.mode("geometric-normal"), "the pass shares a buffer");
     session.headless.settings_mut().mode = "final".to_owned();
     ready(&session.save("user.glsl", &user));

@@ -48,7 +48,7 @@ fn the_hook_of_the_readme() {
     let mut session = session();
     let before = session.render();
     declare(&mut session, "    float snow; //@ui \"Snow\" 0..1 = 0.0");
-    let hook = "void user_surface(inout Surface s) {";
+    let hook = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
     ready(&session.edit("user.glsl", hook, &format!("{hook}\n{}", snippet("snow * smoothstep"))));
     assert_same(&before, &session.render(), "without snow");
     session.set("snow=1.0");
@@ -109,7 +109,7 @@ fn the_parameters_and_constants_of_the_shader_readme() {
     let before = session.render();
     let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", snippet("dust_size").trim_end()));
     ready(&session.save("user/params.glsl", &params));
-    let hook = "void user_surface(inout Surface s) {";
+    let hook = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
     let user = session.tree.edited("user.glsl", hook, &format!("{}\n{hook}", snippet("PATTERN = 0u")));
     let body =
         "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * dust_size * dust_color;";

@@ -22,6 +22,11 @@ vec3 safe_normalize(vec3 x, vec3 fallback) {
     return length_squared > 1e-20 ? x * inversesqrt(length_squared) : fallback;
 }
 
+// Whether two values have the same bits. Unlike ==, this is true for two equal NaNs. So the driver's optimizer knows the answer
+// where nothing can have changed a value.
+bool is_same_bits(float a, float b) { return floatBitsToUint(a) == floatBitsToUint(b); }
+bool is_same_bits(vec3 a, vec3 b) { return all(equal(floatBitsToUint(a), floatBitsToUint(b))); }
+
 // sin^2 of the angle between two unit vectors. 1 - dot(a, b)^2 is equal in theory, but the dot product has an error of
 // 6e-8, which swamps small angles. |a - b| keeps full precision.
 float sin2_between(vec3 a, vec3 b) {

@@ -60,7 +60,7 @@ bool trace(Ray ray, float farthest, bool any_hit, out Hit nearest) {
         bool is_leaf = node.count > 0u || node.first == 0u;
         for (uint i = node.first; i < node.first + node.count; ++i) {
             Hit hit;
-            if (hits_triangle(ray, i, nearest.distance, hit) && stops_ray(hit, random_numbers(uvec3(ray.seed, i, 2u)).x)) {
+            if (hits_triangle(ray, i, nearest.distance, hit) && stops_ray(ray, hit, random_numbers(uvec3(ray.seed, i, 2u)).x)) {
                 nearest = hit;
                 found = true;
             }

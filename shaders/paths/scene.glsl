@@ -4,6 +4,10 @@
 // Materials are metallic-roughness there, with the index of refraction and KHR_materials_specular's factors. Left out:
 // normal textures, specular and all other extension textures, clear coat, sheen, anisotropy, iridescence, volume; textures
 // repeat and have no mip levels. A transmissive surface lets a fraction of the rays straight through, without its tint.
+//
+// user_surface changes these surfaces as it changes the first one. Here it runs in a loop that neighboring pixels leave at other
+// times, so they share no derivatives: in the copies of functions that hooked_surface calls, Specula makes texture() read level 0
+// and dFdx, dFdy and fwidth 0.
 #ifndef PATHS_SCENE_GLSL
 #define PATHS_SCENE_GLSL
 
@@ -12,7 +16,7 @@
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "user.glsl"
+#include "material/user_surface.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_TRACED_TRIANGLES, scalar) readonly buffer TracedTriangles {
     TracedTriangle traced_triangles[];
@@ -63,15 +67,6 @@ vec4 hit_texture(HitMaterial hit, uint which) {
 
 vec4 hit_base_color(HitMaterial hit) { return hit_texture(hit, 0u) * hit.m.base_color_factor * hit.color; }
 
-// Whether a ray stops at a hit, or passes through a hole, a partly covered or a transmissive surface. `random`: uniform.
-bool stops_ray(Hit hit, float random) {
-    TracedMaterial m = traced_materials[traced_corners[hit.triangle].material];
-    if (m.alpha_mode == ALPHA_OPAQUE) return random >= m.transmission;
-    float coverage = hit_base_color(hit_material(hit)).a;
-    if (m.alpha_mode == ALPHA_MASK) coverage = coverage < m.alpha_cutoff ? 0.0 : 1.0;
-    return random < coverage * (1.0 - m.transmission);
-}
-
 // An octahedron unfolded to a square (Meyer et al. 2010): the lower half is folded back.
 vec3 octahedral_normal(uint packed) {
     vec2 xy = unpackSnorm2x16(packed);
@@ -106,9 +101,32 @@ void clear_traced_extensions(inout Surface s) {
     complex_ior(s.base_color, EDGE_TINT, s.conductor_n, s.conductor_k);
 }
 
-// The surface at a hit of `ray`, ready for evaluate_brdf, as user_surface leaves it.
-Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
-    HitMaterial h = hit_material(hit);
+// The direction in which the texture coordinates' u grows along the triangle, unit, world space, and the sign of the bitangent: as
+// Fragment has it, but constant over a triangle. 0 where the coordinates span no area.
+vec4 hit_tangent(Hit hit) {
+    TracedTriangle t = traced_triangles[hit.triangle];
+    TracedCorners c = traced_corners[hit.triangle];
+    vec2 uv_1 = c.uv_1 - c.uv_0;
+    vec2 uv_2 = c.uv_2 - c.uv_0;
+    float area = uv_1.x * uv_2.y - uv_1.y * uv_2.x;
+    float side = area < 0.0 ? -1.0 : 1.0;
+    return vec4(safe_normalize((t.edge_1_ws * uv_2.y - t.edge_2_ws * uv_1.y) * side, vec3(0.0)), -side);
+}
+
+// What the vertices give at a hit, for user_surface. The paths keep one set of texture coordinates: that of the material's textures.
+Fragment hit_fragment(Ray ray, Hit hit, HitMaterial h, vec3 n) {
+    Fragment f;
+    f.position_ws = ray.origin_ws + ray.direction_ws * hit.distance;
+    f.to_eye_ws = -ray.direction_ws * hit.distance;
+    f.normal_ws = n;
+    f.tangent_ws = hit_tangent(hit);
+    f.uv0 = f.uv1 = h.uv;
+    f.color = h.color;
+    return f;
+}
+
+// The surface at a hit of `ray` with what its textures say, as user_surface leaves it.
+Surface hooked_surface(Ray ray, Hit hit, HitMaterial h, vec3 facet_n) {
     vec4 metallic_roughness = hit_texture(h, 1u);
     vec4 base_color = hit_base_color(h);
     bool is_unlit = h.m.unlit != 0u;
@@ -119,7 +137,7 @@ Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
     s.n = s.ng = hit_normal(hit, facet_n, v);
     // An unlit surface emits its color and reflects nothing.
     s.base_color = is_unlit ? vec3(0.0) : base_color.rgb;
-    s.coverage = 1.0;
+    s.coverage = h.m.alpha_mode == ALPHA_OPAQUE ? 1.0 : base_color.a;
     s.metallic = saturate(metallic_roughness.b * h.m.metallic_factor);
     s.roughness = saturate(metallic_roughness.g * h.m.roughness_factor);
     s.occlusion = 1.0;
@@ -129,8 +147,36 @@ Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
     s.f90 = is_unlit ? 0.0 : h.m.f90;
     s.multiple = vec3(0.0);
     clear_traced_extensions(s);
-    user_surface(s);
-    complete_surface(s, v);
+    s.transmission = h.m.transmission;
+    apply_user_surface(s, hit_fragment(ray, hit, h, s.n), v);
+    return s;
+}
+
+// Whether user_surface has discarded the surface at a hit. A `discard` would end the pixel, so Specula makes the copy of the hook
+// that hits call set this variable and return instead.
+bool is_discarded_at_hit = false;
+
+// Whether a ray stops at a hit, or passes through a hole, a partly covered or a transmissive surface. `random`: uniform.
+bool stops_ray(Ray ray, Hit hit, float random) {
+    TracedMaterial m = traced_materials[traced_corners[hit.triangle].material];
+    vec3 facet_n = hit_facet_normal(hit, -ray.direction_ws);
+    is_discarded_at_hit = false;
+    // Of an opaque surface the hook's coverage does not count, so the optimizer drops all that nothing else depends on.
+    if (m.alpha_mode == ALPHA_OPAQUE) {
+        float transmission = hooked_surface(ray, hit, hit_material(hit), facet_n).transmission;
+        return !is_discarded_at_hit && random >= transmission;
+    }
+    Surface s = hooked_surface(ray, hit, hit_material(hit), facet_n);
+    float coverage = m.alpha_mode == ALPHA_MASK ? (s.coverage < m.alpha_cutoff ? 0.0 : 1.0) : s.coverage;
+    return !is_discarded_at_hit && random < coverage * (1.0 - s.transmission);
+}
+
+// The surface at a hit where a ray stops, ready for evaluate_brdf.
+Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
+    Surface s = hooked_surface(ray, hit, hit_material(hit), facet_n);
+    // The rays that it transmits have passed.
+    s.transmission = 0.0;
+    complete_surface(s, -ray.direction_ws);
     return s;
 }
 

@@ -14,7 +14,7 @@ use crate::scene::{light_count, separates_suns};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, Part};
-use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
+use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, StageKind, values};
 
 /// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -52,6 +52,8 @@ pub struct PipelineRequest {
     pub materials: BTreeSet<MaterialVariant>,
     /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_SUN`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
+    /// Features that the author's `user_surface` gives to all lit materials.
+    pub hook_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
     /// Whether the picture is the mean of all frames since it last changed.
@@ -60,6 +62,8 @@ pub struct PipelineRequest {
     pub stage: String,
     /// Whether the mode traces rays through the model.
     pub traces: bool,
+    /// Whether the picture moves the model's vertices, by `user_vertex` or a stage after it, which the traced rays do not know.
+    pub moves_vertices: bool,
     /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
     pub through: bool,
     /// The declared passes to draw, in order.
@@ -161,9 +165,11 @@ impl PipelineRequest {
             target,
             materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
+            hook_features: shaders.hook_features(),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
+            moves_vertices: moves_vertices(shaders, &stage),
             through: selection.through,
             stage,
             passes,
@@ -173,6 +179,29 @@ impl PipelineRequest {
             shown_pass,
             modes: Vec::new(),
         }
+    }
+
+    /// The `FEATURE_*` bits that a material has in this picture, without those of the frame.
+    fn features(&self, material: MaterialVariant) -> u32 {
+        let is_unlit = material.features & interface::FEATURE_UNLIT != 0;
+        material.features | if is_unlit { 0 } else { self.hook_features }
+    }
+
+    /// Whether a material shows what lies behind it.
+    pub(crate) fn is_transmissive(&self, material: MaterialVariant) -> bool {
+        self.features(material) & interface::FEATURE_TRANSMISSION != 0
+    }
+
+    /// Whether any material does.
+    pub(crate) fn has_transmission(&self) -> bool {
+        self.materials.iter().any(|material| self.is_transmissive(*material))
+    }
+
+    /// What the picture cannot show as it is, in a few words.
+    pub fn limit(&self) -> Option<&'static str> {
+        let is_other_mesh = self.traces && self.moves_vertices;
+        is_other_mesh
+            .then_some("the paths trace the mesh as it was loaded: the shaders move its vertices in the picture only")
     }
 
     /// The mode that the model is drawn in.
@@ -225,8 +254,7 @@ impl PipelineRequest {
     /// Whether opaque surfaces are drawn twice: as in the final picture for transmissive surfaces to look up, and as this mode
     /// shows them.
     pub(crate) fn draws_opaque_twice(&self) -> bool {
-        let transmissive = self.materials.iter().any(|material| is_transmissive(*material));
-        transmissive && self.through && !self.is_picture_stage()
+        self.has_transmission() && self.through && !self.is_picture_stage()
     }
 
     /// The passes that draw the model to the picture besides the model's own.
@@ -257,8 +285,12 @@ impl PipelineRequest {
     }
 }
 
-fn is_transmissive(material: MaterialVariant) -> bool {
-    material.features & interface::FEATURE_TRANSMISSION != 0
+/// Whether the stages before the fragment stage `stage` move the vertices of the model.
+fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
+    let pass = shaders.graph.passes.iter().find(|pass| pass.note.stage == stage && pass.note.draws_model());
+    let stages = pass.into_iter().flat_map(|pass| pass.front.stages()).filter_map(|path| shaders.stages.get(path));
+    let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
+    stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
 }
 
 /// The feature bits that all materials of a frame share.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::MaterialVariant;
 use super::pipelines::shared_features;
 use crate::gpu::PrimitiveClass;
-use crate::interface::{self, ATTRIBUTE_COLOR, FEATURE_TRANSMISSION};
+use crate::interface::{self, ATTRIBUTE_COLOR};
 use crate::scene::{
     self, AlphaMode, Instance, Material, Model, Sides, Topology, override_material, replace_channels, replace_factors,
 };
@@ -145,11 +145,6 @@ impl Scene {
     /// `FEATURE_*` bits of the materials in use, and of the light of `settings`.
     pub fn features(&self, settings: &Settings) -> u32 {
         self.materials.iter().fold(shared_features(settings), |all, material| all | material.features)
-    }
-
-    /// Whether a material is transmissive, so that the surfaces behind it must be drawn first.
-    pub fn is_transmissive(&self) -> bool {
-        self.materials.iter().any(|material| material.features & FEATURE_TRANSMISSION != 0)
     }
 
     /// Whether an instance is drawn.

@@ -41,7 +41,8 @@ impl Headless {
         let Some(all) = whole.scene.clone() else { return Ok(Vec::new()) };
         let near = scene::near_pixel(all.model(), whole.camera.clip_from_world(), self.size, at);
         let part = all.only(near);
-        let part = if part.is_transmissive() { all.clone() } else { part };
+        let shows_more = part.materials().iter().any(|material| whole.pipelines.is_transmissive(*material));
+        let part = if shows_more { all.clone() } else { part };
         let (settings, revisions, size) = (self.session.settings.clone(), self.session.revisions, self.size);
         let state_in = |mode: &Mode, scene: &Scene, clock: Clock| {
             let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };

@@ -9,7 +9,7 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
 use crate::shader::spirv::reach::reached;
 use crate::shader::spirv::uses::{used_bindings, used_bytes};
-use crate::shader::spirv::{optimize, specialize_several};
+use crate::shader::spirv::{optimize, separate_hits, specialize_several};
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
@@ -93,7 +93,7 @@ fn bounded_module(
     let is_bounded = loops::bound(&mut words, &stage.spirv, &bounds);
     let specialized = words.len();
     fault::take_module(&words);
-    let words = optimize(words);
+    let words = optimize(separate_hits(words));
     tracing::debug!(
         "{path}: {specialized} words, optimized {}, {}",
         words.len(),

@@ -21,7 +21,7 @@ fn an_expression_is_watched_by_the_palette() {
     viewer.running.event("ready");
     let picture = viewer.screenshot();
     let original = viewer.tree.read(USER);
-    let head = "void user_surface(inout Surface s) {";
+    let head = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
     let line = line_of(&original, head);
 
     choose(&viewer, &format!("{USER}:{line}:vec3(0.25, 0.5, 1.0) * 0.8"));

@@ -10,7 +10,7 @@ use crate::support::process::finish;
 use crate::support::window::{Display, Viewer};
 
 const USER: &str = "user.glsl";
-const HOOK: &str = "void user_surface(inout Surface s) {";
+const HOOK: &str = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
 const FAULT: &str = "by-name:1";
 
 /// `user.glsl` that scales the roughness by a function with a name that the fault knows.

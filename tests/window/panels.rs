@@ -92,7 +92,7 @@ fn a_loop_that_does_not_end_stays_on_screen() {
     viewer.running.event("ready");
     let left = viewer.screenshot().width();
     let errors = |screen: &RgbaImage| count(screen, 0..left, TILES, ERROR);
-    let hook = "void user_surface(inout Surface s) {";
+    let hook = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
     let text = viewer.tree.edited("user.glsl", hook, &format!("{hook}\n    while (s.roughness < 2.0) {{}}"));
     let original = viewer.tree.read("user.glsl");
     viewer.tree.write("user.glsl", &text);

@@ -10,6 +10,7 @@
 #include "common/math.glsl"
 #include "common/picture_px.glsl"
 #include "common/sampling.glsl"
+#include "lighting/shadows/light_view.glsl"
 #include "lighting/shadows/tiles.glsl"
 #include "user/params.glsl"
 
@@ -112,7 +113,8 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, vec2 s
 // The map holds the mesh without normal textures, so a shading normal would offset the point wrongly. `l`: unit, towards the light.
 float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     if (SHADOWS == NO_SHADOWS || i >= MAX_LIGHT_VIEWS) return 1.0;
-    mat4 view = frame.light_clip_from_world[i];
+    Light light = shadow_light(i);
+    mat4 view = light_view(i, light);
     vec4 x_axis = vec4(view[0].x, view[1].x, view[2].x, view[3].x);
     vec4 w_axis = vec4(view[0].w, view[1].w, view[2].w, view[3].w);
     float tile_size = 1.0 / float(shadow_tiles());
@@ -124,7 +126,7 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     float n_dot_l = dot(n, l);
     float sin2 = 1.0 - n_dot_l * n_dot_l;
     // Light from behind has passed through the surface, but that of a large light may come from its border.
-    float side = n_dot_l < 0.0 && lights[i].kind != LIGHT_RECT ? -1.0 : 1.0;
+    float side = n_dot_l < 0.0 && light.kind != LIGHT_RECT ? -1.0 : 1.0;
     position_ws += texel_m * ((0.5 + 3.0 * sin2) * side * n + 0.5 * l);
     vec4 seen = view * vec4(position_ws, 1.0);
     if (seen.w <= 0.0 || any(greaterThan(abs(seen.xy), vec2(seen.w)))) return 1.0;
@@ -132,7 +134,6 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     vec2 low = shadow_tile(i);
     vec2 uv = (low + 0.5 * tile_size) + 0.5 * tile_size * light_ndc.xy;
     if (SHADOWS == SOFT_SHADOWS) {
-        Light light = lights[i];
         bool is_distant = light.position_ws.w == 0.0;
         vec3 to_light_ws = is_distant ? l : light.position_ws.xyz - position_ws;
         float to_light_m = length(to_light_ws);

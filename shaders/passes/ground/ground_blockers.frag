@@ -3,11 +3,12 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "lighting/shadows/ground.glsl"
+#include "material/opaque.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
 void main() {
-    if (ALPHA_MODE == ALPHA_BLEND || (FEATURES & FEATURE_TRANSMISSION) != 0u) discard;
+    discard_see_through(fragment);
     color = vec4(1.0, (fragment.position_ws.y - ground_height()) / ground_width(), 0.0, 1.0);
 }

@@ -2,20 +2,15 @@
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
-#include "common/math.glsl"
-#include "material/material.glsl"
+#include "material/opaque.glsl"
 
-// Meters along the camera's axis; 0 where there is nothing.
+// Meters along the camera's axis; 0 where there is nothing, or where light passes through (material/opaque.glsl).
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
 void main() {
-    if (ALPHA_MODE == ALPHA_BLEND) discard;
-    if (ALPHA_MODE == ALPHA_MASK) {
-        Surface surface = make_surface(fragment, safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0)));
-        if (surface.coverage < material.alpha_cutoff) discard;
-    }
+    discard_see_through(fragment);
     // gl_FragCoord.w is 1 / w, and w is the distance.
     color = vec4(1.0 / gl_FragCoord.w, 0.0, 0.0, 0.0);
 }

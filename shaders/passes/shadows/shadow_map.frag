@@ -2,25 +2,19 @@
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
-#include "common/math.glsl"
-#include "material/material.glsl"
+#include "material/opaque.glsl"
 
 // The surface that is nearest to each light (Williams 1978, "Casting Curved Shadows on Curved Surfaces").
 //
-// Limits: 2048 pixels are shared by all lights, so edges become blocky with many of them. A surface blocks all light or none: what blends
-// or transmits blocks none.
+// Limits: 2048 pixels are shared by all lights, so edges become blocky with many of them. A surface blocks all light or none
+// (material/opaque.glsl).
 
 layout(location = 0) in Fragment fragment;
 layout(location = 12) in vec2 in_tile;
 layout(location = 0) out vec4 color;
 
 void main() {
-    // Light passes through what is transparent.
-    if (ALPHA_MODE == ALPHA_BLEND || (FEATURES & FEATURE_TRANSMISSION) != 0u) discard;
-    if (ALPHA_MODE == ALPHA_MASK) {
-        Surface surface = make_surface(fragment, safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0)));
-        if (surface.coverage < material.alpha_cutoff) discard;
-    }
+    discard_see_through(fragment);
     // A light inside the model sees parts of it beyond its tile. gl_FragCoord.w is 1 / w.
     if (any(greaterThan(abs(in_tile) * gl_FragCoord.w, vec2(1.0)))) discard;
     // A half float is off by up to 1 part in 2048. It must not be nearer to the light than the surface, which would hide itself.

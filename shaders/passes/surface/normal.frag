@@ -4,7 +4,7 @@
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 #include "material/material.glsl"
-#include "user.glsl"
+#include "material/user_surface.glsl"
 
 // What the model is at each pixel, for passes that read these images by name. Nothing is drawn unless one does.
 //
@@ -26,7 +26,7 @@ vec2 place_in_picture(mat4 clip_from_world, vec3 position_ws) {
 void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     Surface s = make_surface(fragment, v);
-    user_surface(s);
+    apply_user_surface(s, fragment, v);
     if (ALPHA_MODE == ALPHA_MASK && s.coverage < material.alpha_cutoff) discard;
     color = vec4(s.n, 1.0);
     vec3 p = fragment.position_ws;

@@ -246,7 +246,8 @@ impl Viewer {
         let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
         let preview = self.panels.gallery.preview();
         let selected = preview.and_then(|slug| shown.shaders.modes.iter().find(|mode| mode.slug == slug));
-        title(shown.mode()?, selected.or_else(|| self.session.mode()), paths)
+        let title = title(shown.mode()?, selected.or_else(|| self.session.mode()), paths)?;
+        Some(request.limit().map_or_else(|| title.clone(), |limit| format!("{title}. Note: {limit}")))
     }
 }
 

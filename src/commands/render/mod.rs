@@ -107,6 +107,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
             result?;
             hint_at_frames(&headless, &args)?;
             hint_at_background(&headless);
+            note_limit(&headless)?;
             let is_left_out = |mode: &&Mode| all && !args.paths && mode.follows_paths();
             tell_left_out(headless.shaders().modes.iter().filter(is_left_out).count());
         }
@@ -184,7 +185,10 @@ fn again(
                 tell(args, &diagnostics);
                 message::tell("the last good picture stays");
             }
-            result => result?,
+            result => {
+                result?;
+                note_limit(headless)?;
+            }
         }
         warn_of_bakes(headless);
     }
@@ -272,6 +276,14 @@ fn hint_at_background(headless: &Headless) {
     if let Some(file) = headless.hidden_background() {
         message::tell(format_args!("hint: {file} changes the background, which `--background env` shows"));
     }
+}
+
+/// Says what the picture cannot show as it is.
+fn note_limit(headless: &Headless) -> Result<(), Failure> {
+    if let Some(limit) = headless.frame_state()?.pipelines.limit() {
+        message::tell(format_args!("note: {limit}"));
+    }
+    Ok(())
 }
 
 /// Warns of functions of the BRDF whose values the tables or the prefilter could not use.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{MaterialVariant, PipelineRequest, QUADS, is_transmissive};
+use super::{MaterialVariant, PipelineRequest, QUADS};
 use crate::frame::formats::{MEAN_FORMAT, pass_format};
 use crate::frame::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
@@ -49,7 +49,7 @@ impl PipelineRequest {
         let own = [
             (SPEC_MODE, self.model_mode()),
             (SPEC_ALPHA_MODE, material.alpha),
-            (SPEC_FEATURES, material.features | self.shared_features),
+            (SPEC_FEATURES, self.features(material) | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),
         ];
         own.iter().chain(&self.constants).copied().collect()
@@ -70,7 +70,7 @@ impl PipelineRequest {
 
     /// The pipeline that draws a material in the pass `behind`.
     pub(crate) fn behind_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
-        let is_opaque = material.alpha != interface::ALPHA_BLEND && !is_transmissive(material);
+        let is_opaque = material.alpha != interface::ALPHA_BLEND && !self.is_transmissive(material);
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }

@@ -169,7 +169,7 @@ impl View {
         let desc = TargetDesc {
             size: frame.state.size,
             format: request.target,
-            transmission: frame.state.scene.as_ref().is_some_and(|scene| scene.is_transmissive()),
+            transmission: request.has_transmission(),
             accumulates: request.accumulates,
             reads_depth: request.passes.iter().any(|pass| pass.inputs.values().any(|input| *input == Input::Depth)),
         };

@@ -3,15 +3,13 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use super::Output;
 use super::declared::PassSets;
 use super::model_draws::{ModelDraws, instances};
 use super::targets::Targets;
-use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
+use crate::frame::{FrameState, MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
-use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
+use crate::interface::ALPHA_BLEND;
 use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
 
@@ -62,8 +60,7 @@ impl Passes<'_> {
         if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
         }
-        let sorted =
-            self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
+        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, &self.frame.state)).unwrap_or_default();
         if let Some(behind) = &targets.behind {
             encoder.pass("behind", |encoder| self.behind(encoder, &sorted.opaque, behind));
         }
@@ -80,8 +77,7 @@ impl Passes<'_> {
             encoder.transition(image, Use::Undefined, Use::Color);
         }
         encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
-        let sorted =
-            self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
+        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, &self.frame.state)).unwrap_or_default();
         let drawn: Vec<Arc<Image>> = self.more.iter().map(|target| target.drawn().clone()).collect();
         let attachments = Attachments {
             more: &drawn,
@@ -296,14 +292,15 @@ fn within(rect: Rect, area: Rect) -> Rect {
 }
 
 /// The draws of a scene in the order that blending and depth require.
-pub(super) fn sort(scene: &GpuScene, eye: Vec3) -> Sorted<'_> {
+pub(super) fn sort<'a>(scene: &'a GpuScene, state: &FrameState) -> Sorted<'a> {
+    let eye = state.camera.eye;
     let mut by_distance: Vec<_> = scene.draws.iter().collect();
     by_distance.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
     let mut sorted = Sorted::default();
     for draw in by_distance {
         match draw.variant {
             v if v.alpha == ALPHA_BLEND => sorted.blended.push(draw),
-            v if v.features & FEATURE_TRANSMISSION != 0 => sorted.transmissive.push(draw),
+            v if state.pipelines.is_transmissive(v) => sorted.transmissive.push(draw),
             _ => sorted.opaque.push(draw),
         }
     }

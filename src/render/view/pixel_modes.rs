@@ -134,7 +134,7 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
     let (frame, depth) = (passes.frame, &passes.targets.depth);
     all.iter().for_each(|image| encoder.transition(image, Use::Undefined, Use::Color));
     encoder.transition(depth, Use::Undefined, Use::Depth);
-    let sorted: Sorted<'_> = frame.scene.as_ref().map(|scene| sort(scene, frame.state.camera.eye)).unwrap_or_default();
+    let sorted: Sorted<'_> = frame.scene.as_ref().map(|scene| sort(scene, &frame.state)).unwrap_or_default();
     let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
     let Some(first) = all.first() else { return };
     let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {

@@ -4,6 +4,7 @@ use std::cell::LazyCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::hooks::other_parameters;
 use super::names::Names;
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
@@ -40,6 +41,12 @@ pub fn parse(
         let text = path.and_then(|path| snapshot.read(path).ok());
         let diagnostic = diagnose(printed, line, message, text.as_deref(), stage);
         let diagnostic = Diagnostic { severity, ..diagnostic };
+        let (token, said) = split_token(message);
+        let call = diagnostic.excerpt.as_deref().filter(|_| said.starts_with("no matching overloaded function found"));
+        if let Some(error) = call.and_then(|call| other_parameters(token, call, snapshot, dependencies)) {
+            out.push(error);
+            continue;
+        }
         let with_pass = message.contains("overlapping use of location 0") && dependencies.iter().any(is_pass_glsl);
         let diagnostic = if with_pass { diagnostic.with_help(OVERLAPPING) } else { diagnostic };
         let suggested =

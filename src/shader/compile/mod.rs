@@ -1,6 +1,7 @@
 //! Compiles a stage to SPIR-V with shaderc.
 
 mod balance;
+mod hooks;
 pub mod include;
 pub mod log;
 mod names;

@@ -89,6 +89,12 @@ impl ShaderSet {
     pub fn is_complete(&self) -> bool {
         self.pending.iter().all(|path| path == expression::STAGE)
     }
+
+    /// `FEATURE_*` bits of the extensions that the author's `user_surface` brings into the picture. Every lit material has them.
+    pub fn hook_features(&self) -> u32 {
+        let current = self.stages.iter().filter(|(path, _)| !self.pending.contains(*path));
+        current.fold(0, |all, (_, stage)| all | stage.hooks.features)
+    }
 }
 
 /// The stages that an update compiled, and how long it took.

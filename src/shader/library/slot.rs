@@ -10,6 +10,7 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::incremental::{FileCache, Files, Rebuilt, rebuild};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::hooks::Hooks;
 use crate::shader::spirv::reflect::Reflection;
 use crate::shader::spirv::{behavior_hash, specialize};
 
@@ -24,6 +25,8 @@ pub struct Stage {
     pub spirv: Vec<u32>,
     /// Its declarations.
     pub reflection: Reflection,
+    /// What the author's hooks in it change.
+    pub hooks: Hooks,
     /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,
     /// The specialized modules that were asked for, the newest first.
@@ -91,10 +94,10 @@ impl Stage {
         dependencies: &BTreeSet<TreePath>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let spirv = compiler.compile(snapshot, path).result?;
-        let reflection = Reflection::of(&spirv);
+        let (reflection, hooks) = (Reflection::of(&spirv), Hooks::of(&spirv));
         let kind = StageKind::of(path).ok_or_else(Vec::new)?;
         let (path, dependencies) = (path.clone(), dependencies.clone());
-        Ok(Self { path, kind, spirv, reflection, dependencies, specialized: Mutex::default() })
+        Ok(Self { path, kind, spirv, reflection, hooks, dependencies, specialized: Mutex::default() })
     }
 
     /// The stage's source text, for messages.
@@ -269,11 +272,13 @@ pub(super) fn build(
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
             let files = cache.files(snapshot, &dependencies);
+            let hooks = Hooks::of(&spirv);
             let stage = Arc::new(Stage {
                 path: path.clone(),
                 kind,
                 spirv,
                 reflection,
+                hooks,
                 dependencies,
                 specialized: Mutex::default(),
             });

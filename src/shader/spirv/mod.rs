@@ -5,6 +5,8 @@ pub mod bindings;
 mod conditions;
 mod declared;
 mod hash;
+mod hits;
+pub mod hooks;
 pub mod link;
 pub mod loops;
 mod opcode;
@@ -18,5 +20,6 @@ mod types;
 pub mod uses;
 
 pub use hash::behavior_hash;
+pub use hits::separate_hits;
 pub use optimize::optimize;
 pub use specialize::{specialize, specialize_several};

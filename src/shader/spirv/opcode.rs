@@ -53,6 +53,7 @@ pub const COPY_OBJECT: u32 = 83;
 pub const SAMPLED_IMAGE: u32 = 86;
 pub const IADD: u32 = 128;
 pub const ISUB: u32 = 130;
+pub const ALL: u32 = 155;
 pub const LOGICAL_AND: u32 = 167;
 pub const SELECT: u32 = 169;
 pub const IEQUAL: u32 = 170;

@@ -337,7 +337,7 @@ impl Thread {
         if !set.shaders.is_complete() || self.recorder.is_careful() {
             return;
         }
-        let features = Some(scene.features(&snapshot.settings));
+        let features = Some(scene.features(&snapshot.settings) | set.shaders.hook_features());
         let Some([before, after]) = neighbors(&set.shaders.modes, &snapshot.settings.mode, features) else { return };
         for mode in [after, before] {
             if !self.inbox.is_empty() || self.is_stale() {

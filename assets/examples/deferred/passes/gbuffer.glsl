@@ -7,7 +7,7 @@
 #include "common/math.glsl"
 #include "material/antialiasing.glsl"
 #include "material/material.glsl"
-#include "user.glsl"
+#include "material/user_surface.glsl"
 
 // Materials with parameters that the G-buffer has no room for. Their pixels are 0, and stay as the model's own pass draws them.
 const uint FORWARD_FEATURES = FEATURE_UNLIT | FEATURE_CLEARCOAT | FEATURE_ANISOTROPY | FEATURE_SHEEN | FEATURE_SPECULAR
@@ -16,8 +16,9 @@ bool is_deferred() { return ALPHA_MODE != ALPHA_BLEND && (FEATURES & FORWARD_FEA
 
 // The surface that pbr.frag lights, before complete_surface.
 Surface gbuffer_surface(Fragment f) {
-    Surface s = make_surface(f, safe_normalize(f.to_eye_ws, vec3(0.0, 0.0, 1.0)));
-    user_surface(s);
+    vec3 v = safe_normalize(f.to_eye_ws, vec3(0.0, 0.0, 1.0));
+    Surface s = make_surface(f, v);
+    apply_user_surface(s, f, v);
     antialias_specular(s);
     if (ALPHA_MODE == ALPHA_MASK && s.coverage < material.alpha_cutoff) discard;
     return s;

@@ -6,6 +6,7 @@
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/punctual.glsl"
+#include "material/opaque.glsl"
 
 // Fur by shells (Lengyel, Praun, Finkelstein & Hoppe 2001, "Real-Time Fur over Arbitrary Surfaces"), lit as hairs (Kajiya & Kay
 // 1989, "Rendering Fur with Three Dimensional Textures", diffuse term: the sine between hair and light).
@@ -20,6 +21,11 @@ layout(location = 12) in float height;
 layout(location = 0) out vec4 color;
 
 void main() {
+    // Hair grows where the skin has no hole.
+    Fragment skin = fragment;
+    skin.position_ws = fragment.color.xyz;
+    skin.color = vec4(1.0);
+    discard_holes(skin);
     // A hair in each cell of a lattice on the skin: a cone of random length.
     vec3 cell = fragment.color.xyz / frame.scene_radius * fur_density;
     vec3 random = random_numbers(uvec3(ivec3(floor(cell)) + 4096));

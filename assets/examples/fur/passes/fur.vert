@@ -2,6 +2,7 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/vertex.glsl"
+#include "user/vertex.glsl"
 
 // Shell i of the fur is the model, grown along its normals.
 
@@ -12,7 +13,9 @@ const float SHELLS = 24.0;
 const float LENGTH = 0.1;                // of the model's radius
 
 void main() {
-    fragment = fragment_of(mesh_vertex());
+    Vertex vertex = mesh_vertex();
+    user_vertex(vertex);
+    fragment = fragment_of(vertex);
     // Where the skin is, so that a hair has the same place in all shells.
     fragment.color = vec4(fragment.position_ws, 1.0);
     height = (float(gl_InstanceIndex) + 1.0) / SHELLS;

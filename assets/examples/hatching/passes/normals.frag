@@ -3,8 +3,12 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
+#include "material/opaque.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
-void main() { color = vec4(safe_normalize(fragment.normal_ws, vec3(0.0)), 1.0); }
+void main() {
+    discard_holes(fragment);
+    color = vec4(safe_normalize(fragment.normal_ws, vec3(0.0)), 1.0);
+}

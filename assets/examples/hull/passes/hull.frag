@@ -2,6 +2,7 @@
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
+#include "material/opaque.glsl"
 
 // An outline by the inverted hull: the model once more, grown along its normals, without the faces towards the camera. What is
 // left of it lies behind the model and surrounds it.
@@ -14,4 +15,7 @@ layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
 // The color as it is exposed, whatever the exposure is.
-void main() { color = vec4(hull_color / frame.exposure, 1.0); }
+void main() {
+    discard_holes(fragment);
+    color = vec4(hull_color / frame.exposure, 1.0);
+}

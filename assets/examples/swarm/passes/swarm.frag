@@ -4,11 +4,13 @@
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 #include "lighting/environment.glsl"
+#include "material/opaque.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
 void main() {
+    discard_holes(fragment);
     vec3 n = safe_normalize(fragment.normal_ws, vec3(0.0, 1.0, 0.0));
     vec3 v = safe_normalize(fragment.to_eye_ws, n);
     float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(n, v)), 5.0);

@@ -3,13 +3,16 @@
 #include "common/fragment.glsl"
 #include "common/sampling.glsl"
 #include "common/vertex.glsl"
+#include "user/vertex.glsl"
 
 // Instance i is a small copy of the model that flies around it on a circle of its own.
 
 layout(location = 0) out Fragment fragment;
 
 void main() {
-    fragment = fragment_of(mesh_vertex());
+    Vertex vertex = mesh_vertex();
+    user_vertex(vertex);
+    fragment = fragment_of(vertex);
     vec3 random = random_numbers(uvec3(gl_InstanceIndex, 7u, 0u));
     vec3 other = random_numbers(uvec3(gl_InstanceIndex, 8u, 0u));
     float angle = 2.0 * PI * random.x + frame.time_s * mix(0.2, 0.8, random.y);

@@ -161,6 +161,13 @@ pub(super) fn simplify(module: &mut Module, function: &mut Function) {
                     }
                     i = instruction(op::COMPOSITE_EXTRACT, &[&[i[1], i[2], id], &*rest].concat());
                 }
+                // Integers that are the same value are equal.
+                op::IEQUAL if i[3] == i[4] => {
+                    module.known.values.insert(i[2], 1);
+                }
+                op::ALL if module.known.values.get(&i[3]) == Some(&1) => {
+                    module.known.values.insert(i[2], 1);
+                }
                 _ => module.learn(&i),
             }
             if let Some((_, id)) = typed_result(&i)

@@ -124,3 +124,27 @@ fn words_that_are_no_module_come_back() {
         assert_eq!(optimize(words.clone()), words);
     }
 }
+
+#[test]
+fn what_nothing_has_changed_is_equal_to_what_it_was() {
+    let functions = |hook: &str| {
+        format!(
+            "bool is_same(float a, float b) {{ return floatBitsToUint(a) == floatBitsToUint(b); }}
+             bool is_same(vec3 a, vec3 b) {{ return all(equal(floatBitsToUint(a), floatBitsToUint(b))); }}
+             void hook(inout Whole w) {{ {hook} }}
+             void main() {{
+                 Whole w; w.c = x.x; w.part.a = x.xyz; Whole before = w; hook(w);
+                 bool is_tilted = !is_same(w.part.a, before.part.a); bool is_other = !is_same(w.c, before.c);
+                 if (is_tilted || is_other) w.c = sin(w.c);
+                 color = vec4(w.part.a, w.c);
+             }}"
+        )
+    };
+    let of = |hook: &str| {
+        let words = optimized_stage(&functions(hook));
+        (count(&words, op::EXT_INST), count(&words, op::BRANCH_CONDITIONAL))
+    };
+    assert_eq!(of(""), (0, 0));
+    assert_eq!(of("w.part.b[1] = 2.0;"), (0, 0));
+    assert_eq!(of("w.c *= 2.0;").0, 1);
+}
