@@ -8,7 +8,12 @@
 #include "common/sampling.glsl"
 #include "lighting/punctual.glsl"
 
-Light shadow_light(uint i) { return light_at(i, frame.scene_center_ws); }
+// The suns of the environment follow the lights; they are no lights of user_light.
+Light shadow_light(uint i) {
+    Light light = lights[i];
+    if (i < frame.light_count) user_light(light, i, frame.scene_center_ws);
+    return light;
+}
 
 // World space to two axes across and the distance along `axis`, from a point.
 mat4 look_along(vec3 axis, vec3 from) {
