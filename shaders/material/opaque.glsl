@@ -12,10 +12,10 @@
 // The surface as user_surface leaves it. A `discard` in user_surface cuts the pass, as it cuts the picture.
 //
 // Some of these passes look from elsewhere. The hook gets the direction towards the camera all the same, and it is computed here: where
-// the hook does not use it, an image stays while only the camera moves.
+// the hook does not use it, an image stays while only the camera moves. So this has no branch, whose condition would read the camera.
 Surface surface_of_pass(Fragment f) {
     f.to_eye_ws = frame.eye_ws - f.position_ws;
-    vec3 v = safe_normalize(f.to_eye_ws, vec3(0.0, 0.0, 1.0));
+    vec3 v = normalize(f.to_eye_ws);
     Surface s = make_surface(f, v);
     apply_user_surface(s, f, v);
     return s;

@@ -5,7 +5,7 @@ use specula::render::Capture;
 use specula::scene::Model;
 
 use crate::support::{SIZE, Session, assert_differ, assert_same, glb, load, settings};
-use crate::{LIGHT_HOOK, USER, VERTEX, VERTEX_HOOK, fill, sum};
+use crate::{LIGHT_HOOK, USER, VERTEX, VERTEX_HOOK, fill};
 
 pub const SURFACE_HOOK: &str = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
 
@@ -76,7 +76,9 @@ fn a_surface_that_the_hook_dissolves_takes_its_shadow_with_it() {
 fn the_ground_is_lit_through_holes() {
     let lone = |alpha: f64| {
         let model = load(&glb::model(&glb::cuboid([-1.0, 0.0, -1.0], [1.0, 0.1, 1.0], true), &lid("MASK", alpha)));
-        sum(&session(model).mode("pass:ground_blockers"))
+        let blockers = session(model).mode("pass:ground_blockers");
+        // Red is 1 under a surface.
+        blockers.raw.iter().map(|value| value[0]).sum::<f32>()
     };
     assert!(lone(1.0) > 100.0);
     assert_eq!(lone(0.0), 0.0);
@@ -140,7 +142,7 @@ fn features_of_the_hook_count_everywhere() {
             left.map(|(_, value)| f64::from(value[1])).sum::<f64>()
         };
         let ratio = of(found) / of(glass);
-        let tolerance = if *place == "random paths" { 0.1 } else { 1e-3 };
+        let tolerance = if *place == "random paths" { 0.1 } else { 0.02 };
         assert!((ratio - 1.0).abs() < tolerance, "{place}: {ratio} of the light under glass");
     }
 }
