@@ -79,13 +79,13 @@ fn base_colors_above_1_have_no_pole() {
             session.set(if lamps { "lights.ambient_strength=0" } else { "lights.ambient_strength=1" });
             let values = row(&session.mode("final"));
             assert!(values.len() > 30, "{}", values.len());
-            let per_color: Vec<f32> = values.iter().enumerate().map(|(i, v)| v * 10.0 / (i as f32 + 0.5)).collect();
-            let last = per_color[values.len() - 1];
             for (i, pair) in values.windows(2).enumerate() {
                 assert!(pair[1] > pair[0], "{model} lamps {lamps}: falls at {i}: {values:?}");
             }
             // Beyond 1 the light grows no faster than the base color.
-            assert!(per_color[values.len() / 10 + 1..].iter().all(|part| *part < 1.6 * last), "{model}: {per_color:?}");
+            let color = |i: usize| 10.0 * (i as f32 + 0.5) / values.len() as f32;
+            let parts: Vec<f32> = (0..values.len()).filter(|i| color(*i) > 1.0).map(|i| values[i] / color(i)).collect();
+            assert!(parts.windows(2).all(|pair| pair[1] < 1.001 * pair[0]), "{model} lamps {lamps}: {parts:?}");
         }
     }
 }
@@ -221,20 +221,23 @@ fn occlusion_in_front_spares_light_from_behind() {
 /// Ambient occlusion knows the opaque surfaces alone. A pane before the corner of a room took the corner's.
 #[test]
 fn what_lies_behind_a_blended_surface_does_not_hide_the_sky_from_it() {
+    // Its front wall faces away from the camera, and is not drawn.
     let room = glb::cuboid([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0], false);
+    let mut wall = material(0.5, 0.0, 1.0);
+    wall["doubleSided"] = json!(false);
     let mut pane = material(0.5, 0.0, 1.0);
     pane["alphaMode"] = json!("BLEND");
     let pane_mesh =
         glb::Mesh { positions: glb::quad(1.0).positions.iter().map(|p| [p[0], p[1], 0.5]).collect(), ..glb::quad(1.0) };
-    let mut view = |with_pane: bool| {
-        let mut parts = vec![(room.clone(), material(0.5, 0.0, 1.0))];
+    let view = |with_pane: bool| {
+        let mut parts = vec![(room.clone(), wall.clone())];
         parts.extend(with_pane.then(|| (pane_mesh.clone(), pane.clone())));
         let settings = settings(&[&FLAT[..], &HEAD_ON].concat());
         let mut headless = renderer(load(&glb::scene(&parts)), settings, SIZE);
         occluded(&mut headless)
     };
     let (corner, pane) = (view(false), view(true));
-    assert!(corner < 0.9, "{corner} of the light reaches the room");
+    assert!(corner < 0.95, "{corner} of the light reaches the room");
     assert!(pane > 0.999, "{pane} of the light reaches the pane");
 }
 
@@ -263,7 +266,7 @@ fn the_truth_views_mark_surfaces_that_no_material_has() {
         ("s.base_color.g = -0.1;", &modes[..2]),
         ("s.metallic = 1.0; s.base_color = vec3(1.5);", &modes[..]),
         ("s.metallic = 1.2;", &modes[..1]),
-        ("s.roughness = -0.1;", &modes[..1]),
+        ("s.f90 = 2.0;", &modes[..1]),
         ("s.f0 = vec3(1.5);", &["nan", "f0-range"]),
         ("s.ior = 0.5;", &modes[..1]),
         ("s.n *= 2.0;", &modes[..1]),

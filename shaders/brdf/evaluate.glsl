@@ -148,6 +148,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     }
     brdf.distribution *= above;
     brdf.visibility *= above;
+    above *= visible;
     brdf.masking = 4.0 * brdf.n_dot_l * brdf.n_dot_v * brdf.visibility;
     brdf.f_dielectric = dielectric_fresnel(s, brdf.v_dot_h);
     brdf.f_metal = metal_fresnel(s, brdf.v_dot_h);
@@ -161,7 +162,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
 
     brdf.k_s = mix(brdf.f_dielectric, brdf.f_metal, s.metallic);
     brdf.k_d = (1.0 - s.metallic) * entering(s, brdf, dfg_l);
-    float below = (1.0 - above) * visible;
+    float below = cos_l > 0.0 ? 0.0 : visible;
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         // Lambertian, on the far side (KHR_materials_diffuse_transmission).
         brdf.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * brdf.k_d * s.diffuse_transmission);
@@ -177,7 +178,6 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     cover(s, l, v, abs(cos_l), brdf);
 
     Cosines cosines = Cosines(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, dot(l, front_v));
-    above *= visible;
     brdf.diffuse = f_diffuse(s.base_color, s.roughness, alpha, cosines) * (brdf.k_d * above);
     brdf.specular = brdf.k_s * (brdf.distribution * brdf.visibility * visible);
     brdf.multiple *= above;
