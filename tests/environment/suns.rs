@@ -144,7 +144,7 @@ fn folder(bright: &[Bright]) -> TempDir {
 #[test]
 fn a_metal_ball_under_suns_of_a_file_is_as_bright_as_a_sum_over_the_map() {
     let suns = two_suns();
-    for bright in [&suns[..1], &suns] {
+    for bright in [&suns[..1], &suns[..]] {
         let directory = folder(bright);
         let mut headless = ball(&directory.path().join("map.exr"));
         let (shown, points) = (pixels(&mut headless), points(bright));
