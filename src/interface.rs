@@ -24,7 +24,7 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 8;
+pub const VERSION: u32 = 9;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;

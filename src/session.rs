@@ -71,7 +71,8 @@ impl Session {
 
     /// The pipelines that the settings need from `shaders`.
     pub fn pipelines(&self, shaders: &ShaderSet, target: TargetFormat) -> PipelineRequest {
-        PipelineRequest::new(&self.settings, shaders, self.scene().as_ref(), target)
+        let request = PipelineRequest::new(&self.settings, shaders, self.scene().as_ref(), target);
+        request.for_suns(self.revisions.needs_suns(&self.settings))
     }
 
     /// The picture that the settings describe; `None` without shaders.

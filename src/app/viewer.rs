@@ -193,8 +193,12 @@ impl Viewer {
         let session = Session::new(options.settings);
         let lights = &session.settings.lights;
         let resources = Resources::new(gpu, layouts, lights.ambient_color.map(|c| c * lights.ambient_strength))?;
-        let snapshot =
-            Snapshot { settings: session.settings.clone(), scene: None, target: target(gpu, &session.settings) };
+        let snapshot = Snapshot {
+            settings: session.settings.clone(),
+            scene: None,
+            target: target(gpu, &session.settings),
+            suns: session.revisions.needs_suns(&session.settings),
+        };
         let source = options.source;
         let recorder = options.recorder;
         let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);

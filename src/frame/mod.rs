@@ -36,7 +36,7 @@ use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS, MAX_SUNS};
-use crate::scene::{Bounds, CameraView, Model, Sun, frame, lights, separates_suns, view_of_light};
+use crate::scene::{Bounds, CameraView, Model, Sun, frame, has_exact_sun, lights, separates_suns, view_of_light};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, Part};
 use crate::shader::{Mode, ShaderSet, values};
@@ -103,13 +103,23 @@ impl Default for Clock {
     }
 }
 
-/// Counts the changes of watched files on disk, so that the same name is loaded again after a change.
+/// Counts the changes of watched files on disk, so that the same name is loaded again after a change. And what only a bake tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Revisions {
     /// Changes of the environment map.
     pub environment: u64,
     /// Changes of the measured BRDF.
     pub measured: u64,
+    /// Whether the environment that was baked last has suns. Until a map is baked it counts as one without, so that pictures without
+    /// suns have no code for them; `Resources` binds no picture without that code to an environment with suns.
+    pub suns: bool,
+}
+
+impl Revisions {
+    /// Whether pictures of these settings need the code that adds suns.
+    pub(crate) fn needs_suns(self, settings: &Settings) -> bool {
+        self.suns || has_exact_sun(&settings.environment.name)
+    }
 }
 
 /// Identifies a measured BRDF.
@@ -169,6 +179,7 @@ impl FrameState {
 
     fn with_pipelines(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
         let FrameInputs { settings, shaders, scene, revisions, clock, size, target } = *inputs;
+        let pipelines = pipelines.for_suns(revisions.needs_suns(settings));
         let size = (size.0.max(1), size.1.max(1));
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());

@@ -181,6 +181,15 @@ impl PipelineRequest {
         }
     }
 
+    /// The same without the code for suns, unless the environment has some.
+    #[must_use]
+    pub fn for_suns(mut self, has_suns: bool) -> Self {
+        if !has_suns {
+            self.shared_features &= !interface::FEATURE_SUN;
+        }
+        self
+    }
+
     /// The `FEATURE_*` bits that a material has in this picture, without those of the frame.
     fn features(&self, material: MaterialVariant) -> u32 {
         let is_unlit = material.features & interface::FEATURE_UNLIT != 0;

@@ -329,7 +329,15 @@ impl Headless {
         if let Some(error) = beyond_memory(&state.pipelines, state.size, state.pass_memory) {
             return Err(HeadlessError::Shaders(vec![error]));
         }
-        self.resources.provide(&Arc::new(state)).map_err(|error| self.explained(error.into()))
+        let bound = self.resources.provide(&Arc::new(state));
+        // Only now it is known whether the environment has suns.
+        let suns = self.resources.environment().has_suns();
+        if suns == self.session.revisions.suns {
+            return bound.map_err(|error| self.explained(error.into()));
+        }
+        self.session.revisions.suns = suns;
+        let state = Arc::new(self.frame_state()?);
+        self.resources.provide(&state).map_err(|error| self.explained(error.into()))
     }
 }
 

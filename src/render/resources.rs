@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
+use crate::interface::FEATURE_SUN;
 use crate::scene::{Measured, MeasuredError, TextureSource};
 
 use super::bound_frame::BoundFrame;
@@ -242,6 +243,9 @@ impl Resources {
         let tables = tables.or_else(|| self.tables.before_edit(|key| key.is_edit_of(&state.tables))).cloned();
         let environment = self.environment_of(state, is_first).cloned();
         let (Some(tables), Some(environment)) = (tables, environment) else { return Ok(None) };
+        if !adds_suns_of(state, &environment) {
+            return Ok(None);
+        }
         let key = Self::trace_key(state, &environment);
         let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
@@ -276,6 +280,9 @@ impl Resources {
         let (Some(environment), Some(tables), Some(measured)) = (environment, tables, measured) else {
             return Ok(None);
         };
+        if !adds_suns_of(state, &environment) {
+            return Ok(None);
+        }
         let key = Self::trace_key(state, &environment);
         let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
@@ -384,6 +391,12 @@ pub enum ProvideError {
     /// The state refers to shaders or a model that are no longer the newest.
     #[error("the frame was prepared for shaders or a model that have been replaced since")]
     Stale,
+}
+
+/// Whether the pipelines of `state` add the suns that the images of the environment leave out.
+fn adds_suns_of(state: &FrameState, environment: &GpuEnvironment) -> bool {
+    let is_lit = state.environment.is_some();
+    !(is_lit && environment.has_suns()) || state.pipelines.shared_features & FEATURE_SUN != 0
 }
 
 /// Reads a measured BRDF and uploads it. Any thread may call this.

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 pub use built_in::{BUILT_IN, built_in};
 pub use bvh::Bvh;
 pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, frame};
-pub use environment::{Environment, EnvironmentError, EnvironmentFile, Sun, separates_suns};
+pub use environment::{Environment, EnvironmentError, EnvironmentFile, Sun, has_exact_sun, separates_suns};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use gltf::triangles;

@@ -26,12 +26,15 @@ pub(crate) struct Snapshot {
     pub(crate) settings: Settings,
     pub(crate) scene: Option<Scene>,
     pub(crate) target: TargetFormat,
+    /// Whether the environment has suns: see `Revisions::needs_suns`.
+    pub(crate) suns: bool,
 }
 
 impl Snapshot {
     /// The pipelines that the picture needs from `shaders`.
     pub(super) fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
-        let mut request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
+        let request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
+        let mut request = request.for_suns(self.suns);
         if self.scene.is_none() {
             // While the model loads, build the pipeline that most models need.
             let features = FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION;

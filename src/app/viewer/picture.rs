@@ -193,7 +193,8 @@ impl Viewer {
     /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
     fn request_missing(&mut self, state: &FrameState) -> bool {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
-        self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
+        let suns = self.session.revisions.needs_suns(&settings);
+        self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target, suns });
         self.watch_expression();
         let Some(set) = self.resources.pipelines() else { return false };
         let missing = self.resources.missing(state);

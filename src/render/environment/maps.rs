@@ -80,6 +80,11 @@ impl GpuEnvironment {
         Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
     }
 
+    /// Whether its images leave suns out, which lighting must add.
+    pub fn has_suns(&self) -> bool {
+        !self.radiance.suns.is_empty()
+    }
+
     /// The factor from radiance to the values of the images, and the suns that the images leave out.
     pub(crate) fn scale_and_suns(&self) -> (f32, &[Sun]) {
         (self.radiance.scale, &self.radiance.suns)

@@ -24,7 +24,7 @@ pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 pub use importance::CubeLuminance;
-pub use suns::{Sun, restore_clipped, separates_suns};
+pub use suns::{Sun, has_exact_sun, restore_clipped, separates_suns};
 
 /// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;

@@ -39,10 +39,15 @@ impl Sun {
     }
 }
 
+/// Whether this built-in environment has a sun, which is known before it is baked.
+pub fn has_exact_sun(name: &str) -> bool {
+    name == "sky"
+}
+
 /// Whether the bake of this environment takes suns out of its maps, and lighting adds them. The other built-in environments have
 /// none; of a file this is not known before it is decoded.
 pub fn separates_suns(settings: &EnvironmentSettings) -> bool {
-    let has_none = BUILT_IN.contains(&settings.name.as_str()) && settings.name != "sky";
+    let has_none = BUILT_IN.contains(&settings.name.as_str()) && !has_exact_sun(&settings.name);
     settings.suns && settings.is_lit() && !has_none
 }
 

@@ -344,9 +344,9 @@ impl Thread {
                 return;
             }
             let settings = Settings { mode: mode.slug.clone(), ..snapshot.settings.clone() };
-            let (scene, target) = (snapshot.scene.clone(), snapshot.target);
+            let (scene, target, suns) = (snapshot.scene.clone(), snapshot.target, snapshot.suns);
             // An error is reported when the user selects the mode.
-            let _ = set.build(&Snapshot { settings, scene, target }.request(&set.shaders));
+            let _ = set.build(&Snapshot { settings, scene, target, suns }.request(&set.shaders));
         }
     }
 }

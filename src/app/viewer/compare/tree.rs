@@ -111,7 +111,8 @@ impl Viewer {
     fn snapshot(&self) -> Snapshot {
         let settings = self.session.settings.clone();
         let target = target(&self.gpu, &settings);
-        Snapshot { scene: self.session.scene(), settings, target }
+        let suns = self.session.revisions.needs_suns(&settings);
+        Snapshot { scene: self.session.scene(), settings, target, suns }
     }
 
     /// Takes what the thread of a second tree has done.
