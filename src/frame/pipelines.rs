@@ -1,5 +1,6 @@
 //! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
+mod hooks;
 mod keys;
 
 use std::collections::BTreeSet;
@@ -14,7 +15,7 @@ use crate::scene::{light_count, separates_suns};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, Part};
-use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, StageKind, values};
+use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -169,7 +170,7 @@ impl PipelineRequest {
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
-            moves_vertices: moves_vertices(shaders, &stage),
+            moves_vertices: hooks::moves_vertices(shaders, &stage),
             through: selection.through,
             stage,
             passes,
@@ -188,29 +189,6 @@ impl PipelineRequest {
             self.shared_features &= !interface::FEATURE_SUN;
         }
         self
-    }
-
-    /// The `FEATURE_*` bits that a material has in this picture, without those of the frame.
-    fn features(&self, material: MaterialVariant) -> u32 {
-        let is_unlit = material.features & interface::FEATURE_UNLIT != 0;
-        material.features | if is_unlit { 0 } else { self.hook_features }
-    }
-
-    /// Whether a material shows what lies behind it.
-    pub(crate) fn is_transmissive(&self, material: MaterialVariant) -> bool {
-        self.features(material) & interface::FEATURE_TRANSMISSION != 0
-    }
-
-    /// Whether any material does.
-    pub(crate) fn has_transmission(&self) -> bool {
-        self.materials.iter().any(|material| self.is_transmissive(*material))
-    }
-
-    /// What the picture cannot show as it is, in a few words.
-    pub fn limit(&self) -> Option<&'static str> {
-        let is_other_mesh = self.traces && self.moves_vertices;
-        is_other_mesh
-            .then_some("the paths trace the mesh as it was loaded: the shaders move its vertices in the picture only")
     }
 
     /// The mode that the model is drawn in.
@@ -292,14 +270,6 @@ impl PipelineRequest {
         // A step that has never compiled is not in the graph yet.
         !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
     }
-}
-
-/// Whether the stages before the fragment stage `stage` move the vertices of the model.
-fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
-    let pass = shaders.graph.passes.iter().find(|pass| pass.note.stage == stage && pass.note.draws_model());
-    let stages = pass.into_iter().flat_map(|pass| pass.front.stages()).filter_map(|path| shaders.stages.get(path));
-    let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
-    stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
 }
 
 /// The feature bits that all materials of a frame share.

@@ -1,0 +1,38 @@
+//! What the author's hooks mean for the pipelines of a picture.
+
+use super::{MaterialVariant, PipelineRequest};
+use crate::interface;
+use crate::shader::{ShaderSet, StageKind};
+
+impl PipelineRequest {
+    /// The `FEATURE_*` bits that a material has in this picture, without those of the frame.
+    pub(super) fn features(&self, material: MaterialVariant) -> u32 {
+        let is_unlit = material.features & interface::FEATURE_UNLIT != 0;
+        material.features | if is_unlit { 0 } else { self.hook_features }
+    }
+
+    /// Whether a material shows what lies behind it.
+    pub(crate) fn is_transmissive(&self, material: MaterialVariant) -> bool {
+        self.features(material) & interface::FEATURE_TRANSMISSION != 0
+    }
+
+    /// Whether any material does.
+    pub(crate) fn has_transmission(&self) -> bool {
+        self.materials.iter().any(|material| self.is_transmissive(*material))
+    }
+
+    /// What the picture cannot show as it is, in a few words.
+    pub fn limit(&self) -> Option<&'static str> {
+        let is_other_mesh = self.traces && self.moves_vertices;
+        is_other_mesh
+            .then_some("the paths trace the mesh as it was loaded: the shaders move its vertices in the picture only")
+    }
+}
+
+/// Whether the stages before the fragment stage `stage` move the vertices of the model.
+pub(super) fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
+    let pass = shaders.graph.passes.iter().find(|pass| pass.note.stage == stage && pass.note.draws_model());
+    let stages = pass.into_iter().flat_map(|pass| pass.front.stages()).filter_map(|path| shaders.stages.get(path));
+    let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
+    stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
+}
