@@ -29,8 +29,12 @@ void follow_changes(Surface before, inout Surface s) {
     bool is_coat_tilted = !is_same_bits(s.clearcoat_n, before.clearcoat_n);
     bool is_turned = !is_same_bits(s.t, before.t);
 
-    // Specular-glossiness gives F0 itself.
-    if (is_ior_set && !is_f0_set && (FEATURES & FEATURE_SPECULAR_GLOSSINESS) == 0u) s.f0 = f0_after(before, s.ior);
+    // Specular-glossiness gives F0 itself. A condition of one comparison is decided at once, one that joins several is not.
+    if ((FEATURES & FEATURE_SPECULAR_GLOSSINESS) == 0u) {
+        if (is_ior_set) {
+            if (!is_f0_set) s.f0 = f0_after(before, s.ior);
+        }
+    }
     if (is_tilted) {
         s.n = safe_normalize(s.n, before.n);
         // Without a normal of its own, the clear coat lies on the base.

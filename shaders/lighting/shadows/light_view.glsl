@@ -56,7 +56,8 @@ mat4 light_view(uint i, Light light) {
     Light given = lights[i];
     bool is_moved = !is_same_bits(light.position_ws.xyz, given.position_ws.xyz);
     bool is_of_other_kind = !is_same_bits(light.position_ws.w, given.position_ws.w);
-    if (is_moved || is_of_other_kind) return view_of_light(light);
+    if (is_moved) return view_of_light(light);
+    if (is_of_other_kind) return view_of_light(light);
     return frame.light_clip_from_world[i];
 }
 
