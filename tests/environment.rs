@@ -327,8 +327,9 @@ fn coats_over_bumps_are_lit_by_random_paths() {
     let chosen = ["environment.name=furnace", "view.msaa=1", "view.background=none", "lights.source=none"];
     let mut headless = renderer(model("clearcoat"), settings(&chosen), (96, 54));
     let (bias, off) = split_sum_error(&mut headless, 32);
-    // In a few pixels the coat's own bumps face away from the eye, where it has no reflection.
-    assert!(bias.abs() < 0.01 && off < 0.03, "off by {off}, all in all by {bias}");
+    // In a few pixels the coat's own bumps face away from the eye, where it has no reflection. And bumps hide a part of the sky from
+    // random paths that the diffuse light of the split sum keeps.
+    assert!(bias.abs() < 0.02 && off < 0.03, "off by {off}, all in all by {bias}");
 }
 
 /// The sun covers 5e-6 of the sky and provides most of the light, so paths that do not sample it would miss it.

@@ -25,6 +25,11 @@ pub fn reached(words: &[u32]) -> BTreeSet<Used> {
     uses.filter_map(|id| module.resources.get(id)).copied().collect()
 }
 
+/// The functions that an entry point calls, directly or not, and the entry points.
+pub fn reachable_functions(words: &[u32]) -> BTreeSet<u32> {
+    Module::of(words).reachable()
+}
+
 /// The file and line of the first use of a resource in a module with debug information.
 pub fn line_of(words: &[u32], used: Used) -> Option<(String, u32)> {
     let module = Module::of(words);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER, instruction};
 use super::opcode as op;
+use super::reach::reachable_functions;
 
 const OFFSET: u32 = 35;
 const ARRAY_STRIDE: u32 = 6;
@@ -31,7 +32,7 @@ pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
     bindings.into_iter().filter(|(id, _)| words.contains(id)).map(|(_, binding)| binding).collect()
 }
 
-/// The bytes that functions of the module may read of the block at this set and binding. Members that they do not name are left
+/// The bytes that functions of the module may read of the block at this set and binding, as far as an entry point calls them. Members that they do not name are left
 /// out. The last member ends at `usize::MAX`, unless it is an array: trees may leave out what follows it in the contract.
 pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
     let (mut in_set, mut at_binding, mut structs) = (HashSet::new(), HashSet::new(), HashMap::new());
@@ -81,11 +82,14 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
     let everything = vec![Range { start: 0, end: usize::MAX }];
     let Some(of) = structs.get(&block) else { return everything };
     let Some(offsets) = offsets.get(of) else { return everything };
-    let mut members = BTreeSet::new();
+    let reachable = reachable_functions(words);
+    let (mut members, mut is_reachable) = (BTreeSet::new(), false);
     while let Some(first) = words.get(at) {
         let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
         let Some(operands) = words.get(at + 1..at + length).filter(|_| length > 0) else { return everything };
         match (opcode, operands) {
+            (op::FUNCTION, [_, function, ..]) => is_reachable = reachable.contains(function),
+            _ if !is_reachable => {}
             (op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN, [_, _, base, member, ..]) if *base == block => {
                 match constants.get(member) {
                     Some(member) => members.insert(*member),
