@@ -183,7 +183,7 @@ fn values_of_the_shipped_tree_become_its_defaults() {
     let written = tree.read("user/params.glsl");
     assert_eq!(
         written,
-        crlf.replace("makes it\" = 0.0", "makes it\" = 0.25").replace("= 1 0.8 0.6", "= 0.5 1 0.25"),
+        crlf.replace("causes it\" = 0.0", "causes it\" = 0.25").replace("= 1 0.8 0.6", "= 0.5 1 0.25"),
         "only the values"
     );
     assert!(tree.read("brdf/models.glsl").contains("const uint NDF = BECKMANN;"));

@@ -82,10 +82,10 @@ fn base_colors_above_1_have_no_pole() {
             for (i, pair) in values.windows(2).enumerate() {
                 assert!(pair[1] > pair[0], "{model} lamps {lamps}: falls at {i}: {values:?}");
             }
-            // Beyond 1 the light grows no faster than the base color.
+            // Beyond 1 the light grows no faster than the base color. Fdez-Aguera's form keeps all of the light up to a color of 1, less 2 %.
             let color = |i: usize| 10.0 * (i as f32 + 0.5) / values.len() as f32;
             let parts: Vec<f32> = (0..values.len()).filter(|i| color(*i) > 1.0).map(|i| values[i] / color(i)).collect();
-            assert!(parts.windows(2).all(|pair| pair[1] < 1.001 * pair[0]), "{model} lamps {lamps}: {parts:?}");
+            assert!(parts.windows(2).all(|pair| pair[1] < 1.003 * pair[0]), "{model} lamps {lamps}: {parts:?}");
         }
     }
 }

@@ -13,6 +13,8 @@ use super::{film, sheen};
 #[derive(Clone, Debug)]
 pub struct Surface {
     pub n: DVec3,
+    /// The mesh's interpolated normal, on the side of the eye.
+    pub ng: DVec3,
     pub base_color: DVec3,
     pub metallic: f64,
     /// Perceptual.
@@ -175,6 +177,18 @@ fn material(s: &Surface, l: DVec3, v: DVec3, masking: Masking) -> Lobes {
     Lobes { transmitted: (straight + diffuse) * s.attenuation, ..Lobes::default() }
 }
 
+/// The part of light from `l` that a bump with the normal `n` sees over the mesh with the normal `ng`: Smith's G1 of GGX with
+/// alpha^2 = min(tan^2(ng, n) / 8, 1) (Estevez, Lecocq & Stein 2019). No specification of glTF says what happens below the mesh.
+fn horizon(ng: DVec3, n: DVec3, l: DVec3) -> f64 {
+    let (over_mesh, between) = (ng.dot(l), ng.dot(n));
+    if over_mesh * n.dot(l) <= 0.0 {
+        return 0.0;
+    }
+    let alpha2 = ((1.0 / (between * between) - 1.0) / 8.0).clamp(0.0, 1.0);
+    let tan2 = 1.0 / (over_mesh * over_mesh) - 1.0;
+    2.0 / (1.0 + (1.0 + alpha2 * tan2).sqrt())
+}
+
 /// The fraction of light that the coat reflects: `weight * fr` of `fresnel_coat`.
 fn coat_weight(coat: &Coat, v: DVec3) -> f64 {
     coat.factor * schlick(DVec3::splat(0.04), 1.0, coat.n.dot(v).abs()).x
@@ -192,13 +206,14 @@ pub fn shade(s: &Surface, l: DVec3, v: DVec3, masking: Masking) -> Lobes {
             lobes.sheen = s.sheen_color * sheen::lobe(s.sheen_roughness, cosine, s.n.dot(v), n_dot_h) * cosine;
         }
     }
+    lobes = Lobes::default().plus(lobes, DVec3::splat(horizon(s.ng, s.n, l)));
     if s.coat.factor > 0.0 {
         let weight = coat_weight(&s.coat, v);
         lobes = Lobes::default().plus(lobes, DVec3::splat(1.0 - weight));
         let (n, coat_cosine) = (s.coat.n, s.coat.n.dot(l));
         if coat_cosine > 0.0 {
             let lobe = Widths::round(n, s.coat.roughness).lobe(n, l, v, masking);
-            lobes.coat = DVec3::splat(weight * lobe * coat_cosine);
+            lobes.coat = DVec3::splat(weight * lobe * coat_cosine * horizon(s.ng, n, l));
         }
     }
     lobes

@@ -13,7 +13,7 @@ use super::film::Film;
 use crate::support::render;
 
 /// Modes that every material has.
-const COMMON: [&str; 5] = ["position", "shading-normal", "base-color", "metallic", "roughness"];
+const COMMON: [&str; 6] = ["position", "shading-normal", "geometric-normal", "base-color", "metallic", "roughness"];
 
 /// The rendered modes, and the materials by pixel.
 pub struct Inputs {
@@ -77,6 +77,7 @@ impl Inputs {
         let (f0, f90) = self.dielectric(pixel, ior);
         Surface {
             n,
+            ng: self.shown(pixel, "geometric-normal").normalize(),
             base_color: self.base_color(pixel),
             metallic: self.shown(pixel, "metallic").x,
             roughness: self.shown(pixel, "roughness").x,
