@@ -65,6 +65,8 @@ fn meaning(spirv: &[u32]) -> (Reflection, Vec<u64>) {
 #[track_caller]
 fn assert_same(linked: &[u32], whole: &[u32], what: &str) {
     let ((reflection, hashes), (expected, expected_hashes)) = (meaning(linked), meaning(whole));
+    assert_eq!(reflection.reached, expected.reached, "{what}: reached");
+    assert_eq!(reflection.params_read, expected.params_read, "{what}: parameters");
     assert!(reflection == expected, "{what}: reflection");
     assert_eq!(hashes, expected_hashes, "{what}: behavior");
 }

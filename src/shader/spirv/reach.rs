@@ -34,13 +34,13 @@ pub fn reachable_functions(words: &[u32]) -> BTreeSet<u32> {
 pub fn line_of(words: &[u32], used: Used) -> Option<(String, u32)> {
     let module = Module::of(words);
     let reachable = module.reachable();
-    let ids: BTreeSet<u32> = module.resources.iter().filter(|(_, of)| **of == used).map(|(id, _)| *id).collect();
+    let wanted: BTreeSet<u32> = module.resources.iter().filter(|(_, of)| **of == used).map(|(id, _)| *id).collect();
     let (mut at_line, mut function) = (None, 0);
     let mut is_use = |i: &&[u32]| {
         match i[0] & 0xffff {
             op::LINE => at_line = i.get(1).copied().zip(i.get(2).copied()),
             op::FUNCTION => function = i.get(2).copied().unwrap_or_default(),
-            _ => return reachable.contains(&function) && operands(i).any(|id| ids.contains(&id)),
+            _ => return reachable.contains(&function) && ids(i).any(|id| wanted.contains(&id)),
         }
         false
     };
@@ -94,7 +94,7 @@ impl Module {
                     if i[0] & 0xffff == op::FUNCTION_CALL {
                         function.calls.extend(i.get(3));
                     }
-                    function.uses.extend(operands(i).filter(|id| module.resources.contains_key(id)));
+                    function.uses.extend(ids(i).filter(|id| module.resources.contains_key(id)));
                 }
             }
         }
@@ -115,7 +115,7 @@ impl Module {
 }
 
 /// The ids among the operands of an instruction within a function. Of an unknown instruction every word counts.
-fn operands(i: &[u32]) -> impl Iterator<Item = u32> + '_ {
+pub(super) fn ids(i: &[u32]) -> impl Iterator<Item = u32> + '_ {
     let counts = |at: usize| !matches!(i[0] & 0xffff, op::LINE | op::NO_LINE) && is_id(i, at).unwrap_or(true);
     (1..i.len()).filter(move |at| counts(*at)).map(|at| i[at])
 }

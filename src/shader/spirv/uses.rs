@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER, instruction};
 use super::opcode as op;
-use super::reach::reachable_functions;
+use super::reach::{ids, reachable_functions};
 
 const OFFSET: u32 = 35;
 const ARRAY_STRIDE: u32 = 6;
@@ -32,14 +32,12 @@ pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
     bindings.into_iter().filter(|(id, _)| words.contains(id)).map(|(_, binding)| binding).collect()
 }
 
-/// The bytes that functions of the module may read of the block at this set and binding, as far as an entry point calls them. Members that they do not name are left
-/// out. The last member ends at `usize::MAX`, unless it is an array: trees may leave out what follows it in the contract.
+/// The bytes that functions of the module may read of the block at this set and binding, as far as an entry point calls them. Members
+/// that they do not name are left out. The last member ends at `usize::MAX`, unless it is an array: trees may leave out what follows
+/// it in the contract.
 pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
-    let (mut in_set, mut at_binding, mut structs) = (HashSet::new(), HashSet::new(), HashMap::new());
-    let (mut offsets, mut constants): (HashMap<u32, BTreeMap<u32, usize>>, _) = (HashMap::new(), HashMap::new());
-    let (mut pointers, mut block) = (HashMap::new(), None);
-    // The types of the members of structs, the length of arrays, and the distance of their elements.
-    let (mut members_of, mut lengths, mut strides) = (HashMap::new(), HashMap::new(), HashMap::new());
+    let (mut in_set, mut at_binding) = (HashSet::new(), HashSet::new());
+    let (mut layouts, mut pointers, mut blocks) = (Layouts::default(), HashMap::new(), Vec::new());
     let mut at = HEADER;
     while let Some((opcode, length)) = instruction(words, at) {
         match (opcode, &words[at + 1..at + length]) {
@@ -50,70 +48,99 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
                 at_binding.insert(*id);
             }
             (op::MEMBER_DECORATE, [id, member, OFFSET, bytes]) => {
-                offsets.entry(*id).or_default().insert(*member, *bytes as usize);
+                layouts.offsets.entry(*id).or_default().insert(*member, *bytes as usize);
             }
             (op::DECORATE, [id, ARRAY_STRIDE, bytes]) => {
-                strides.insert(*id, *bytes as usize);
+                layouts.strides.insert(*id, *bytes as usize);
             }
             (op::TYPE_STRUCT, [id, types @ ..]) => {
-                members_of.insert(*id, types);
+                layouts.members.insert(*id, types);
             }
             (op::TYPE_ARRAY, [id, _, length]) => {
-                lengths.insert(*id, *length);
+                layouts.lengths.insert(*id, *length);
             }
             (op::CONSTANT, [_, id, value]) => {
-                constants.insert(*id, *value);
+                layouts.constants.insert(*id, *value);
             }
             (op::TYPE_POINTER, [id, _, to]) => {
                 pointers.insert(*id, *to);
             }
+            // Two variables may share a binding: a linked module can hold that of before as well.
             (op::VARIABLE, [pointer, id, ..]) if in_set.contains(id) && at_binding.contains(id) => {
-                // Two variables may share a binding.
-                if block.replace(*id).is_some() {
-                    return vec![Range { start: 0, end: usize::MAX }];
-                }
-                structs.extend(pointers.get(pointer).map(|to| (*id, *to)));
+                blocks.push((*id, pointers.get(pointer).copied()));
             }
             _ => {}
         }
         at += length;
     }
-    let Some(block) = block else { return Vec::new() };
-    let everything = vec![Range { start: 0, end: usize::MAX }];
-    let Some(of) = structs.get(&block) else { return everything };
-    let Some(offsets) = offsets.get(of) else { return everything };
-    let reachable = reachable_functions(words);
-    let (mut members, mut is_reachable) = (BTreeSet::new(), false);
-    while let Some(first) = words.get(at) {
+    let reachable = if blocks.is_empty() { BTreeSet::new() } else { reachable_functions(words) };
+    let everything = Range { start: 0, end: usize::MAX };
+    let of_block = |(id, of): (u32, Option<u32>)| {
+        let members = members_read(&words[at..], id, &layouts.constants, &reachable);
+        members
+            .zip(of)
+            .and_then(|(members, of)| layouts.ranges(of, &members))
+            .unwrap_or_else(|| vec![everything.clone()])
+    };
+    let mut ranges: Vec<Range<usize>> = blocks.into_iter().flat_map(of_block).collect();
+    ranges.sort_unstable_by_key(|range| (range.start, range.end));
+    ranges.dedup();
+    ranges
+}
+
+/// The layouts of structs, as far as [`used_bytes`] needs them.
+#[derive(Default)]
+struct Layouts<'a> {
+    /// Offsets of members, by struct.
+    offsets: HashMap<u32, BTreeMap<u32, usize>>,
+    /// Types of members, by struct.
+    members: HashMap<u32, &'a [u32]>,
+    /// Constants with the lengths of arrays, by their types.
+    lengths: HashMap<u32, u32>,
+    /// Distances of their elements.
+    strides: HashMap<u32, usize>,
+    constants: HashMap<u32, u32>,
+}
+
+impl Layouts<'_> {
+    /// The bytes of these members of a struct. `None` if its layout is not known.
+    fn ranges(&self, of: u32, members: &BTreeSet<u32>) -> Option<Vec<Range<usize>>> {
+        let offsets = self.offsets.get(&of)?;
+        let last_end = self.members.get(&of).and_then(|types| types.last()).and_then(|array| {
+            let length = *self.constants.get(self.lengths.get(array)?)? as usize;
+            Some(offsets.values().max()? + length * self.strides.get(array)?)
+        });
+        let end_of = |start: usize| {
+            offsets.values().copied().filter(|other| *other > start).min().or(last_end).unwrap_or(usize::MAX)
+        };
+        members.iter().map(|member| offsets.get(member).map(|start| *start..end_of(*start))).collect()
+    }
+}
+
+/// The members of the block `block` that the reachable functions in `code` read. `None` if they may read all of it.
+fn members_read(
+    code: &[u32],
+    block: u32,
+    constants: &HashMap<u32, u32>,
+    reachable: &BTreeSet<u32>,
+) -> Option<BTreeSet<u32>> {
+    let (mut members, mut is_reachable, mut at) = (BTreeSet::new(), false, 0);
+    while let Some(first) = code.get(at) {
         let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
-        let Some(operands) = words.get(at + 1..at + length).filter(|_| length > 0) else { return everything };
-        match (opcode, operands) {
+        let instruction = code.get(at..at + length).filter(|_| length > 0)?;
+        match (opcode, &instruction[1..]) {
             (op::FUNCTION, [_, function, ..]) => is_reachable = reachable.contains(function),
             _ if !is_reachable => {}
             (op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN, [_, _, base, member, ..]) if *base == block => {
-                match constants.get(member) {
-                    Some(member) => members.insert(*member),
-                    None => return everything,
-                };
+                members.insert(*constants.get(member)?);
             }
-            // The whole block, or a word that only looks like its id.
-            _ if operands.contains(&block) => return everything,
+            // The whole block.
+            _ if ids(instruction).any(|id| id == block) => return None,
             _ => {}
         }
         at += length;
     }
-    let last_end = members_of.get(of).and_then(|types| types.last()).and_then(|array| {
-        let length = *constants.get(lengths.get(array)?)? as usize;
-        Some(offsets.values().max()? + length * strides.get(array)?)
-    });
-    let end_of = |start: usize| {
-        offsets.values().copied().filter(|other| *other > start).min().or(last_end).unwrap_or(usize::MAX)
-    };
-    let start_of = |member: &u32| offsets.get(member).copied();
-    match members.iter().map(start_of).collect::<Option<Vec<usize>>>() {
-        Some(starts) => starts.into_iter().map(|start| start..end_of(start)).collect(),
-        None => everything,
-    }
+    Some(members)
 }
 
 #[cfg(test)]
