@@ -159,6 +159,25 @@ fn curves_are_measured_with_the_texts_of_an_edit() {
     assert_validated();
 }
 
+/// A slider in the BRDF, in the file of sliders whose `when=` names constants of passes, which are not measured.
+#[test]
+fn curves_have_the_value_of_a_slider_in_the_brdf() {
+    let (tree, file, squared) = (Source::embedded(), "brdf/ndf.glsl", "float a2 = alpha * alpha;");
+    let of = |texts, assignments: &[&str]| {
+        let bench = prepare(gpu(), compiler(), &tree, &texts, &settings(assignments)).unwrap();
+        let material = Material { base_color: [0.8, 0.4, 0.2], metallic: 1.0, roughness: 0.5, light_deg: 45.0 };
+        Curves::measure(&bench, &material).unwrap()
+    };
+    let mut with_slider = texts(file, squared, "float a2 = roughness_scale * alpha * alpha;");
+    let include = "#include \"common/math.glsl\"\n";
+    let text = with_slider.get_mut(&file.into()).unwrap();
+    *text = text.replace(include, &format!("{include}#include \"user/params.glsl\"\n")).into();
+    let with_number = of(texts(file, squared, "float a2 = 0.5 * alpha * alpha;"), &[]);
+    assert_eq!(of(with_slider.clone(), &["roughness_scale=0.5"]), with_number);
+    assert_eq!(of(with_slider, &[]), of(texts(file, "", ""), &[]), "at its default of 1");
+    assert_validated();
+}
+
 #[test]
 fn a_tree_without_measuring_stages_says_so() {
     let tree = Source::memory([]);
