@@ -113,7 +113,7 @@ vec4 hit_tangent(Hit hit) {
     return vec4(safe_normalize((t.edge_1_ws * uv_2.y - t.edge_2_ws * uv_1.y) * side, vec3(0.0)), -side);
 }
 
-// What the vertices give at a hit, for user_surface. The paths keep one set of texture coordinates: that of the material's textures.
+// The fragment at a hit, for user_surface: its interpolated vertex attributes. The paths keep one set of texture coordinates: that of the material's textures.
 Fragment hit_fragment(Ray ray, Hit hit, HitMaterial h, vec3 n) {
     Fragment f;
     f.position_ws = ray.origin_ws + ray.direction_ws * hit.distance;

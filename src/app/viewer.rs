@@ -157,7 +157,7 @@ pub(super) struct Viewer {
     is_complete: bool,
     /// Whether the last frame showed the settings, and lacked nothing but stages that it does not need.
     shows_settings: bool,
-    /// What the picture waits for, and since when; `None` when it has everything.
+    /// The work that the picture waits for, and since when; `None` when it has everything.
     waits: Option<(Waits, Instant)>,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.

@@ -61,7 +61,7 @@ pub enum GpuError {
     Unbound {
         /// Path of the stage.
         stage: String,
-        /// What the stage is run for.
+        /// The role of the stage: `interface::StageRole::name`.
         role: &'static str,
         /// The resource.
         resource: &'static str,

@@ -11,7 +11,7 @@ use super::{SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK};
 pub const INSTANCES: [(&str, &str); 4] =
     [("Frame", "frame"), ("Material", "material"), ("Task", "task"), ("Draw", "draw")];
 
-/// What a stage is run for. This decides which resources are bound.
+/// The purpose that a stage is run for. It decides which resources are bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StageRole {
     /// A stage that draws the model: the picture, debug modes, passes with `draw=model`.

@@ -19,7 +19,7 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
-    /// What the picture has waited for so long that the user should know.
+    /// The work that has delayed the picture for longer than the bar keeps silent about.
     pub(super) waits: Option<Waits>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,

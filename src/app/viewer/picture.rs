@@ -15,7 +15,7 @@ use crate::settings::Settings;
 use crate::shader::{Mode, PixelValue, expression};
 use crate::threads::worker::Snapshot;
 
-/// What threads make for the settings, while the picture shows what was there before.
+/// The work of other threads that the picture waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Waits {
     /// Pipelines. Until then, the last picture stays.
@@ -25,7 +25,7 @@ pub(in crate::app) enum Waits {
 }
 
 impl Waits {
-    /// What a state waits for that lacks this.
+    /// The work that a state with these missing resources waits for.
     fn of(missing: &Missing) -> Option<Self> {
         match missing {
             missing if missing.pipelines => Some(Self::Pipelines),
@@ -212,7 +212,7 @@ impl Viewer {
         is_empty
     }
 
-    /// What the picture waits for, and for how long already.
+    /// The work that the picture waits for, and for how long it has waited.
     pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
         self.waits.map(|(waits, since)| (waits, since.elapsed()))
     }

@@ -1,4 +1,4 @@
-//! What the author's hooks mean for the pipelines of a picture.
+//! Features and limits that the author's hooks add to the pipelines of a picture.
 
 use super::{MaterialVariant, PipelineRequest};
 use crate::interface;
@@ -21,7 +21,7 @@ impl PipelineRequest {
         self.materials.iter().any(|material| self.is_transmissive(*material))
     }
 
-    /// What the picture cannot show as it is, in a few words.
+    /// A sentence about what the mode leaves out of the picture; `None` if it leaves out nothing.
     pub fn limit(&self) -> Option<&'static str> {
         let is_other_mesh = self.traces && self.moves_vertices;
         is_other_mesh

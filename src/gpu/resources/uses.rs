@@ -15,7 +15,7 @@ pub struct Uses {
     pub frame_bytes: Vec<Range<usize>>,
     /// Bindings in `interface::SET_PASS`.
     pub pass_bindings: BTreeSet<u32>,
-    /// What the entry points reach.
+    /// Resources that functions called from the entry points use.
     pub resources: BTreeSet<Resource>,
 }
 

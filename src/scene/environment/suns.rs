@@ -66,7 +66,7 @@ pub fn restore_clipped(suns: &mut [Sun], map: &Environment, scale: f32, limit: f
     for (y, row) in map.pixels.chunks_exact(width.max(1)).enumerate() {
         let solid_angle = texel_solid_angle(y, width, height);
         for (&[r, g, b, _], at) in row.iter().zip(directions.row(y)) {
-            // What is darker by more than half floats have digits is no part of such a sun.
+            // A sun beyond the range of half floats hides texels that are darker by more than their digits.
             if r.max(g).max(b) * scale < limit / 4096.0 {
                 continue;
             }

@@ -15,7 +15,7 @@ use super::Texts;
 /// A stage together with what it is run for.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
-    /// What the stage is run for.
+    /// The purpose that the stage is run for.
     pub role: StageRole,
     /// Its declarations.
     pub reflection: &'a Reflection,

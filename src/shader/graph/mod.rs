@@ -121,7 +121,7 @@ impl GraphPass {
         front.into_iter().flatten().chain([self.note.stage.as_str()])
     }
 
-    /// What its stages are run for.
+    /// The purpose that its stages are run for.
     pub fn role(&self) -> StageRole {
         match () {
             () if self.is_compute => StageRole::Compute,

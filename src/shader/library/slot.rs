@@ -25,7 +25,7 @@ pub struct Stage {
     pub spirv: Vec<u32>,
     /// Its declarations.
     pub reflection: Reflection,
-    /// What the author's hooks in it change.
+    /// Effects of the author's hooks in it.
     pub hooks: Hooks,
     /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,

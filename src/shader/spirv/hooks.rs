@@ -34,7 +34,7 @@ const FEATURES: [(&str, u32); 11] = [
 const PARAMETER: u32 = 55;
 const PRODUCTS: [u32; 2] = [133, 142];
 
-/// What the hooks of a stage change.
+/// Effects of the hooks of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hooks {
     /// `FEATURE_*` bits of the extensions whose members `user_surface` sets.
@@ -157,7 +157,7 @@ mod tests {
             ("if (uv.x > 0.5) s.sheen_color.g = uv.y;", FEATURE_SHEEN),
             ("s.clearcoat = mix(s.clearcoat, 1.0, uv.x);", FEATURE_CLEARCOAT),
             ("s.clearcoat_n = uv.xyz;", FEATURE_CLEARCOAT_NORMAL),
-            // What is 0 stays 0.
+            // A product of 0 stays 0.
             ("s.transmission *= uv.x; s.sheen_color *= uv.x; s.clearcoat = 0.0;", 0),
         ] {
             assert_eq!(hooks(&format!("void user_surface(inout Surface s) {{ {body} }}")).features, features, "{body}");

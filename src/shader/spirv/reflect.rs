@@ -116,7 +116,7 @@ pub struct Reflection {
     pub capabilities: Vec<u32>,
     /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.
     pub local_size: [u32; 3],
-    /// What the entry point reaches of the descriptors and push constants.
+    /// Descriptors and push constants that functions called from the entry point use.
     pub reached: BTreeSet<Used>,
     /// The bytes that the stage may read of the block `Params`.
     pub params_read: Vec<Range<usize>>,
