@@ -14,7 +14,7 @@ mod textures;
 use std::mem::offset_of;
 use std::ops::Range;
 
-pub use access::{INSTANCES, Resource, StageRole, table as access_table};
+pub use access::{Resource, StageRole, table as access_table};
 pub use blocks::{
     BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
     TracedTriangle, Vertex, block,
@@ -152,10 +152,24 @@ pub struct Binding {
     pub kind: BindingKind,
     /// For blocks: the largest size in bytes that a shader may declare.
     pub size: u32,
+    /// The group of resources that it is bound with; `None` for a descriptor that no shader of a tree reads.
+    pub resource: Option<Resource>,
 }
 
-const fn binding(set: u32, binding: u32, name: &'static str, kind: BindingKind, size: usize) -> Binding {
-    Binding { set, binding, name, kind, size: size as u32 }
+const fn binding(
+    resource: Resource,
+    set: u32,
+    binding: u32,
+    name: &'static str,
+    kind: BindingKind,
+    size: usize,
+) -> Binding {
+    Binding { set, binding, name, kind, size: size as u32, resource: Some(resource) }
+}
+
+/// A descriptor that Specula itself adds to stages.
+const fn added((set, binding): (u32, u32), name: &'static str, kind: BindingKind, size: usize) -> Binding {
+    Binding { set, binding, name, kind, size: size as u32, resource: None }
 }
 
 /// Every descriptor of the contract.
@@ -174,44 +188,51 @@ pub(crate) const LIGHT_BYTES: usize = (MAX_LIGHTS + MAX_SUNS) * size_of::<Light>
 
 /// Every descriptor that is not a material's texture.
 const OTHERS: &[Binding] = &[
-    binding(SET_FRAME, BINDING_FRAME, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
+    binding(Resource::Frame, SET_FRAME, BINDING_FRAME, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
     // Lights are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
-    binding(SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, LIGHT_BYTES),
-    binding(SET_FRAME, BINDING_PARAMS, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
-    binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
-    binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
-    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
-    binding(SET_FRAME, 10, "BINDING_SHEEN_ALBEDO", BindingKind::Sampler2D, 0),
+    binding(Resource::Lights, SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, LIGHT_BYTES),
+    binding(
+        Resource::Params,
+        SET_FRAME,
+        BINDING_PARAMS,
+        "BINDING_PARAMS",
+        BindingKind::UniformBuffer,
+        PARAMS_SIZE as usize,
+    ),
+    binding(Resource::Environment, SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
+    binding(Resource::Environment, SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),
+    binding(Resource::Environment, SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
+    binding(Resource::Environment, SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::Sampler2D, 0),
+    binding(Resource::Tables, SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
+    binding(Resource::Tables, SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
+    binding(Resource::Tables, SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
+    binding(Resource::Tables, SET_FRAME, 10, "BINDING_SHEEN_ALBEDO", BindingKind::Sampler2D, 0),
     // Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
     // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
-    binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
-    binding(SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
+    added((SET_FRAME, 11), "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
+    binding(Resource::Tables, SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
     // Two channels of BINDING_DFG, for lamps: a software device reads them in two thirds of the time that four take.
-    binding(SET_FRAME, 13, "BINDING_LAMP_DFG", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 14, "BINDING_BVH", BindingKind::StorageBuffer, 0),
-    binding(SET_FRAME, 15, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
-    binding(SET_FRAME, 16, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
-    binding(SET_FRAME, 17, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
-    binding(SET_FRAME, 18, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
-    binding(SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
-    binding(LOOPS[0].0, LOOPS[0].1, "BINDING_LOOPS", BindingKind::StorageBuffer, 0),
-    binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
-    binding(SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
-    binding(SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
-    binding(SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
-    binding(SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
-    binding(SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
-    binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
-    binding(SET_TASK, BINDING_LOBE_TARGET, "BINDING_LOBE_TARGET", BindingKind::StorageBuffer, 0),
+    binding(Resource::Tables, SET_FRAME, 13, "BINDING_LAMP_DFG", BindingKind::Sampler2D, 0),
+    binding(Resource::Scene, SET_FRAME, 14, "BINDING_BVH", BindingKind::StorageBuffer, 0),
+    binding(Resource::Scene, SET_FRAME, 15, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
+    binding(Resource::Scene, SET_FRAME, 16, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
+    binding(Resource::Scene, SET_FRAME, 17, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
+    binding(Resource::Scene, SET_FRAME, 18, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
+    binding(Resource::Scene, SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
+    added(LOOPS[0], "BINDING_LOOPS", BindingKind::StorageBuffer, 0),
+    binding(Resource::Material, SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
+    binding(Resource::Task, SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
+    binding(Resource::Task, SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
+    binding(Resource::Task, SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
+    binding(Resource::Task, SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
+    binding(Resource::Task, SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
+    binding(Resource::Task, SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
+    binding(Resource::Task, SET_TASK, BINDING_LOBE_TARGET, "BINDING_LOBE_TARGET", BindingKind::StorageBuffer, 0),
     // 16 KiB is the largest uniform block that every device has.
-    binding(SET_TASK, BINDING_LOBE, "BINDING_LOBE", BindingKind::UniformBuffer, 16384),
-    binding(SET_TASK, BINDING_SMALL_LIGHTS, "BINDING_SMALL_LIGHTS", BindingKind::UniformBuffer, 16384),
-    binding(SET_TASK, BINDING_PACKED, "BINDING_PACKED", BindingKind::StorageBuffer, 0),
-    binding(LOOPS[1].0, LOOPS[1].1, "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
+    binding(Resource::Task, SET_TASK, BINDING_LOBE, "BINDING_LOBE", BindingKind::UniformBuffer, 16384),
+    binding(Resource::Task, SET_TASK, BINDING_SMALL_LIGHTS, "BINDING_SMALL_LIGHTS", BindingKind::UniformBuffer, 16384),
+    binding(Resource::Task, SET_TASK, BINDING_PACKED, "BINDING_PACKED", BindingKind::StorageBuffer, 0),
+    added(LOOPS[1], "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
 ];
 
 /// A specialization constant that Rust sets.

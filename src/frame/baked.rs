@@ -113,6 +113,11 @@ impl EnvironmentKey {
         }
     }
 
+    /// The bytes of the block `Params`. Empty for a tree without the stages of a bake.
+    pub(crate) fn params(&self) -> &[u8] {
+        self.radiance.first().map_or(&[], |stage| &stage.params)
+    }
+
     /// Whether the cube map and the irradiance are the same.
     pub(crate) fn has_radiance_of(&self, other: &Self) -> bool {
         (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)

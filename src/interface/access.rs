@@ -5,11 +5,7 @@
 
 use std::fmt::Write as _;
 
-use super::{SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK};
-
-/// The blocks of the contract that shaders read by the name of an instance.
-pub const INSTANCES: [(&str, &str); 4] =
-    [("Frame", "frame"), ("Material", "material"), ("Task", "task"), ("Draw", "draw")];
+use super::{BINDINGS, SET_PASS};
 
 /// The purpose that a stage is run for. It decides which resources are bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -122,18 +118,10 @@ impl Resource {
 
     /// The resource at a place of the contract. `None` for a descriptor that Specula itself adds to stages.
     pub fn at(set: u32, binding: u32) -> Option<Self> {
-        match (set, binding) {
-            (SET_FRAME, super::BINDING_FRAME) => Some(Self::Frame),
-            (SET_FRAME, super::BINDING_LIGHTS) => Some(Self::Lights),
-            (SET_FRAME, super::BINDING_PARAMS) => Some(Self::Params),
-            (SET_FRAME, 3..=6) => Some(Self::Environment),
-            (SET_FRAME, 7..=10 | 12 | 13) => Some(Self::Tables),
-            (SET_FRAME, 14..=19) => Some(Self::Scene),
-            (SET_MATERIAL, _) => Some(Self::Material),
-            (SET_PASS, _) => Some(Self::Pass),
-            (SET_TASK, binding) if !super::LOOPS.contains(&(SET_TASK, binding)) => Some(Self::Task),
-            _ => None,
+        if set == SET_PASS {
+            return Some(Self::Pass);
         }
+        BINDINGS.iter().find(|known| (known.set, known.binding) == (set, binding))?.resource
     }
 
     /// The resource in messages.
@@ -193,15 +181,6 @@ pub fn table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interface::{BINDINGS, LOOPS};
-
-    #[test]
-    fn every_binding_belongs_to_a_resource() {
-        for binding in BINDINGS {
-            let is_added = LOOPS.contains(&(binding.set, binding.binding)) || binding.name == "BINDING_UNUSED";
-            assert_eq!(Resource::at(binding.set, binding.binding).is_none(), is_added, "{}", binding.name);
-        }
-    }
 
     #[test]
     fn every_resource_is_bound_somewhere() {

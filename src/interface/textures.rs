@@ -25,7 +25,7 @@ macro_rules! textures {
         /// Every texture of a material. Binding 0 of the set is the material's block, so a texture's binding is its index + 1.
         pub const TEXTURES: &[Texture] = &[$(Texture {
             name: stringify!($name),
-            binding: super::binding(SET_MATERIAL, 1 + $name, $binding, BindingKind::Sampler2D, 0),
+            binding: super::binding(super::Resource::Material, SET_MATERIAL, 1 + $name, $binding, BindingKind::Sampler2D, 0),
         },)+];
     };
 }

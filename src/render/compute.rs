@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::frame::BakeStage;
 pub(crate) use crate::gpu::upload_images as upload;
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, one_shot, vk,
@@ -31,18 +30,16 @@ pub(crate) fn bindings(
     DescriptorSet::new(layouts, SET_TASK, more(writer))
 }
 
-/// Descriptor set 0 of a bake: the parameters of `stages`. Nothing else of the set has a meaning there, and the contract check
+/// Descriptor set 0 of a bake: the bytes of the block `Params`. Nothing else of the set has a meaning there, and the contract check
 /// refuses a stage that reads it.
 pub(crate) fn frame_set(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,
-    stages: &[BakeStage],
+    params: &[u8],
 ) -> Result<Arc<DescriptorSet>, GpuError> {
     let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
     let buffer = Buffer::new(gpu, "params of a bake", PARAMS_SIZE.into(), usage, Memory::Upload)?;
-    if let Some(stage) = stages.first() {
-        buffer.write(0, &stage.params);
-    }
+    buffer.write(0, params);
     DescriptorSet::new(layouts, SET_FRAME, SetWriter::default().buffer(BINDING_PARAMS, &buffer))
 }
 

@@ -194,7 +194,7 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
     let buffer = Buffer::new(gpu, "table", desc.bytes(), readback, Memory::Readback)?;
     let bindings =
         compute::bindings(gpu, &set.layouts, &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
-    let frame = compute::frame_set(gpu, &set.layouts, std::slice::from_ref(of))?;
+    let frame = compute::frame_set(gpu, &set.layouts, &of.params)?;
     one_shot(gpu, |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
         encoder.dispatch(&pipeline, &[&frame, &bindings], table.groups);

@@ -77,7 +77,7 @@ impl GpuEnvironment {
     ) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();
         let report = BakeReport { environment: key.name.clone(), cached: true, ..BakeReport::default() };
-        let frame = compute::frame_set(&set.gpu, &set.layouts, &key.radiance)?;
+        let frame = compute::frame_set(&set.gpu, &set.layouts, key.params())?;
         let mut bake = Bake { gpu: &set.gpu, set, key, frame, control, report, storing_ms: 0.0 };
         let before = before.filter(|(old, _)| old.has_radiance_of(key));
         let radiance = match before {

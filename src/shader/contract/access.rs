@@ -1,8 +1,8 @@
 //! Refuses resources that nothing binds for a stage, at the line that reads them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::interface::{INSTANCES, Resource, StageRole};
+use crate::interface::{Resource, StageRole, block};
 use crate::shader::compile::Compiler;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
@@ -26,7 +26,7 @@ pub struct Run<'a> {
 /// An error for each place at which a stage reads a resource that is not bound there. A place that several stages run is named once.
 pub fn check_access<'a>(runs: impl IntoIterator<Item = Run<'a>>, compiler: &Compiler) -> Vec<Diagnostic> {
     let mut errors: Vec<Diagnostic> = Vec::new();
-    let mut stages: BTreeMap<(String, Option<u32>, Resource), Vec<String>> = BTreeMap::new();
+    let mut seen = BTreeSet::new();
     for run in runs {
         let unbound = run.reflection.reached.iter().filter_map(|used| Some((*used, resource_of(*used)?)));
         let unbound: BTreeMap<Resource, Used> =
@@ -37,11 +37,9 @@ pub fn check_access<'a>(runs: impl IntoIterator<Item = Run<'a>>, compiler: &Comp
         let words = compiler.compile_with_lines(run.texts.snapshot, run.texts.stage).unwrap_or_default();
         for (resource, used) in unbound {
             let error = error(run, resource, used, &words);
-            let known = stages.entry((error.file.clone(), error.line, resource)).or_default();
-            if known.is_empty() {
+            if seen.insert((error.file.clone(), error.line, resource)) {
                 errors.push(error);
             }
-            known.push(run.texts.stage.to_string());
         }
     }
     errors
@@ -78,15 +76,15 @@ fn error(run: Run<'_>, resource: Resource, used: Used, words: &[u32]) -> Diagnos
 
 /// The names by which GLSL reads the resource: of the variable, of the block, of the block's members.
 fn names_of(reflection: &Reflection, used: Used) -> Vec<String> {
-    let block = match used {
+    let declared = match used {
         Used::Descriptor(set, binding) => reflection.descriptor(set, binding).map(|found| (&found.name, &found.block)),
         Used::PushConstants => {
             reflection.push_constants.as_ref().map(|block| (&block.name, &reflection.push_constants))
         }
     };
-    let Some((name, block)) = block else { return Vec::new() };
-    let instance = INSTANCES.iter().find(|(block, _)| block == name).map(|(_, instance)| (*instance).to_owned());
-    let members = block.iter().flat_map(|block| block.members.iter().map(|member| member.name.clone()));
+    let Some((name, declared)) = declared else { return Vec::new() };
+    let instance = block(name).map(|known| known.around[1].to_owned()).filter(|instance| !instance.is_empty());
+    let members = declared.iter().flat_map(|block| block.members.iter().map(|member| member.name.clone()));
     instance.into_iter().chain([name.clone()]).chain(members).collect()
 }
 

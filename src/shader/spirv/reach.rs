@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER};
+use super::bindings::{BINDING, DESCRIPTOR_SET};
 use super::opcode as op;
 use super::operands::{is_id, text};
+use super::specialize::instructions;
 
 const PUSH_CONSTANT: u32 = 9;
 
@@ -36,6 +37,7 @@ pub fn line_of(words: &[u32], used: Used) -> Option<(String, u32)> {
     let reachable = module.reachable();
     let wanted: BTreeSet<u32> = module.resources.iter().filter(|(_, of)| **of == used).map(|(id, _)| *id).collect();
     let (mut at_line, mut function) = (None, 0);
+    let all = instructions(words)?;
     let mut is_use = |i: &&[u32]| {
         match i[0] & 0xffff {
             op::LINE => at_line = i.get(1).copied().zip(i.get(2).copied()),
@@ -44,9 +46,9 @@ pub fn line_of(words: &[u32], used: Used) -> Option<(String, u32)> {
         }
         false
     };
-    instructions(words).find(|i| is_use(i))?;
+    all.iter().find(|i| is_use(i))?;
     let (file, line) = at_line?;
-    let name = instructions(words).find(|i| i[0] & 0xffff == op::STRING && i.get(1) == Some(&file))?;
+    let name = all.iter().find(|i| i[0] & 0xffff == op::STRING && i.get(1) == Some(&file))?;
     Some((text(name.get(2..)?), line))
 }
 
@@ -71,7 +73,7 @@ impl Module {
         let mut module = Self::default();
         let (mut sets, mut bindings) = (BTreeMap::new(), BTreeMap::new());
         let mut current = None;
-        for i in instructions(words) {
+        for i in instructions(words).unwrap_or_default() {
             match (i[0] & 0xffff, &i[1..]) {
                 (op::ENTRY_POINT, [_, function, ..]) => module.entries.push(*function),
                 (op::DECORATE, [id, DESCRIPTOR_SET, set]) => {
@@ -118,17 +120,6 @@ impl Module {
 pub(super) fn ids(i: &[u32]) -> impl Iterator<Item = u32> + '_ {
     let counts = |at: usize| !matches!(i[0] & 0xffff, op::LINE | op::NO_LINE) && is_id(i, at).unwrap_or(true);
     (1..i.len()).filter(move |at| counts(*at)).map(|at| i[at])
-}
-
-/// The instructions of a module, each with its first word. Ends at a malformed one.
-fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(HEADER..).unwrap_or_default();
-    std::iter::from_fn(move || {
-        let length = (*rest.first()? >> 16) as usize;
-        let (instruction, after) = rest.split_at_checked(length).filter(|_| length > 0)?;
-        rest = after;
-        Some(instruction)
-    })
 }
 
 #[cfg(test)]
