@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use specula::render::Capture;
 use specula::scene::Model;
 
-use crate::support::{SIZE, Session, assert_differ, assert_same, glb, load, settings};
+use crate::support::{SIZE, Session, assert_differ, assert_same, failed, glb, lines, load, ready, settings};
 use crate::{LIGHT_HOOK, USER, VERTEX, VERTEX_HOOK, fill};
 
 pub const SURFACE_HOOK: &str = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
@@ -145,4 +145,23 @@ fn features_of_the_hook_count_everywhere() {
         let tolerance = if *place == "random paths" { 0.1 } else { 0.02 };
         assert!((ratio - 1.0).abs() < tolerance, "{place}: {ratio} of the light under glass");
     }
+}
+
+/// The occlusion is made of an image whose pass calls the hook as well. A color that depends on the occlusion leaves that image alone;
+/// holes that depend on it are a circle.
+#[test]
+fn the_hook_may_color_by_the_occlusion() {
+    let mut session = session(under(lid("OPAQUE", 1.0)));
+    session.set("AMBIENT_OCCLUSION=true");
+    let before = session.render();
+    let include = "#include \"user/params.glsl\"\n";
+    let text =
+        session.tree.edited(USER, include, &format!("{include}#include \"lighting/shadows/ambient_occlusion.glsl\"\n"));
+    let color = "    s.base_color *= screen_visibility(1.0 / gl_FragCoord.w);\n";
+    let text = text.replace(SURFACE_HOOK, &format!("{SURFACE_HOOK}\n{color}"));
+    ready(&session.save(USER, &text));
+    assert_differ(&before, &session.render(), "dirt in the corners");
+    let holes = text.replace("s.base_color *= screen", "s.coverage *= screen");
+    let told = lines(failed(&session.save(USER, &holes))).join("\n");
+    assert!(told.contains("geometry -> occlusion -> occlusion_raw -> geometry"), "{told}");
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
-use crate::interface::SET_PASS;
+use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::{PassFormat, PassNote, Target};
 use crate::shader::annotation::texture::TextureNote;
@@ -53,6 +53,19 @@ pub fn inputs_of<'s, 't: 's>(
         all.extend(inputs(note, stage, names)?);
     }
     Ok(all)
+}
+
+/// Leaves out the images that no output of a pass depends on. A pass that draws the model calls the author's hooks, but may use a part of
+/// what they change: a shadow map takes the holes alone. So an image that only a color comes from is no input of the shadow map.
+/// Otherwise no hook could read the occlusion, which is made of the model's distance.
+pub fn without_dead(mut inputs: Inputs, note: &PassNote, stage: &PassStage<'_>) -> Inputs {
+    let is_dead = |binding: u32, input: &Input| {
+        matches!(input, Input::Image(_)) && binding < VERTEX_BINDINGS && !(stage.live)().contains(&binding)
+    };
+    if note.draws_model() && !note.is_built_in() {
+        inputs.retain(|binding, input| !is_dead(*binding, input));
+    }
+    inputs
 }
 
 /// The inputs of a stage.

@@ -184,6 +184,8 @@ pub struct PassStage<'a> {
     pub reflection: &'a Reflection,
     /// Its source text.
     pub texts: Texts<'a>,
+    /// Returns the bindings of `interface::SET_PASS` that its outputs depend on.
+    pub live: Box<dyn Fn() -> &'a BTreeSet<u32> + 'a>,
 }
 
 impl Graph {
@@ -249,7 +251,8 @@ impl Graph {
             }
             errors.extend(roles::wrong_outputs(note, stage));
             let front_stages = front.stages().filter(|_| !is_compute).map(|path| &stages[path]);
-            match inputs::inputs_of(note, front_stages.chain([stage]), &names) {
+            let inputs = inputs::inputs_of(note, front_stages.chain([stage]), &names);
+            match inputs.map(|inputs| inputs::without_dead(inputs, note, stage)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
                     note: note.clone(),

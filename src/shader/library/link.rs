@@ -101,7 +101,8 @@ impl Library {
         modes.zip(watched).for_each(|(mode, components)| mode.components = components);
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
-            (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
+            let live = Box::new(|| stage.live_pass_bindings());
+            (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts, live })
         });
         let declared: BTreeMap<String, PassStage<'_>> = declared.collect();
         let graph = Graph::new(&annotations, &declared, snapshot)?;
@@ -167,9 +168,9 @@ impl Library {
 }
 
 /// The stages among `compiled`, each with what it is run for. A stage of several passes appears once for each role.
-fn runs<'a>(
+fn runs<'a, 'b: 'a>(
     graph: &Graph,
-    declared: &'a BTreeMap<String, PassStage<'a>>,
+    declared: &'a BTreeMap<String, PassStage<'b>>,
     compiled: &BTreeMap<&TreePath, &Stage>,
 ) -> Vec<Run<'a>> {
     let of_passes = graph.passes.iter().flat_map(|pass| pass.stages().map(|path| (path.to_owned(), pass.role())));

@@ -1,9 +1,10 @@
 //! One stage of a library: how it is built, and what is remembered about it between updates.
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
+use crate::interface::SET_PASS;
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::Diagnostic;
@@ -12,7 +13,8 @@ use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::hooks::Hooks;
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::{behavior_hash, specialize};
+use crate::shader::spirv::uses::used_bindings;
+use crate::shader::spirv::{behavior_hash, optimize, specialize};
 
 /// A compiled stage.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ pub struct Stage {
     pub dependencies: BTreeSet<TreePath>,
     /// The specialized modules that were asked for, the newest first.
     specialized: Mutex<Vec<Specialized>>,
+    /// See [`Stage::live_pass_bindings`].
+    live: OnceLock<BTreeSet<u32>>,
 }
 
 /// A stage's module with values for its constants.
@@ -82,6 +86,12 @@ impl Stage {
         words.unwrap_or_else(|| specialize(&self.spirv, constants))
     }
 
+    /// The bindings of `interface::SET_PASS` that the outputs of the stage depend on, whatever its constants are. Computed once, since it
+    /// takes the optimizer.
+    pub fn live_pass_bindings(&self) -> &BTreeSet<u32> {
+        self.live.get_or_init(|| used_bindings(&optimize(self.spirv.clone()), SET_PASS))
+    }
+
     fn specialized(&self) -> MutexGuard<'_, Vec<Specialized>> {
         self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -97,7 +107,16 @@ impl Stage {
         let (reflection, hooks) = (Reflection::of(&spirv), Hooks::of(&spirv));
         let kind = StageKind::of(path).ok_or_else(Vec::new)?;
         let (path, dependencies) = (path.clone(), dependencies.clone());
-        Ok(Self { path, kind, spirv, reflection, hooks, dependencies, specialized: Mutex::default() })
+        Ok(Self {
+            path,
+            kind,
+            spirv,
+            reflection,
+            hooks,
+            dependencies,
+            specialized: Mutex::default(),
+            live: OnceLock::new(),
+        })
     }
 
     /// The stage's source text, for messages.
@@ -281,6 +300,7 @@ pub(super) fn build(
                 hooks,
                 dependencies,
                 specialized: Mutex::default(),
+                live: OnceLock::new(),
             });
             Ok(Built { stage, hash, warnings, files })
         }
