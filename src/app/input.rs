@@ -46,6 +46,8 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             false
         }
         WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
+            // A double click is two presses with nothing in between.
+            screen.mouse.last_press = screen.mouse.last_press.filter(|_| event.state != ElementState::Pressed);
             on_keyboard(viewer, screen, event, *is_synthetic, taken)
         }
         WindowEvent::Focused(false) => {

@@ -291,6 +291,18 @@ impl ApplicationHandler<Message> for App {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
+        let Some(event) = open.screen.wait(event) else { return open.window.request_redraw() };
+        let is_frame = event == WindowEvent::RedrawRequested;
+        self.handle(event_loop, event);
+        while is_frame && let Some(event) = self.open.as_mut().and_then(|open| open.screen.next_waiting()) {
+            self.handle(event_loop, event);
+        }
+    }
+}
+
+impl App {
+    fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
         let response = open.screen.on_window_event(&open.window, &event);
         // egui requests a repaint in response to every redraw, so the window would never be idle.
         if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {

@@ -18,6 +18,7 @@ mod texture;
 mod thumbnail;
 mod timing;
 mod ui;
+mod waiting;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -75,6 +76,7 @@ pub(super) struct Screen {
     surface: Arc<Surface>,
     egui: egui::Context,
     input: egui_winit::State,
+    waiting: waiting::Waiting,
     /// Textures of egui to upload, and those to free because no later frame uses them.
     textures: egui::TexturesDelta,
     /// Whether the swapchain no longer fits the window.
@@ -163,6 +165,7 @@ impl Screen {
             surface,
             egui,
             input,
+            waiting: waiting::Waiting::default(),
             textures: egui::TexturesDelta::default(),
             stale: true,
             first: true,

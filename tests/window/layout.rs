@@ -96,6 +96,35 @@ fn the_palette_reaches_modes_switches_and_commands() {
     viewer.quit();
 }
 
+/// A program that does not run gets all keys at once when it goes on.
+#[test]
+fn keys_of_one_frame_act_in_their_order() {
+    let mut viewer = open(None);
+    let picture = viewer.screenshot();
+    viewer.running.signal("STOP");
+    viewer.key("n");
+    choose(&viewer, "no such entry");
+    ["ctrl+p", "ctrl+p", "Escape", "F12"].iter().for_each(|key| viewer.key(key));
+    viewer.running.signal("CONT");
+    viewer.running.event("screenshot");
+    viewer.until("shading normals, which no key behind theirs left", |shot| *shot != picture);
+    let normals = viewer.screenshot();
+    viewer.running.signal("STOP");
+    choose(&viewer, "roughness");
+    ["n", "n", "n"].iter().for_each(|key| viewer.key(key));
+    choose(&viewer, "final");
+    viewer.key("n");
+    viewer.running.signal("CONT");
+    viewer.until("shading normals, by a letter behind the palette", |shot| *shot == normals);
+    viewer.running.signal("STOP");
+    viewer.key("n");
+    choose(&viewer, "exposure -2");
+    ["u", "u", "ctrl+z"].iter().for_each(|key| viewer.key(key));
+    viewer.running.signal("CONT");
+    viewer.until("the picture, undone", |shot| *shot == picture);
+    viewer.quit();
+}
+
 #[test]
 fn the_palette_sets_numbers() {
     let mut viewer = open(None);

@@ -38,3 +38,22 @@ fn a_click_selects_and_keys_hide_and_show_again() {
     assert!(viewer.running.event("selected")["instance"].is_null());
     viewer.quit();
 }
+
+#[test]
+fn two_clicks_around_a_key_are_no_double_click() {
+    let mut viewer = Viewer::open(Tree::new(), &["shader-ball"]);
+    viewer.running.event("ready");
+    viewer.key("h");
+    viewer.until("the whole window", |shot| shot.dimensions() == (640, 480));
+    let first = viewer.screenshot();
+    // All of them come at once.
+    viewer.running.signal("STOP");
+    viewer.click((320, 240));
+    viewer.key("Escape");
+    viewer.click((320, 240));
+    viewer.running.signal("CONT");
+    let instances = [(); 3].map(|()| viewer.running.event("selected")["instance"].clone());
+    assert!(instances[0].is_u64() && instances[1].is_null() && instances[2] == instances[0], "{instances:?}");
+    assert!(viewer.screenshot() == first, "the camera moved");
+    viewer.quit();
+}

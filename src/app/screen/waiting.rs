@@ -1,0 +1,49 @@
+//! Keys that wait for a frame. egui takes all keys of a frame at once. A key behind one that moves the keyboard's focus (a click,
+//! Enter, Escape, Tab, the key of the palette) would still go where the focus was before: to a palette that is closed by now, say.
+
+use std::collections::VecDeque;
+
+use egui::{Event, Key};
+use winit::event::WindowEvent;
+
+use super::Screen;
+
+/// Events that came while egui had yet to move the focus, in their order.
+pub(super) type Waiting = VecDeque<WindowEvent>;
+
+impl Screen {
+    /// Keeps a key for after the next frame if egui has yet to take one that moves the focus, and what the mouse does behind such a
+    /// key. Returns an event that need not wait.
+    pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {
+        let waits = match event {
+            WindowEvent::KeyboardInput { .. } | WindowEvent::Ime(_) | WindowEvent::ModifiersChanged(_) => {
+                !self.waiting.is_empty() || self.moves_focus()
+            }
+            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } | WindowEvent::CursorMoved { .. } => {
+                !self.waiting.is_empty()
+            }
+            _ => false,
+        };
+        if !waits {
+            return Some(event);
+        }
+        self.waiting.push_back(event);
+        None
+    }
+
+    /// The next event that need wait no longer.
+    pub(in crate::app) fn next_waiting(&mut self) -> Option<WindowEvent> {
+        if self.moves_focus() { None } else { self.waiting.pop_front() }
+    }
+
+    /// Whether the events that egui takes with the next frame move the focus of the keyboard.
+    fn moves_focus(&self) -> bool {
+        let moves = |event: &Event| match event {
+            Event::PointerButton { pressed, .. } => *pressed,
+            Event::Key { key: Key::Enter | Key::Escape | Key::Tab, pressed, .. } => *pressed,
+            Event::Key { key: Key::P, pressed, modifiers, .. } => *pressed && modifiers.command,
+            _ => false,
+        };
+        self.input.egui_input().events.iter().any(moves)
+    }
+}
