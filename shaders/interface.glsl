@@ -90,7 +90,6 @@ const uint FEATURE_RECT_LIGHTS = 0x10000u;
 const uint FEATURE_TEXTURE_COORDINATES = 0x20000u;
 const uint FEATURE_UV1 = 0x40000u;
 const uint FEATURE_VERTEX_COLOR = 0x80000u;
-const uint FEATURE_SUN = 0x100000u;
 const uint ATTRIBUTE_NORMAL = 1u;
 const uint ATTRIBUTE_TANGENT = 2u;
 const uint ATTRIBUTE_UV0 = 4u;
@@ -150,6 +149,8 @@ layout(constant_id = 3) const uint TONEMAP = 0u; // tone map, one of TONEMAP_* i
 layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values, one of ENCODE_*
 layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few; 0: see frame.light_count
 layout(constant_id = 6) const uint MAPS_VALUES = 0u; // not 0: the display maps values by range, channels or colormap
+layout(constant_id = 7) const uint SUN_COUNT = 0u; // suns of the environment, which its irradiance and specular levels leave out
+layout(constant_id = 8) const uint SAMPLES = 0u; // samples of a pixel; for the pass with to=resolve
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 clip_from_world;              // World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
@@ -175,7 +176,6 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec2 environment_rotation;         // Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
     float environment_intensity;       // Factor from the values of the environment's images to cd/m^2.
     float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
-    uint sun_count;                    // Number of suns of the environment, which its irradiance and specular levels leave out. They follow the lights in BINDING_LIGHTS, as directional lights.
     float sun_variance[MAX_SUNS];      // Variance of each sun's directions along one axis, radians squared.
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
@@ -211,7 +211,7 @@ struct Light {
 };
 
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then frame.sun_count suns
+    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then SUN_COUNT suns
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {

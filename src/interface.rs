@@ -265,8 +265,14 @@ pub const SPEC_LIGHT_COUNT: u32 = 5;
 /// Up to this many lights, a pipeline is specialized for their number, so that the loop over them is unrolled.
 pub const UNROLLED_LIGHTS: usize = 4;
 
+/// `constant_id` of the number of suns of the environment, up to [`MAX_SUNS`].
+pub const SPEC_SUN_COUNT: u32 = 7;
+
 /// `constant_id` of whether the display maps values by range, channels or colormap; for the tone mapping pass.
 pub const SPEC_MAPS_VALUES: u32 = 6;
+
+/// `constant_id` of the samples of a pixel; for the pass that makes one color from them.
+pub const SPEC_SAMPLES: u32 = 8;
 
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.
 pub const SPECIALIZATION: &[Specialization] = &[
@@ -285,4 +291,10 @@ pub const SPECIALIZATION: &[Specialization] = &[
         name: "MAPS_VALUES",
         doc: "not 0: the display maps values by range, channels or colormap",
     },
+    Specialization {
+        id: SPEC_SUN_COUNT,
+        name: "SUN_COUNT",
+        doc: "suns of the environment, which its irradiance and specular levels leave out",
+    },
+    Specialization { id: SPEC_SAMPLES, name: "SAMPLES", doc: "samples of a pixel; for the pass with to=resolve" },
 ];

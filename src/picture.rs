@@ -162,6 +162,11 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other(format!("more than {MAX_LINKS} symbolic links lead to each other")))
 }
 
+/// Whether a file of this name holds linear light, which no tone map has changed.
+pub fn holds_light(path: &Path) -> bool {
+    matches!(format_of(path), Ok(ImageFormat::OpenExr))
+}
+
 fn format_of(path: &Path) -> Result<ImageFormat, String> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match ending.as_str() {

@@ -72,7 +72,7 @@ impl Session {
     /// The pipelines that the settings need from `shaders`.
     pub fn pipelines(&self, shaders: &ShaderSet, target: TargetFormat) -> PipelineRequest {
         let request = PipelineRequest::new(&self.settings, shaders, self.scene().as_ref(), target);
-        request.for_suns(self.revisions.needs_suns(&self.settings))
+        request.for_suns(self.revisions.suns_of(&self.settings))
     }
 
     /// The picture that the settings describe; `None` without shaders.

@@ -281,3 +281,40 @@ fn the_truth_views_mark_surfaces_that_no_material_has() {
         }
     }
 }
+
+/// A shining ball before a dark wall: at their border a plain mean of the samples displays as white, however little of the pixel the
+/// ball covers. Files of linear light have the plain mean.
+#[test]
+fn samples_of_bright_light_do_not_outshine_their_pixel() {
+    let shining = |light: f64| {
+        let mut black = material(0.0, 0.0, 1.0);
+        black["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
+        black["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": light } });
+        black
+    };
+    let (bright, dark) = (20.0, 0.05);
+    let mut ball = glb::sphere(32, 64);
+    ball.positions.iter_mut().flatten().for_each(|x| *x *= 0.4);
+    let wall = glb::Mesh {
+        positions: glb::quad(2.0).positions.iter().map(|p| [p[0], p[1], -1.0]).collect(),
+        ..glb::quad(1.0)
+    };
+    let bytes = glb::scene(&[(ball, shining(bright)), (wall, shining(dark))]);
+    let chosen = ["lights.ambient_strength=0", "view.msaa=4"];
+    let settings = settings(&[&FLAT[..], &HEAD_ON, &chosen].concat());
+    let mut headless = renderer(load(&bytes), settings, SIZE);
+    let capture = render(&mut headless, "final");
+    headless.set_linear(true);
+    let linear = render(&mut headless, "final");
+    // Quarters of a pixel that the ball covers.
+    let quarters = |value: f32| 4.0 * (f64::from(value) - dark) / (bright - dark);
+    let mut shown = [Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+    for (raw, display) in linear.raw.iter().zip(capture.rgba8.chunks_exact(4)) {
+        let covered = quarters(raw[1]);
+        assert!((covered - covered.round()).abs() < 0.02, "{raw:?} is no mean of four samples");
+        shown[covered.round() as usize].push(f64::from(display[1]));
+    }
+    let mean = shown.map(|values| values.iter().sum::<f64>() / values.len() as f64);
+    assert!(mean.windows(2).all(|pair| pair[1] > pair[0] + 4.0), "each quarter is brighter: {mean:?}");
+    assert!(mean[1] < 0.85 * mean[4], "a quarter of a pixel is not white: {mean:?}");
+}

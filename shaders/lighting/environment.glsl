@@ -24,7 +24,7 @@ vec3 prefiltered_at(vec2 p, Tile tile) {
 vec3 sun_radiance(vec3 r, float roughness) {
     vec3 d = normalize(r);
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < sun_count(); ++i) {
+    [[unroll]] for (uint i = 0u; i < SUN_COUNT; ++i) {
         Light sun = sun_at(i);
         vec3 chord = sun.position_ws.xyz - d;
         sum += sun.intensity * lobe_weight_of_light(0.25 * dot(chord, chord), lobe_alpha(roughness), frame.sun_variance[i]);
@@ -59,7 +59,7 @@ float missing_suns(float roughness) { return min(specular_level(roughness), 1.0)
 // The same with the suns, as lobes for v = n.
 vec3 prefiltered_radiance(vec3 r, float roughness) {
     vec3 radiance = prefiltered_without_suns(r, roughness);
-    if ((FEATURES & FEATURE_SUN) != 0u) radiance += missing_suns(roughness) * sun_radiance(r, roughness);
+    if (SUN_COUNT != 0u) radiance += missing_suns(roughness) * sun_radiance(r, roughness);
     return radiance;
 }
 

@@ -33,11 +33,7 @@ vec3 environment_radiance(vec3 direction, float lod) {
 // Without an environment, the ambient light of the settings arrives from everywhere.
 const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
 
-// The suns of the map, which irradiance and prefiltered levels leave out where FEATURE_SUN is set (ibl/small_lights/list.glsl). With a
-// limit that the compiler can see, loops over them need no budget of rounds.
-uint sun_count() { return min(frame.sun_count, uint(MAX_SUNS)); }
-
-// Sun i as a directional light. Its intensity includes that of the environment.
+// Sun i of the map, one of the SUN_COUNT that irradiance and prefiltered levels leave out (ibl/small_lights/list.glsl), as a directional light. Its intensity includes that of the environment.
 Light sun_at(uint i) { return lights[frame.light_count + i]; }
 
 // E / pi of all but the suns.
@@ -50,11 +46,9 @@ vec3 irradiance_over_pi_without_suns(vec3 n) {
 // E / pi: the radiance that a white Lambertian surface with the normal n reflects. n: unit if the map has suns.
 vec3 irradiance_over_pi(vec3 n) {
     vec3 radiance = irradiance_over_pi_without_suns(n);
-    if ((FEATURES & FEATURE_SUN) != 0u) {
-        for (uint i = 0u; i < sun_count(); ++i) {
-            Light sun = sun_at(i);
-            radiance += sun.intensity * (max(dot(n, sun.position_ws.xyz), 0.0) / PI);
-        }
+    [[unroll]] for (uint i = 0u; i < SUN_COUNT; ++i) {
+        Light sun = sun_at(i);
+        radiance += sun.intensity * (max(dot(n, sun.position_ws.xyz), 0.0) / PI);
     }
     return radiance;
 }

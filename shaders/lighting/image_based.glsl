@@ -53,7 +53,7 @@ vec3 specular_sky(Surface s, vec3 v) {
 // The same with the suns, whose lobes are those of v = n. Lighting adds them by add_suns instead.
 vec3 specular_radiance(Surface s, vec3 v) {
     vec3 radiance = specular_sky(s, v);
-    if ((FEATURES & FEATURE_SUN) == 0u) return radiance;
+    if (SUN_COUNT == 0u) return radiance;
     return radiance + missing_suns(s.roughness) * sun_radiance(lobe_direction(s.n, v, s.roughness), s.roughness);
 }
 
@@ -102,7 +102,7 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi_without_suns(-s.n);
     }
-    if ((FEATURES & FEATURE_SUN) != 0u) add_suns(light, s, v, open);
+    if (SUN_COUNT != 0u) add_suns(light, s, v, open);
     return light;
 }
 

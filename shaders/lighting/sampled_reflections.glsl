@@ -51,7 +51,7 @@ float level_offset(float width) {
 // them; lighting/sun.glsl adds them.
 vec3 mean_radiance_around(vec3 l, float pdf, float offset) {
     float alpha = FILTER_WIDTH * inversesqrt(4.0 * PI * float(REFLECTION_SAMPLES) * pdf);
-    float finest = (FEATURES & FEATURE_SUN) != 0u && frame.sun_count > 0u ? 1.0 : 0.0;
+    float finest = SUN_COUNT != 0u ? 1.0 : 0.0;
     float level = clamp(specular_level(sqrt(alpha)) + offset, finest, float(SPECULAR_LEVELS));
     return prefiltered_sky(map_from_world(l), level);
 }

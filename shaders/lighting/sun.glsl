@@ -60,15 +60,9 @@ Lobes light_of_sun(uint i, Surface s, vec3 v, Occlusion open) {
     return light;
 }
 
-// Adds the light of all suns. The sum of the lobes (Lobes::all) stays. The loop tests at its end: a software device runs the body of a
-// loop that tests at its start once more than it has to, with the result masked. Without suns, the first round counts 0.
+// Adds the light of all suns. The sum of the lobes (Lobes::all) stays.
 void add_suns(inout Lobes to, Surface s, vec3 v, Occlusion open) {
-    uint i = 0u;
-    do {
-        Lobes light = light_of_sun(i, s, v, open);
-        if (i < sun_count()) add(to, light, vec3(1.0));
-        ++i;
-    } while (i < sun_count());
+    [[unroll]] for (uint i = 0u; i < SUN_COUNT; ++i) add(to, light_of_sun(i, s, v, open), vec3(1.0));
 }
 
 #endif

@@ -197,7 +197,7 @@ impl Viewer {
             settings: session.settings.clone(),
             scene: None,
             target: target(gpu, &session.settings),
-            suns: session.revisions.needs_suns(&session.settings),
+            suns: session.revisions.suns_of(&session.settings),
         };
         let source = options.source;
         let recorder = options.recorder;

@@ -26,6 +26,8 @@ pub struct Stills {
     clock: Clock,
     /// Frames that are drawn for each picture, for passes that go on from frame to frame.
     count: u32,
+    /// Whether pictures are for files of linear light, whose pixels are plain means of the samples.
+    is_linear: bool,
 }
 
 /// A version of the shaders, for a picture of it.
@@ -45,12 +47,17 @@ impl Stills {
     pub fn new(gpu: &Arc<Gpu>, session: Session, resources: Resources, clock: Clock) -> Result<Self, GpuError> {
         let view = View::new(gpu, resources.layouts(), 1)?;
         let frames = Frames::new(gpu, 1)?;
-        Ok(Self { gpu: gpu.clone(), session, resources, frames, view, output: None, clock, count: 1 })
+        Ok(Self { gpu: gpu.clone(), session, resources, frames, view, output: None, clock, count: 1, is_linear: false })
     }
 
     /// Sets the number of frames that each picture takes.
     pub fn set_count(&mut self, count: u32) {
         self.count = count.max(1);
+    }
+
+    /// Sets whether pictures are for files of linear light (EXR).
+    pub fn set_linear(&mut self, is_linear: bool) {
+        self.is_linear = is_linear;
     }
 
     /// The value of a pixel in each of `modes`, with one sample per pixel. `size` is that of the picture.
@@ -159,7 +166,8 @@ impl Stills {
 
     /// Full floats, so that what is read back is what the shaders wrote.
     fn target(&self) -> Result<TargetFormat, HeadlessError> {
-        View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
+        let format = View::target_format(&self.gpu, self.session.settings.view.msaa, true);
+        format.map(|format| TargetFormat { weighs: !self.is_linear, ..format }).map_err(HeadlessError::Settings)
     }
 
     fn bind(&mut self, size: (u32, u32)) -> Result<BoundFrame, HeadlessError> {

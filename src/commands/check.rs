@@ -127,9 +127,10 @@ fn build_choices(
             );
         }
     };
-    // With a light count from the frame's uniforms. All other requests have a fixed number of lights.
+    // With a light count from the frame's uniforms, and a sun. All other requests have a fixed number of lights.
+    let target = TargetFormat::half(4);
     let every_material =
-        PipelineRequest { materials: all_materials, target: TargetFormat::half(4), light_count: 0, ..plain.clone() };
+        PipelineRequest { materials: all_materials, target, light_count: 0, sun_count: 1, ..plain.clone() };
     build(&every_material, &args.common.source()?.name(), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         let of_mode = request(&Settings { mode: mode.slug.clone(), ..settings.clone() });

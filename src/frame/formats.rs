@@ -10,17 +10,19 @@ pub struct TargetFormat {
     pub color: vk::Format,
     /// Samples per pixel.
     pub samples: u32,
+    /// Whether the samples of a pixel are weighed for the display (resolve.frag). Linear light for a file has their plain mean.
+    pub weighs: bool,
 }
 
 impl TargetFormat {
     /// Half floats: precise enough for a picture, at half the bandwidth.
     pub fn half(samples: u32) -> Self {
-        Self { color: vk::Format::R16G16B16A16_SFLOAT, samples }
+        Self { color: vk::Format::R16G16B16A16_SFLOAT, samples, weighs: true }
     }
 
     /// Full floats, so that readback returns exactly what the shader wrote.
     pub fn full(samples: u32) -> Self {
-        Self { color: vk::Format::R32G32B32A32_SFLOAT, samples }
+        Self { color: vk::Format::R32G32B32A32_SFLOAT, samples, weighs: true }
     }
 
     /// Whether the target holds half floats, in which values beyond 65504 overflow.

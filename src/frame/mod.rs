@@ -110,15 +110,17 @@ pub struct Revisions {
     pub environment: u64,
     /// Changes of the measured BRDF.
     pub measured: u64,
-    /// Whether the environment that was baked last has suns. Until a map is baked it counts as one without, so that pictures without
-    /// suns have no code for them; `Resources` binds no picture without that code to an environment with suns.
-    pub suns: bool,
+    /// Suns of the environment that was baked last. Until a map is baked it counts as one without, so that pictures without suns have
+    /// no code for them; `Resources` binds no picture to an environment with more suns.
+    pub suns: u32,
 }
 
 impl Revisions {
-    /// Whether pictures of these settings need the code that adds suns.
-    pub(crate) fn needs_suns(self, settings: &Settings) -> bool {
-        self.suns || has_exact_sun(&settings.environment.name)
+    /// The suns of the environment that lights a picture of these settings, as far as is known. While the map of the settings is
+    /// baked, that is the one before it.
+    pub(crate) fn suns_of(self, settings: &Settings) -> u32 {
+        let environment = &settings.environment;
+        if environment.is_lit() { self.suns.max(has_exact_sun(&environment.name).into()) } else { 0 }
     }
 }
 
@@ -179,7 +181,7 @@ impl FrameState {
 
     fn with_pipelines(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
         let FrameInputs { settings, shaders, scene, revisions, clock, size, target } = *inputs;
-        let pipelines = pipelines.for_suns(revisions.needs_suns(settings));
+        let pipelines = pipelines.for_suns(revisions.suns_of(settings));
         let size = (size.0.max(1), size.1.max(1));
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());
@@ -323,10 +325,11 @@ impl FrameState {
         suns.iter().take(MAX_SUNS).map(move |sun| sun.light(self.constants.environment_rotation, factor))
     }
 
-    /// The content of the block of lights: those of the frame, then the suns of the environment. `environment`: the scale of its
-    /// images, and its suns.
+    /// The content of the block of lights: those of the frame, then as many suns as the pipelines add. Those that the environment does
+    /// not have are dark. `environment`: the scale of its images, and its suns.
     pub(crate) fn lights_and_suns(&self, environment: (f32, &[Sun])) -> Vec<Light> {
-        self.lights.iter().copied().chain(self.suns(environment)).collect()
+        let suns = self.suns(environment).chain(std::iter::repeat(Light::default()));
+        self.lights.iter().copied().chain(suns.take(self.pipelines.sun_count as usize)).collect()
     }
 
     /// The frame constants for a picture at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
@@ -336,7 +339,6 @@ impl FrameState {
         let mut frame = Frame {
             clip_from_world_before: before.to_cols_array_2d(),
             environment_intensity: self.constants.environment_intensity / scale,
-            sun_count: suns.len().min(MAX_SUNS) as u32,
             sample_index,
             viewport_origin_px: [rect.x as f32, rect.y as f32],
             ..self.constants

@@ -11,7 +11,7 @@ use super::formats::{MEAN_FORMAT, TargetFormat};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Specialization, vk};
 use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
-use crate::scene::{light_count, separates_suns};
+use crate::scene::light_count;
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, Part};
@@ -51,12 +51,14 @@ pub struct PipelineRequest {
     pub target: TargetFormat,
     /// Kinds of material in the scene.
     pub materials: BTreeSet<MaterialVariant>,
-    /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_SUN`, `FEATURE_RECT_LIGHTS`.
+    /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
     /// Features that the author's `user_surface` gives to all lit materials.
     pub hook_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
+    /// Number of suns of the environment that lighting adds: see [`Self::for_suns`].
+    pub sun_count: u32,
     /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
     /// Path of the fragment stage that computes the mode.
@@ -93,6 +95,8 @@ struct Selection<'a> {
     /// Whether transmissive surfaces look up the final picture in this mode.
     through: bool,
     accumulates: bool,
+    /// Whether the samples of a pixel are weighed by their brightness.
+    weighs_samples: bool,
 }
 
 impl Selection<'_> {
@@ -102,6 +106,7 @@ impl Selection<'_> {
         let wanted = |name: &str| graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
         match pass.part {
             Part::Tonemap => true,
+            Part::Resolve => draws_model && self.weighs_samples,
             Part::Mean => self.accumulates,
             Part::Model if pass.note.background => {
                 let is_on = is_switched_on(pass, self.shaders, self.constants) && pass.is_wanted(&self.settings.passes);
@@ -143,6 +148,7 @@ impl PipelineRequest {
             shows_environment: settings.environment.is_shown(&settings.view),
             through: mode.is_some_and(|m| m.through),
             accumulates: mode.is_some_and(|m| m.accumulate),
+            weighs_samples: target.samples > 1 && target.weighs && mode.is_some_and(|m| m.tonemap && !m.accumulate),
         };
         let active = |draws_model: bool| {
             let is_base = |pass: &GraphPass| selection.is_base(pass, draws_model);
@@ -168,6 +174,7 @@ impl PipelineRequest {
             shared_features: shared_features(settings),
             hook_features: shaders.hook_features(),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
+            sun_count: 0,
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
             moves_vertices: hooks::moves_vertices(shaders, &stage),
@@ -182,13 +189,10 @@ impl PipelineRequest {
         }
     }
 
-    /// The same without the code for suns, unless the environment has some.
+    /// The same for an environment that has this many suns.
     #[must_use]
-    pub fn for_suns(mut self, has_suns: bool) -> Self {
-        if !has_suns {
-            self.shared_features &= !interface::FEATURE_SUN;
-        }
-        self
+    pub fn for_suns(self, sun_count: u32) -> Self {
+        Self { sun_count, ..self }
     }
 
     /// The mode that the model is drawn in.
@@ -277,9 +281,6 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
     let mut features = 0;
     if settings.environment.is_lit() {
         features |= interface::FEATURE_ENVIRONMENT;
-    }
-    if separates_suns(&settings.environment) {
-        features |= interface::FEATURE_SUN;
     }
     if settings.lights.rect.enabled && settings.lights.source != LightSource::None {
         features |= interface::FEATURE_RECT_LIGHTS;

@@ -45,6 +45,7 @@ pub struct Headless {
     size: (u32, u32),
     clock: Clock,
     sequence: Sequence,
+    is_linear: bool,
     upload_ms: f64,
 }
 
@@ -153,6 +154,7 @@ impl Headless {
             size,
             clock: Clock::default(),
             sequence: Sequence::default(),
+            is_linear: false,
             upload_ms: 0.0,
         };
         this.target()?;
@@ -243,6 +245,11 @@ impl Headless {
         Ok(())
     }
 
+    /// Sets whether pictures are for files of linear light (EXR): their pixels are then plain means of the samples.
+    pub fn set_linear(&mut self, is_linear: bool) {
+        self.is_linear = is_linear;
+    }
+
     /// Sets the times of the frames that [`Headless::render`] draws.
     pub fn set_sequence(&mut self, sequence: Sequence) {
         self.sequence = sequence;
@@ -288,7 +295,8 @@ impl Headless {
     }
 
     fn target(&self) -> Result<TargetFormat, HeadlessError> {
-        View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
+        let format = View::target_format(&self.gpu, self.session.settings.view.msaa, true);
+        format.map(|format| TargetFormat { weighs: !self.is_linear, ..format }).map_err(HeadlessError::Settings)
     }
 
     /// Checks that the shaders and the model know every setting, and that each value fits.
@@ -330,8 +338,8 @@ impl Headless {
             return Err(HeadlessError::Shaders(vec![error]));
         }
         let bound = self.resources.provide(&Arc::new(state));
-        // Only now it is known whether the environment has suns.
-        let suns = self.resources.environment().has_suns();
+        // Only now it is known how many suns the environment has.
+        let suns = self.resources.environment().sun_count();
         if suns == self.session.revisions.suns {
             return bound.map_err(|error| self.explained(error.into()));
         }

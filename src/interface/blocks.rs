@@ -138,8 +138,6 @@ blocks! {
         environment_intensity: float,
         /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
         environment_blur: float,
-        /// Number of suns of the environment, which its irradiance and specular levels leave out. They follow the lights in BINDING_LIGHTS, as directional lights.
-        sun_count: uint,
         /// Variance of each sun's directions along one axis, radians squared.
         sun_variance: [float; MAX_SUNS],
         /// Accumulating modes: frames since the picture changed.

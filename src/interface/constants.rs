@@ -62,8 +62,6 @@ constants! {
     FEATURE_UV1 = 1 << 18;
     /// The mesh has COLOR_0, and the material does not replace it.
     FEATURE_VERTEX_COLOR = 1 << 19;
-    /// The environment may have suns, which light the scene as lamps do. The same for all materials of a frame.
-    FEATURE_SUN = 1 << 20;
 
     /// `Draw::attributes`: the file has normals; else flat ones are generated.
     ATTRIBUTE_NORMAL = 1;

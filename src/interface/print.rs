@@ -74,7 +74,7 @@ fn print_block(out: &mut String, block: &Block) -> std::fmt::Result {
 
 const LIGHTS: &str = "
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then frame.sun_count suns
+    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then SUN_COUNT suns
 };
 ";
 

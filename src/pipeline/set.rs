@@ -404,9 +404,13 @@ fn of_pass(pass: &GraphPass, error: GpuError) -> GpuError {
 
 fn kind_of(input: &Input) -> PassBinding {
     match input {
-        Input::Picture | Input::Behind | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(..) => {
-            PassBinding::Texture
-        }
+        Input::Picture
+        | Input::Samples
+        | Input::Behind
+        | Input::Depth
+        | Input::Image(_)
+        | Input::Before(_)
+        | Input::Texture(..) => PassBinding::Texture,
         Input::Output => PassBinding::Storage,
         Input::Buffer(..) => PassBinding::Buffer,
         Input::Parameters(..) | Input::Pass(..) => PassBinding::Uniform,

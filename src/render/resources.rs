@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
-use crate::interface::FEATURE_SUN;
 use crate::scene::{Measured, MeasuredError, TextureSource};
 
 use super::bound_frame::BoundFrame;
@@ -393,10 +392,9 @@ pub enum ProvideError {
     Stale,
 }
 
-/// Whether the pipelines of `state` add the suns that the images of the environment leave out.
+/// Whether the pipelines of `state` add all suns that the images of the environment leave out.
 fn adds_suns_of(state: &FrameState, environment: &GpuEnvironment) -> bool {
-    let is_lit = state.environment.is_some();
-    !(is_lit && environment.has_suns()) || state.pipelines.shared_features & FEATURE_SUN != 0
+    state.environment.is_none() || state.pipelines.sun_count >= environment.sun_count()
 }
 
 /// Reads a measured BRDF and uploads it. Any thread may call this.

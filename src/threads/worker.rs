@@ -26,8 +26,8 @@ pub(crate) struct Snapshot {
     pub(crate) settings: Settings,
     pub(crate) scene: Option<Scene>,
     pub(crate) target: TargetFormat,
-    /// Whether the environment has suns: see `Revisions::needs_suns`.
-    pub(crate) suns: bool,
+    /// Suns of the environment: see `Revisions::suns_of`.
+    pub(crate) suns: u32,
 }
 
 impl Snapshot {

@@ -140,7 +140,7 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
         float size_m = light.kind == LIGHT_RECT ? length(light.half_x_ws + light.half_y_ws) : shadow_softness * to_light_m;
         float angle = size_m / max(to_light_m, 1e-6);
         // The radius of a disk is twice the root of its variance along one axis.
-        if ((FEATURES & FEATURE_SUN) != 0u && i >= frame.light_count) angle = 2.0 * sqrt(frame.sun_variance[i - frame.light_count]);
+        if (SUN_COUNT != 0u && i >= frame.light_count) angle = 2.0 * sqrt(frame.sun_variance[i - frame.light_count]);
         vec2 slope = depth_slope(view, light_ndc, n, side * dot(n, to_light_ws) > 0.0, tile_size);
         return soft_visibility(view, seen, uv, low, low + tile_size, slope, per_meter / seen.w, angle);
     }

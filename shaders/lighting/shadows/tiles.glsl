@@ -10,8 +10,7 @@ const float SHADOW_MAP_PX = 2048.0;
 
 // Tiles in a row of the shadow map, and rows.
 uint shadow_tiles() {
-    uint lights = LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count;
-    if ((FEATURES & FEATURE_SUN) != 0u) lights += frame.sun_count;
+    uint lights = (LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count) + SUN_COUNT;
     return lights <= 1u ? 1u : lights <= 4u ? 2u : lights <= 9u ? 3u : 4u;
 }
 

@@ -26,7 +26,7 @@ float sun_visibility(uint i, vec3 position_ws, vec3 l, vec2 open) {
 
 // Adds the irradiance by the suns, and what is left of it.
 void add_suns(inout vec3 whole, inout vec3 left, vec3 position_ws, vec2 open) {
-    for (uint i = 0u; i < sun_count(); ++i) {
+    [[unroll]] for (uint i = 0u; i < SUN_COUNT; ++i) {
         Light sun = sun_at(i);
         vec3 l = sun.position_ws.xyz;
         if (l.y <= 0.0) continue;
@@ -48,7 +48,7 @@ vec3 lit_part_of(vec3 position_ws) {
     vec2 open = texture(ground_sky, uv).rg;
     vec3 whole = PI * irradiance_over_pi_without_suns(UP);
     vec3 left = whole * open.r;
-    if ((FEATURES & FEATURE_SUN) != 0u) add_suns(whole, left, position_ws, open);
+    if (SUN_COUNT != 0u) add_suns(whole, left, position_ws, open);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) add_light(whole, left, i, position_ws);
     } else {

@@ -60,7 +60,7 @@ void main() {
         left += seen;
     }
     float sun = 1.0;
-    if ((FEATURES & FEATURE_SUN) != 0u && frame.sun_count > 0u) {
+    if (SUN_COUNT != 0u) {
         vec2 towards = sun_at(0u).position_ws.xz * vec2(1.0, -1.0);
         sun = open_sky(towards / max(length(towards), 1e-3), 16);
     }

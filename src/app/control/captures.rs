@@ -104,6 +104,7 @@ impl Job {
                     stills.settings().mode = mode;
                 }
                 stills.set_count(frames);
+                stills.set_linear(file.as_deref().is_some_and(picture::holds_light));
                 let capture = stills.capture(own.unwrap_or(size))?;
                 let shown = Work { settings: stills.settings().clone(), ..work };
                 let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;

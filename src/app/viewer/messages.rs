@@ -260,7 +260,7 @@ impl Viewer {
                             self.panels.recent.remember(Kind::Environment, Path::new(&key.name));
                         }
                         emit(&self.events, &Event::Bake(&environment.report));
-                        self.session.revisions.suns = environment.has_suns();
+                        self.session.revisions.suns = environment.sun_count();
                         self.resources.set_environment(key, Some(environment));
                     }
                     Err(error) => {

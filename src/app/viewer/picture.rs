@@ -193,7 +193,7 @@ impl Viewer {
     /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
     fn request_missing(&mut self, state: &FrameState) -> bool {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
-        let suns = self.session.revisions.needs_suns(&settings);
+        let suns = self.session.revisions.suns_of(&settings);
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target, suns });
         self.watch_expression();
         let Some(set) = self.resources.pipelines() else { return false };

@@ -377,6 +377,7 @@ fn capture(
 ) -> Result<Capture, Failure> {
     let begin = Instant::now();
     progress.begin("picture", place, &headless.settings_mut().mode);
+    headless.set_linear(picture::holds_light(&args.out));
     let capture = headless.render_with(|step| progress.step(step))?;
     if let Some(paths_per_pixel) = headless.paths_per_pixel()? {
         let ms = begin.elapsed().as_secs_f64() * 1e3;

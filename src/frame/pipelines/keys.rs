@@ -8,7 +8,7 @@ use crate::frame::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES, SPEC_MODE,
-    SPEC_TONEMAP,
+    SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
 };
 use crate::shader::annotation::pass::{MODEL, Target};
 use crate::shader::graph::Part;
@@ -51,6 +51,7 @@ impl PipelineRequest {
             (SPEC_ALPHA_MODE, material.alpha),
             (SPEC_FEATURES, self.features(material) | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),
+            (SPEC_SUN_COUNT, self.sun_count),
         ];
         own.iter().chain(&self.constants).copied().collect()
     }
@@ -134,6 +135,13 @@ impl PipelineRequest {
         })
     }
 
+    /// The pipeline that makes one color from a pixel's samples, if their mean is not a plain one.
+    pub(crate) fn resolve_key(&self) -> Option<PipelineKey> {
+        let pass = self.pass_of(|pass| pass.part == Part::Resolve)?;
+        let specialization = [&[(SPEC_SAMPLES, self.target.samples)], &*self.constants].concat();
+        Some(self.triangle_key(pass, Raster::Solid, self.target.color, specialization))
+    }
+
     /// The pipeline that adds a frame to the mean, in an accumulating mode.
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.part == Part::Mean)?;
@@ -163,8 +171,9 @@ impl PipelineRequest {
 
     /// The specialization of declared passes that cover an image or compute.
     pub(crate) fn pass_constants(&self) -> Specialization {
-        let shared = [(SPEC_FEATURES, self.shared_features), (SPEC_LIGHT_COUNT, self.light_count)];
-        shared.iter().chain(&self.constants).copied().collect()
+        let lights = [(SPEC_LIGHT_COUNT, self.light_count), (SPEC_SUN_COUNT, self.sun_count)];
+        let shared = [(SPEC_FEATURES, self.shared_features)].into_iter().chain(lights);
+        shared.chain(self.constants.iter().copied()).collect()
     }
 
     /// The pipeline with which a pass that is not the model's own draws a material of the model, or [`QUADS`].
@@ -177,12 +186,12 @@ impl PipelineRequest {
         }
     }
 
-    /// The pipelines of the model, of what is drawn with it, and of the mean.
+    /// The pipelines of the model, of what is drawn with it, of the resolve and of the mean.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
         let of = |m: &MaterialVariant| [self.model_key(*m), self.behind_key(*m), self.edges_key(*m)];
         let model = self.materials.iter().flat_map(of).flatten();
         let added = self.added_passes().flat_map(|pass| self.pass_keys(pass));
-        model.chain(added).chain(self.background_keys()).chain(self.average_key())
+        model.chain(added).chain(self.background_keys()).chain(self.resolve_key()).chain(self.average_key())
     }
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Sampler, vk};
-
+use crate::interface::MAX_SUNS;
 use crate::render::compute;
 use crate::scene::Sun;
 
@@ -80,9 +80,9 @@ impl GpuEnvironment {
         Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
     }
 
-    /// Whether its images leave suns out, which lighting must add.
-    pub fn has_suns(&self) -> bool {
-        !self.radiance.suns.is_empty()
+    /// Number of suns that its images leave out, which lighting must add.
+    pub fn sun_count(&self) -> u32 {
+        self.radiance.suns.len().min(MAX_SUNS) as u32
     }
 
     /// The factor from radiance to the values of the images, and the suns that the images leave out.

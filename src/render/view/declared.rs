@@ -226,7 +226,8 @@ impl DeclaredPasses {
                 false => self.images.target(pass.name()).cloned(),
             };
             let Some(target) = target else { continue };
-            let given = Given { picture: Some(&picture), depth: drawn.depth, target: Some(&target), behind: None };
+            let given =
+                Given { picture: Some(&picture), depth: drawn.depth, target: Some(&target), ..Given::default() };
             let reads = Reads { name: pass.name(), inputs: &pass.inputs, given: &given, index: Some(index) };
             let from = self.sources(drawn, pass, index);
             if from.as_ref().is_some_and(|from| self.images.holds(pass.name(), from)) {
@@ -389,7 +390,8 @@ fn uses_buffers(pass: &GraphPass) -> bool {
 
 /// SYNC: makes what passes wrote to buffers visible to the passes that make up the picture, if one of them reads a buffer.
 fn finish_buffers(encoder: &mut Encoder, drawn: &Drawn<'_>) {
-    let makes_picture = |pass: &&Arc<GraphPass>| matches!(pass.part, Part::Model | Part::Mean | Part::Tonemap);
+    let makes_picture =
+        |pass: &&Arc<GraphPass>| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean | Part::Tonemap);
     if drawn.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
         encoder.buffers_done();
     }

@@ -234,7 +234,8 @@ impl View {
         if redrawn {
             self.declared.before_model(encoder, &drawn)?;
         }
-        let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
+        let (samples, behind) = (targets.multisampled.as_ref(), targets.behind.as_ref());
+        let given = Given { picture: Some(&targets.color), samples, behind, ..Given::default() };
         let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.model_keys())?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {

@@ -114,7 +114,10 @@ impl Passes<'_> {
         if let Some(resolved) = resolve_depth {
             encoder.transition(resolved, Use::Undefined, Use::DepthResolve);
         }
-        encoder.begin_rendering(&Attachments { clear, resolve_depth, keeps_depth, ..self.hdr() });
+        let weigh = self.request().resolve_key().and_then(|key| self.pipeline(&key));
+        let hdr = self.hdr();
+        let resolve = hdr.resolve.filter(|_| weigh.is_none());
+        encoder.begin_rendering(&Attachments { clear, resolve, resolve_depth, keeps_depth, ..hdr });
         if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
@@ -128,6 +131,10 @@ impl Passes<'_> {
         self.added(encoder, true);
         self.edges(encoder);
         encoder.end_rendering();
+        if let (Some(pipeline), Some(samples)) = (weigh, &targets.multisampled) {
+            encoder.transition(samples, Use::Color, Use::Sampled);
+            self.weigh(encoder, pipeline);
+        }
         if let Some(depth) = targets.read_depth() {
             let before = if resolve_depth.is_some() { Use::DepthResolve } else { Use::Depth };
             encoder.transition(depth, before, Use::Sampled);
@@ -178,6 +185,17 @@ impl Passes<'_> {
             encoder.set_raster(list, both, front);
             encoder.draw(3);
         }
+    }
+
+    /// Makes one color from the samples of each pixel.
+    fn weigh(&self, encoder: &mut Encoder, pipeline: &Arc<Pipeline>) {
+        encoder.begin_rendering(&Attachments::of(&self.targets.color));
+        if let Some(only) = self.only {
+            encoder.set_scissor(only);
+        }
+        self.sets.bind(encoder, pipeline);
+        encoder.draw(3);
+        encoder.end_rendering();
     }
 
     /// Adds the newest frame to the mean, and leaves the mean in [`Use::Sampled`].

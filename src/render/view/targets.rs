@@ -42,14 +42,14 @@ pub(super) struct Targets {
 impl Targets {
     pub(super) fn new(gpu: &Arc<Gpu>, desc: TargetDesc) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
-        let TargetDesc { size: (width, height), format: TargetFormat { color: format, samples }, .. } = desc;
+        let TargetDesc { size: (width, height), format: TargetFormat { color: format, samples, .. }, .. } = desc;
         let image = |name: &str, desc: ImageDesc| Image::new(gpu, name, desc);
         let drawn = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let multi = |format, usage| ImageDesc { samples, ..ImageDesc::new(width, height, format, usage) };
         let color = image("hdr color", ImageDesc::new(width, height, format, drawn))?;
         let multisampled = match samples {
             1 => None,
-            _ => Some(image("multisampled color", multi(format, Usage::COLOR_ATTACHMENT))?),
+            _ => Some(image("multisampled color", multi(format, Usage::COLOR_ATTACHMENT | Usage::SAMPLED))?),
         };
         let (depth_format, attached) = (vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT);
         let read = attached | Usage::SAMPLED;

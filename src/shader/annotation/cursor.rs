@@ -113,12 +113,15 @@ impl<'a> Cursor<'a> {
     }
 
     /// The value of `key=`, which is one of three names.
-    pub fn one_of<T: Copy>(&mut self, key: &str, all: &[(&str, T); 3]) -> Result<T, Box<Diagnostic>> {
+    pub fn one_of<T: Copy>(&mut self, key: &str, all: &[(&str, T)]) -> Result<T, Box<Diagnostic>> {
         let (bytes, value) = self.value(key)?;
         let found = all.iter().find(|(name, _)| *name == value);
         found.map(|(_, one)| *one).ok_or_else(|| {
-            let [a, b, c] = all.each_ref().map(|(name, _)| format!("{key}={name}"));
-            self.error(bytes, format!("expected {a}, {b} or {c}, found `{value}`"))
+            let names: Vec<String> = all.iter().map(|(name, _)| format!("{key}={name}")).collect();
+            let (last, others) = names
+                .split_last()
+                .map_or((String::new(), String::new()), |(last, others)| (last.clone(), others.join(", ")));
+            self.error(bytes, format!("expected {others} or {last}, found `{value}`"))
         })
     }
 

@@ -132,6 +132,8 @@ pub enum Target {
     Image,
     /// The picture.
     Picture,
+    /// One color from the samples of each pixel.
+    Resolve,
     /// The mean of all frames, in modes that accumulate.
     Mean,
     /// The displayed picture.
@@ -216,7 +218,9 @@ impl PassNote {
     /// Whether it belongs to the picture that Specula itself composes: the model, what may stand in its place, and the steps to
     /// the display.
     pub fn is_built_in(&self) -> bool {
-        matches!(self.to, Target::Mean | Target::Display) || self.instead.is_some() || self.name == MODEL
+        matches!(self.to, Target::Resolve | Target::Mean | Target::Display)
+            || self.instead.is_some()
+            || self.name == MODEL
     }
 
     /// Whether it draws an image of this name.
@@ -300,11 +304,16 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             },
             "doc" => note.doc = cursor.value(key)?.1,
             "to" => {
-                let all = [("picture", Target::Picture), ("mean", Target::Mean), ("display", Target::Display)];
+                let all = [
+                    ("picture", Target::Picture),
+                    ("resolve", Target::Resolve),
+                    ("mean", Target::Mean),
+                    ("display", Target::Display),
+                ];
                 note.to = cursor.one_of(key, &all)?;
             }
             other => {
-                let known = "to=picture|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
+                let known = "to=picture|resolve|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
                              blend, instead=, dispatch=, when=, mips, keep, off or doc=";
                 if other == "camera" {
                     let message = "the camera of a pass is its vertex stage: a .vert file of the same name decides where vertices go";

@@ -115,6 +115,7 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
+        "sampler2DMS" if note.to == Target::Resolve && name == "samples" => Ok(Input::Samples),
         "uniform block" if note.is_built_in() && name != PASS_BLOCK => {
             let message = format!("the uniform block `{name}` has no binding");
             Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
@@ -167,6 +168,7 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
 /// The images that Specula gives to a pass, by name.
 fn given(note: &PassNote) -> &'static [(&'static str, Input)] {
     match note.to {
+        Target::Resolve => &[],
         Target::Mean | Target::Display => &[("picture", Input::Picture)],
         Target::Picture if note.is_drawn_with_model() => &[("behind", Input::Behind)],
         Target::Picture | Target::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],

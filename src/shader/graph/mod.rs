@@ -39,6 +39,8 @@ pub use textures::{Texture, TextureFile, TextureKind};
 pub enum Input {
     /// The picture before this pass.
     Picture,
+    /// The samples of the picture's pixels.
+    Samples,
     /// The opaque surfaces, which transmissive surfaces look up.
     Behind,
     /// Depth of the model: 1 near, 0 at infinity or where there is nothing.
@@ -78,6 +80,8 @@ pub enum Part {
     BeforeModel,
     /// The model and the background.
     Model,
+    /// One color from the samples of each pixel.
+    Resolve,
     /// The mean of all frames.
     Mean,
     /// Between the model and the tone map: the picture is linear light.

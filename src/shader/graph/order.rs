@@ -27,7 +27,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
         return Err(too_early);
     }
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
-    for part in [Part::BeforeModel, Part::Model, Part::Mean, Part::Light, Part::Tonemap, Part::Display] {
+    for part in [Part::BeforeModel, Part::Model, Part::Resolve, Part::Mean, Part::Light, Part::Tonemap, Part::Display] {
         let in_part = |at: &usize| passes[*at].part == part;
         let (makers, others): (Vec<usize>, Vec<usize>) =
             (0..passes.len()).filter(in_part).partition(|at| passes[*at].note.to_picture());
@@ -65,7 +65,7 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
 /// The passes whose images the model or the background reads are drawn before the model, and so are those that they read in turn.
 fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
-    let is_reader = |pass: &&GraphPass| matches!(pass.part, Part::Model | Part::Mean | Part::Tonemap);
+    let is_reader = |pass: &&GraphPass| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean | Part::Tonemap);
     let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
     for reader in readers {
         let is_model = reader.part <= Part::Mean;
@@ -101,7 +101,7 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
 /// unless one of them reads the picture of this frame: then the model reads what they wrote in the frame before.
 fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let is_read = |at: &usize| {
-        let mut readers = passes.iter().filter(|pass| matches!(pass.part, Part::Model | Part::Mean));
+        let mut readers = passes.iter().filter(|pass| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean));
         readers.any(|reader| writes_buffer_of(&passes[*at], reader))
     };
     let writers: Vec<usize> = (0..passes.len()).filter(is_read).collect();

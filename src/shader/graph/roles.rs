@@ -14,6 +14,7 @@ use crate::shader::diagnostic::Diagnostic;
 /// The part of the frame that an annotation itself determines.
 pub(super) fn part(note: &PassNote) -> Part {
     match note.to {
+        Target::Resolve => Part::Resolve,
         Target::Mean => Part::Mean,
         Target::Display => Part::Tonemap,
         Target::Picture if note.is_drawn_with_model() => Part::Model,
@@ -120,9 +121,14 @@ fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str,
             format!("only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}");
         return Some(("to=", message));
     }
-    let is_other_mean = |other: &PassNote| other.to == Target::Mean && other.name < note.name;
-    if note.to == Target::Mean && passes.iter().any(is_other_mean) {
-        return Some(("to=", "there is another pass with to=mean; one pass makes the mean of all frames".into()));
+    for (to, message) in [
+        (Target::Mean, "there is another pass with to=mean; one pass makes the mean of all frames"),
+        (Target::Resolve, "there is another pass with to=resolve; one pass makes a color from a pixel's samples"),
+    ] {
+        let is_other = |other: &PassNote| other.to == to && other.name < note.name;
+        if note.to == to && passes.iter().any(is_other) {
+            return Some(("to=", message.into()));
+        }
     }
     if note.background && !note.to_picture() {
         let message = "the background lies behind the model in the picture: draw=background to=picture";

@@ -111,7 +111,7 @@ impl Viewer {
     fn snapshot(&self) -> Snapshot {
         let settings = self.session.settings.clone();
         let target = target(&self.gpu, &settings);
-        let suns = self.session.revisions.needs_suns(&settings);
+        let suns = self.session.revisions.suns_of(&settings);
         Snapshot { scene: self.session.scene(), settings, target, suns }
     }
 

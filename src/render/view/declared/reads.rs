@@ -21,6 +21,8 @@ pub(super) struct Reads<'a> {
 pub(in crate::render::view) struct Given<'a> {
     /// The picture so far.
     pub(in crate::render::view) picture: Option<&'a Arc<Image>>,
+    /// Its samples, before they are resolved.
+    pub(in crate::render::view) samples: Option<&'a Arc<Image>>,
     /// The opaque surfaces, with mip levels.
     pub(in crate::render::view) behind: Option<&'a Arc<Image>>,
     /// The model's depth.
@@ -44,6 +46,7 @@ impl DeclaredPasses {
         let resource = |binding: u32| {
             Ok(match reads.inputs.get(&binding).ok_or_else(missing)? {
                 Input::Picture => self.sampled(given.picture.unwrap_or(&self.blank)),
+                Input::Samples => PassResource::Texture(given.samples.ok_or_else(missing)?, &self.nearest),
                 Input::Behind => PassResource::Texture(given.behind.unwrap_or(&self.blank), &self.linear),
                 Input::Depth => PassResource::Texture(given.depth.unwrap_or(&self.blank), &self.nearest),
                 Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),

@@ -52,6 +52,7 @@ impl DrawnFrom {
         for (binding, input) in pass.inputs.iter().filter(|(binding, _)| uses.pass_bindings.contains(binding)) {
             match input {
                 Input::Picture
+                | Input::Samples
                 | Input::Behind
                 | Input::Depth
                 | Input::Before(_)
