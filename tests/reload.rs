@@ -287,11 +287,11 @@ fn a_shader_that_contradicts_the_contract_is_refused_with_both_sides_named() {
     );
     let unknown =
         declared("layout(set = SET_MATERIAL, binding = 31) uniform sampler2D wrong;", "texture(wrong, v.xy).rgb");
-    let taken_id = declared("layout(constant_id = 7) const float wrong = 1.0;", "vec3(wrong)");
+    let taken_id = declared("layout(constant_id = 15) const float wrong = 1.0;", "vec3(wrong)");
     for (text, parts) in [
         (wrong_kind, ["samplerCube `wrong`", "Specula says BINDING_NORMAL_TEXTURE is sampler2D"]),
         (unknown, ["set 1, binding 31 is sampler2D `wrong`", "Specula has nothing there"]),
-        (taken_id, ["constant_id 7 is `wrong`", "Specula keeps the ids below 32"]),
+        (taken_id, ["constant_id 15 is `wrong`", "Specula keeps the ids below 32"]),
     ] {
         let reload = session.save(USER, &text);
         let error = &failed(&reload)[0];

@@ -1,12 +1,17 @@
 //! The picture is shown whole or not at all: while anything about it changes, the one before stays.
 
 use glam::Vec3;
+use image::RgbaImage;
 use specula::scene::MeasuredKind;
 
-use super::controls::choose;
+use super::controls::{choose, count};
 use crate::NDF;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
+
+/// Colors of the status bar's dot, as `src/app/widgets/theme.rs` has them.
+const GOOD: [u8; 3] = [112, 201, 130];
+const WARNING: [u8; 3] = [255, 196, 92];
 
 /// The environment's light and the pipelines for it change in one step: each screenshot is one of two pictures.
 #[test]
@@ -119,5 +124,58 @@ fn the_measured_brdf_is_watched_and_a_damaged_one_costs_nothing() {
     assert!(viewer.screenshot() == bright, "a damaged file changed the picture");
     std::fs::write(&path, measured(0.1)).unwrap();
     viewer.until("the first file", |shot| *shot == dark);
+    viewer.quit();
+}
+
+/// The built-in sky has a sun. Its code is compiled when the light with suns is there, and neither a picture without the sun's light
+/// nor one with twice its light is shown.
+#[test]
+fn the_suns_of_an_environment_go_and_come() {
+    let size = ["sphere-grid", "--size", "640x640", "--background", "#1b1d21", "--env"];
+    let mut viewer = Viewer::open(Tree::new(), &[&size[..], &["studio"]].concat());
+    viewer.ready_and_baked();
+    let studio = viewer.screenshot();
+    choose(&viewer, "environment sky");
+    viewer.until("the sky", |shot| *shot != studio);
+    let with = viewer.screenshot();
+    choose(&viewer, "suns of the map turn off");
+    viewer.until("a sun in the prefiltered levels", |shot| *shot != with);
+    let without = viewer.screenshot();
+    let choices = [("suns of the map turn on", &with), ("environment studio", &studio), ("environment sky", &with)];
+    let known = [&studio, &with, &without];
+    for (words, after) in choices {
+        choose(&viewer, words);
+        viewer.until(words, |shot| {
+            assert!(known.contains(&shot), "{words}: a picture that is none of the three");
+            shot == after
+        });
+    }
+    viewer.quit();
+}
+
+/// A slider in the BRDF bakes the light again. Until then the picture has the old light, and the status bar says why.
+#[test]
+fn the_window_says_that_light_is_baked() {
+    let tree = Tree::new();
+    let params = tree.read("user/params.glsl");
+    let gain = "float bloom_strength;";
+    tree.write(
+        "user/params.glsl",
+        &params.replace(gain, &format!("float gain; //@ui \"Gain\" 0..2 = 1.0\n    {gain}")),
+    );
+    let ndf = tree.read(NDF).replace("float a2 = alpha * alpha;", "float a2 = gain * alpha * alpha;");
+    let include = "#include \"brdf/models.glsl\"";
+    tree.write(NDF, &ndf.replace(include, &format!("{include}\n#include \"user/params.glsl\"")));
+    let size = ["sphere-grid", "--size", "1000x480", "--env", "studio"];
+    let mut viewer = Viewer::with_fault(tree, &size, "bake-delay-ms:2000");
+    viewer.ready_and_baked();
+    let first = viewer.screenshot();
+    // The dot of the status bar, at the lower edge of the window.
+    let dot = |screen: &RgbaImage, color: [u8; 3]| count(screen, 0..300, 456..480, color) > 10;
+    viewer.until_screen("a tree that is watched", |screen| dot(screen, GOOD));
+    choose(&viewer, "gain 0.5");
+    viewer.until_screen("light that is baked", |screen| dot(screen, WARNING));
+    viewer.until_screen("the end of the bake", |screen| dot(screen, GOOD));
+    assert!(viewer.screenshot() != first, "the slider changes nothing");
     viewer.quit();
 }

@@ -73,8 +73,8 @@ fn bindings() {
 #[test]
 fn constants() {
     expect(
-        "layout(constant_id = 7) const bool MINE = false;",
-        "m.frag:3:36: error: shader says constant_id 7 is `MINE`, Specula keeps the ids below 32 for itself",
+        "layout(constant_id = 15) const bool MINE = false;",
+        "m.frag:3:37: error: shader says constant_id 15 is `MINE`, Specula keeps the ids below 32 for itself",
     );
     let edited = interface::glsl().replace("const uint ALPHA_MODE = 0u", "const int ALPHA_MODE = 0");
     let found = complaints(&edited, "");
