@@ -10,7 +10,8 @@
 // Reinhard's x / (1 + x), mapped back; equal samples keep their value.
 //
 // Uncovered samples do not count, so that color and coverage stay apart: the background joins after the tone map. Coverage and flags
-// keep their plain mean (common/pixel.glsl). Modes that show data, means of many frames, thumbnails and EXR files have the plain mean.
+// keep their plain mean (common/pixel.glsl). Numbers that are read from the picture are weighed as well. Modes that show data, means of
+// many frames, thumbnails and EXR files have the plain mean.
 
 uniform sampler2DMS samples;
 
@@ -22,10 +23,10 @@ void main() {
     float alpha = 0.0;
     [[unroll]] for (int i = 0; i < int(SAMPLES); ++i) {
         vec4 x = texelFetch(samples, ivec2(gl_FragCoord.xy), i);
-        float weight = 1.0 / (1.0 + frame.exposure * max(max_component(x.rgb), 0.0));
+        float weight = 1.0 / (1.0 + clamp(frame.exposure * max_component(x.rgb), 0.0, 1e18));
         light += weight * x.rgb;
         weights += weight * coverage_of(x.a);
         alpha += x.a / float(SAMPLES);
     }
-    out_color = vec4(light * (coverage_of(alpha) / max(weights, 1e-6)), alpha);
+    out_color = vec4(light * (coverage_of(alpha) / max(weights, 1e-30)), alpha);
 }

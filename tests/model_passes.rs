@@ -562,6 +562,28 @@ fn contradictions_have_their_line() {
         std::fs::remove_file(session.tree.path(file)).unwrap();
         session.changed(&[file]);
     }
+    // The steps that cover the picture.
+    for (file, changes, expected) in [
+        (
+            "resolve.frag",
+            [("to=resolve", "to=resolve draw=model"), ("", "")],
+            "the pass `resolve` covers the picture, so draw= and instances= do not go with it",
+        ),
+        (
+            "tonemap.frag",
+            [("to=display", "to=display draw=model instances=3"), ("", "")],
+            "`tonemap` covers the picture",
+        ),
+        ("average.frag", [("to=mean", "to=mean draw=quads"), ("", "")], "the pass `mean` covers the picture"),
+        ("resolve.frag", [("DMS samples", "DMS wrong"), ("(samples", "(wrong")], "the pass `resolve` has no `wrong`"),
+    ] {
+        let text = session.tree.read(file);
+        let changed = changes.iter().fold(text.clone(), |text, (from, to)| text.replacen(from, to, 1));
+        let told = lines(failed(&session.save(file, &changed))).join("\n");
+        assert!(told.contains(expected), "{told}\nis not\n{expected}");
+        session.save(file, &text);
+        assert_same(&before, &session.render(), expected);
+    }
     assert_validated();
 }
 

@@ -35,7 +35,7 @@ pub use scene::Scene;
 use glam::Mat4;
 
 use crate::gpu::Rect;
-use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS, MAX_SUNS};
+use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
 use crate::scene::{Bounds, CameraView, Model, Sun, frame, has_exact_sun, lights, separates_suns, view_of_light};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, Part};
@@ -120,7 +120,8 @@ impl Revisions {
     /// baked, that is the one before it.
     pub(crate) fn suns_of(self, settings: &Settings) -> u32 {
         let environment = &settings.environment;
-        if environment.is_lit() { self.suns.max(has_exact_sun(&environment.name).into()) } else { 0 }
+        let exact = separates_suns(environment) && has_exact_sun(&environment.name);
+        if environment.is_lit() { self.suns.max(exact.into()) } else { 0 }
     }
 }
 
@@ -319,23 +320,29 @@ impl FrameState {
         &self.pass_blocks
     }
 
-    /// The suns as lights of this frame. The environment's images hold radiance times `scale`.
-    fn suns<'a>(&'a self, (scale, suns): (f32, &'a [Sun])) -> impl Iterator<Item = Light> + 'a {
-        let factor = self.constants.environment_intensity / scale;
-        suns.iter().take(MAX_SUNS).map(move |sun| sun.light(self.constants.environment_rotation, factor))
+    /// The same picture of an environment that has this many suns.
+    pub(crate) fn for_suns(&self, suns: u32) -> Self {
+        Self { pipelines: self.pipelines.clone().for_suns(suns), ..self.clone() }
     }
 
-    /// The content of the block of lights: those of the frame, then as many suns as the pipelines add. Those that the environment does
-    /// not have are dark. `environment`: the scale of its images, and its suns.
+    /// As many suns as the pipelines add, each with its light of this frame. Those that the environment does not have are dark. The
+    /// environment's images hold radiance times `scale`.
+    fn suns<'a>(&'a self, (scale, suns): (f32, &'a [Sun])) -> impl Iterator<Item = (Sun, Light)> + 'a {
+        let factor = self.constants.environment_intensity / scale;
+        let dark = Sun { direction: [0.0, 1.0, 0.0], ..Sun::default() };
+        let all = suns.iter().copied().chain(std::iter::repeat(dark)).take(self.pipelines.sun_count as usize);
+        all.map(move |sun| (sun, sun.light(self.constants.environment_rotation, factor)))
+    }
+
+    /// The content of the block of lights: those of the frame, then the suns. `environment`: the scale of its images, and its suns.
     pub(crate) fn lights_and_suns(&self, environment: (f32, &[Sun])) -> Vec<Light> {
-        let suns = self.suns(environment).chain(std::iter::repeat(Light::default()));
-        self.lights.iter().copied().chain(suns.take(self.pipelines.sun_count as usize)).collect()
+        self.lights.iter().copied().chain(self.suns(environment).map(|(_, light)| light)).collect()
     }
 
     /// The frame constants for a picture at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
     /// `sample_index` counts the frames of an accumulated picture from 0. `before`: `clip_from_world` of the frame before.
     pub(crate) fn constants(&self, rect: Rect, environment: (f32, &[Sun]), sample_index: u32, before: Mat4) -> Frame {
-        let (scale, suns) = environment;
+        let (scale, _) = environment;
         let mut frame = Frame {
             clip_from_world_before: before.to_cols_array_2d(),
             environment_intensity: self.constants.environment_intensity / scale,
@@ -344,7 +351,7 @@ impl FrameState {
             ..self.constants
         };
         let bounds = self.scene.as_ref().map_or_else(Bounds::default, |scene| scene.model().bounds);
-        for (index, (sun, light)) in suns.iter().zip(self.suns(environment)).enumerate() {
+        for (index, (sun, light)) in self.suns(environment).enumerate() {
             frame.sun_variance[index] = sun.variance;
             if let Some(view) = frame.light_clip_from_world[..MAX_LIGHT_VIEWS].get_mut(self.lights.len() + index) {
                 *view = view_of_light(&light, &bounds).to_cols_array_2d();

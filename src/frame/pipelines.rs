@@ -148,7 +148,7 @@ impl PipelineRequest {
             shows_environment: settings.environment.is_shown(&settings.view),
             through: mode.is_some_and(|m| m.through),
             accumulates: mode.is_some_and(|m| m.accumulate),
-            weighs_samples: target.samples > 1 && target.weighs && mode.is_some_and(|m| m.tonemap && !m.accumulate),
+            weighs_samples: target.samples > 1 && target.weighs && shows_light && mode.is_none_or(|m| !m.accumulate),
         };
         let active = |draws_model: bool| {
             let is_base = |pass: &GraphPass| selection.is_base(pass, draws_model);

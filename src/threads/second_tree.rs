@@ -160,5 +160,12 @@ fn provide(needs: Needs) -> Result<BoundFrame, String> {
     let Needs { mut resources, set, state, .. } = needs;
     set.build(&state.pipelines).map_err(|error| error.to_string())?;
     resources.set_pipelines(&set);
+    let bound = resources.provide(&state);
+    // Only now it is known how many suns the tree finds in the environment.
+    let suns = resources.environment().sun_count();
+    if suns <= state.pipelines.sun_count {
+        return bound.map_err(|error| error.to_string());
+    }
+    let state = Arc::new(state.for_suns(suns));
     resources.provide(&state).map_err(|error| error.to_string())
 }

@@ -284,3 +284,39 @@ fn a_bake_with_suns_is_another_than_one_without() {
     set(&mut headless, "environment.suns=true");
     assert_same(&with, &render(&mut headless, "final"), "suns again");
 }
+
+/// The levels that a blurred background reads do not have the sun.
+#[test]
+fn a_blurred_background_has_its_sun() {
+    // From above the model towards the zenith.
+    let up = ["camera.eye=[0, 5, 0]", "camera.target=[0, 10, 0.1]", "camera.fovy=100"];
+    let sky = ["environment.name=sky", "environment.blur=0.6", "view.background=env", "view.msaa=1"];
+    let model = load(&glb::model(&glb::quad(0.1), &glb::gray()));
+    let mut headless = renderer(model, settings(&[&up[..], &sky[..]].concat()), SIZE);
+    let mut light = |on: bool| -> Vec<f64> {
+        set(&mut headless, &format!("environment.suns={on}"));
+        render(&mut headless, "final").raw.iter().map(|value| f64::from(value[1])).collect()
+    };
+    let (with, without) = (light(true), light(false));
+    let mean = |light: &[f64]| light.iter().sum::<f64>() / light.len() as f64;
+    assert!((mean(&with) / mean(&without) - 1.0).abs() < 0.03, "{} and {}", mean(&with), mean(&without));
+    let peak = |light: &[f64]| light.iter().copied().fold(0.0, f64::max);
+    assert!(peak(&without) > 1.5 * mean(&without), "no sun is seen");
+    assert!((peak(&with) / peak(&without) - 1.0).abs() < 0.1, "{} and {}", peak(&with), peak(&without));
+    assert_validated();
+}
+
+/// A sun that is no longer separated leaves no dark one behind, which would have no shadow map.
+#[test]
+fn a_sky_without_its_sun_is_finite_behind_glass() {
+    let mut glass = glb::gray();
+    glass["extensions"] = json!({ "KHR_materials_transmission": { "transmissionFactor": 1.0 } });
+    let model = load(&glb::model(&glb::sphere(16, 32), &glass));
+    let mut headless = renderer(model, settings(&["environment.name=sky", "shader.SHADOWS=Hard"]), SIZE);
+    for on in [true, false, true] {
+        set(&mut headless, &format!("environment.suns={on}"));
+        let capture = render(&mut headless, "final");
+        assert!(!capture.not_finite.contains(&true), "suns {on}");
+    }
+    assert_validated();
+}

@@ -318,7 +318,7 @@ fn capture_of(capture: Capture) -> Result<Until, String> {
     if let Some(file) = &file {
         picture::check_path(file)?;
     }
-    let is_exr = file.as_ref().is_some_and(|file| is_exr(file));
+    let is_exr = file.as_deref().is_some_and(picture::holds_light);
     if ui {
         let wrong = size.is_some() || mode.is_some() || frames.is_some() || is_exr;
         return match wrong {
@@ -330,10 +330,6 @@ fn capture_of(capture: Capture) -> Result<Until, String> {
         return Ok(Until::Screen(file));
     }
     Ok(Until::Picture(Job::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
-}
-
-fn is_exr(file: &std::path::Path) -> bool {
-    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
 }
 
 /// The settings at a path, or all.

@@ -12,22 +12,28 @@ use super::Screen;
 pub(super) type Waiting = VecDeque<WindowEvent>;
 
 impl Screen {
-    /// Keeps a key for after the next frame if egui has yet to take one that moves the focus, and what the mouse does behind such a
+    /// Keeps a key for after the next frame if egui has yet to take one that moves the focus, and what happens behind such a
     /// key. Returns an event that need not wait.
     pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {
-        let waits = match event {
+        let waits = match &event {
             WindowEvent::KeyboardInput { .. } | WindowEvent::Ime(_) | WindowEvent::ModifiersChanged(_) => {
                 !self.waiting.is_empty() || self.moves_focus()
             }
-            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } | WindowEvent::CursorMoved { .. } => {
-                !self.waiting.is_empty()
-            }
+            WindowEvent::MouseInput { .. }
+            | WindowEvent::MouseWheel { .. }
+            | WindowEvent::CursorMoved { .. }
+            | WindowEvent::CursorEntered { .. }
+            | WindowEvent::CursorLeft { .. }
+            | WindowEvent::Focused(_) => !self.waiting.is_empty(),
             _ => false,
         };
         if !waits {
             return Some(event);
         }
-        self.waiting.push_back(event);
+        // A key that is held down repeats faster than slow frames come, and must not go on behind its release.
+        if !matches!(&event, WindowEvent::KeyboardInput { event, .. } if event.repeat) {
+            self.waiting.push_back(event);
+        }
         None
     }
 

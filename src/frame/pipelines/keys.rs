@@ -128,9 +128,8 @@ impl PipelineRequest {
             self.passes.iter().filter(is_drawn).filter(move |pass| pass.note.blend == blend)
         };
         passes(false).chain(passes(true)).map(|pass| {
-            let specialization = [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat();
             let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
-            let key = self.triangle_key(pass, raster, self.target.color, specialization);
+            let key = self.triangle_key(pass, raster, self.target.color, self.pass_constants());
             PipelineKey { samples: self.target.samples, ..key }
         })
     }
@@ -169,7 +168,7 @@ impl PipelineRequest {
         vec![self.triangle_key(pass, Raster::Solid, format, self.pass_constants())]
     }
 
-    /// The specialization of declared passes that cover an image or compute.
+    /// The specialization of declared passes that cover an image or compute, and of the background.
     pub(crate) fn pass_constants(&self) -> Specialization {
         let lights = [(SPEC_LIGHT_COUNT, self.light_count), (SPEC_SUN_COUNT, self.sun_count)];
         let shared = [(SPEC_FEATURES, self.shared_features)].into_iter().chain(lights);

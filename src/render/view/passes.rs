@@ -1,5 +1,5 @@
-//! How the passes that make up the picture are drawn, in the order in which they run: the model with its background, the mean,
-//! the tone map.
+//! How the passes that make up the picture are drawn, in the order in which they run: the model with its background, the
+//! resolve of its samples, the mean, the tone map.
 
 use std::sync::Arc;
 

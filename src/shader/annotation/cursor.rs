@@ -112,7 +112,7 @@ impl<'a> Cursor<'a> {
         Ok((bytes, word.to_owned()))
     }
 
-    /// The value of `key=`, which is one of three names.
+    /// The value of `key=`, which is one of these names.
     pub fn one_of<T: Copy>(&mut self, key: &str, all: &[(&str, T)]) -> Result<T, Box<Diagnostic>> {
         let (bytes, value) = self.value(key)?;
         let found = all.iter().find(|(name, _)| *name == value);

@@ -116,6 +116,10 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
         "sampler2DMS" if note.to == Target::Resolve && name == "samples" => Ok(Input::Samples),
+        "sampler2DMS" if note.to == Target::Resolve => {
+            let message = format!("the pass `{}` has no `{name}`", note.name);
+            Err((message, "it reads the samples of the picture: uniform sampler2DMS samples;".into()))
+        }
         "uniform block" if note.is_built_in() && name != PASS_BLOCK => {
             let message = format!("the uniform block `{name}` has no binding");
             Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))

@@ -130,6 +130,11 @@ fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str,
             return Some(("to=", message.into()));
         }
     }
+    let covers = matches!(note.to, Target::Resolve | Target::Mean | Target::Display);
+    if covers && note.model.is_some() {
+        let message = format!("the pass `{name}` covers the picture, so draw= and instances= do not go with it");
+        return Some(("to=", message));
+    }
     if note.background && !note.to_picture() {
         let message = "the background lies behind the model in the picture: draw=background to=picture";
         return Some(("draw=", message.into()));
