@@ -33,7 +33,8 @@ vec3 environment_radiance(vec3 direction, float lod) {
 // Without an environment, the ambient light of the settings arrives from everywhere.
 const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
 
-// Sun i of the map, one of the SUN_COUNT that irradiance and prefiltered levels leave out (ibl/small_lights/list.glsl), as a directional light. Its intensity includes that of the environment.
+// Sun i of the map as a directional light. Irradiance and prefiltered levels leave out SUN_COUNT suns (ibl/small_lights/list.glsl). Its
+// intensity includes that of the environment.
 Light sun_at(uint i) { return lights[frame.light_count + i]; }
 
 // E / pi of all but the suns.

@@ -1,4 +1,5 @@
-// The albedo E of an anisotropic specular lobe, from tables of isotropic ones.
+// The albedo E of an anisotropic specular lobe, from tables of isotropic ones. The formulas are fits of our own, to numeric integrals of
+// D V NoL; there is no publication to name.
 #ifndef BRDF_ENERGY_ANISOTROPY_GLSL
 #define BRDF_ENERGY_ANISOTROPY_GLSL
 

@@ -6,7 +6,7 @@
 #include "material/material.glsl"
 #include "material/user_surface.glsl"
 
-// What the model is at each pixel, for passes that read these images by name. Nothing is drawn unless one does.
+// The model's surface at each pixel, for passes that read these images by name. Nothing is drawn unless one does.
 //
 // Limits: one sample a pixel. The velocity knows the camera; a surface that user_vertex moves counts as still. Blended and
 // transmissive surfaces hide what lies behind them.
