@@ -265,11 +265,11 @@ pub const SPEC_LIGHT_COUNT: u32 = 5;
 /// Up to this many lights, a pipeline is specialized for their number, so that the loop over them is unrolled.
 pub const UNROLLED_LIGHTS: usize = 4;
 
-/// `constant_id` of the number of suns of the environment, up to [`MAX_SUNS`].
-pub const SPEC_SUN_COUNT: u32 = 7;
-
 /// `constant_id` of whether the display maps values by range, channels or colormap; for the tone mapping pass.
 pub const SPEC_MAPS_VALUES: u32 = 6;
+
+/// `constant_id` of the number of suns of the environment, up to [`MAX_SUNS`].
+pub const SPEC_SUN_COUNT: u32 = 7;
 
 /// `constant_id` of the samples of a pixel; for the pass that makes one color from them.
 pub const SPEC_SAMPLES: u32 = 8;

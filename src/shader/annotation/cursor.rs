@@ -118,10 +118,8 @@ impl<'a> Cursor<'a> {
         let found = all.iter().find(|(name, _)| *name == value);
         found.map(|(_, one)| *one).ok_or_else(|| {
             let names: Vec<String> = all.iter().map(|(name, _)| format!("{key}={name}")).collect();
-            let (last, others) = names
-                .split_last()
-                .map_or((String::new(), String::new()), |(last, others)| (last.clone(), others.join(", ")));
-            self.error(bytes, format!("expected {others} or {last}, found `{value}`"))
+            let (others, last) = names.split_at(names.len() - 1);
+            self.error(bytes, format!("expected {} or {}, found `{value}`", others.join(", "), last.concat()))
         })
     }
 

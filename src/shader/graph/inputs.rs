@@ -31,6 +31,22 @@ const PASS_MEMBERS: [(&str, &str); 6] = [
 /// The samplers that a stage can have.
 const SAMPLERS: &str = "sampler2D, samplerCube, sampler3D, sampler2DArray";
 
+impl Input {
+    /// Whether it may be another one in each picture, whatever else has changed.
+    pub fn is_of_picture(&self) -> bool {
+        match self {
+            Self::Picture
+            | Self::Samples
+            | Self::Behind
+            | Self::Depth
+            | Self::Before(_)
+            | Self::Output
+            | Self::Buffer(..) => true,
+            Self::Image(_) | Self::Texture(..) | Self::Parameters(..) | Self::Pass(..) => false,
+        }
+    }
+}
+
 /// The names that a pass can read.
 pub struct Names<'a> {
     /// All declared passes.

@@ -104,19 +104,27 @@ impl Stage {
         dependencies: &BTreeSet<TreePath>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let spirv = compiler.compile(snapshot, path).result?;
-        let (reflection, hooks) = (Reflection::of(&spirv), Hooks::of(&spirv));
         let kind = StageKind::of(path).ok_or_else(Vec::new)?;
-        let (path, dependencies) = (path.clone(), dependencies.clone());
-        Ok(Self {
-            path,
+        let reflection = Reflection::of(&spirv);
+        Ok(Self::new(path, kind, (spirv, reflection), dependencies.clone()))
+    }
+
+    fn new(
+        path: &TreePath,
+        kind: StageKind,
+        (spirv, reflection): (Vec<u32>, Reflection),
+        dependencies: BTreeSet<TreePath>,
+    ) -> Self {
+        Self {
+            path: path.clone(),
             kind,
-            spirv,
             reflection,
-            hooks,
+            hooks: Hooks::of(&spirv),
+            spirv,
             dependencies,
             specialized: Mutex::default(),
             live: OnceLock::new(),
-        })
+        }
     }
 
     /// The stage's source text, for messages.
@@ -291,17 +299,7 @@ pub(super) fn build(
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
             let files = cache.files(snapshot, &dependencies);
-            let hooks = Hooks::of(&spirv);
-            let stage = Arc::new(Stage {
-                path: path.clone(),
-                kind,
-                spirv,
-                reflection,
-                hooks,
-                dependencies,
-                specialized: Mutex::default(),
-                live: OnceLock::new(),
-            });
+            let stage = Arc::new(Stage::new(path, kind, (spirv, reflection), dependencies));
             Ok(Built { stage, hash, warnings, files })
         }
         _ => broken(errors),

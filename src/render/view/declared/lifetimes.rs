@@ -69,14 +69,7 @@ fn is_redrawn(pass: &GraphPass, redrawn: &BTreeSet<&str>) -> bool {
     pass.is_compute
         || pass.note.keep
         || pass.inputs.values().any(|input| match input {
-            Input::Picture
-            | Input::Samples
-            | Input::Behind
-            | Input::Depth
-            | Input::Before(_)
-            | Input::Output
-            | Input::Buffer(..) => true,
             Input::Image(name) => redrawn.contains(name.as_str()),
-            Input::Texture(..) | Input::Parameters(..) | Input::Pass(..) => false,
+            other => other.is_of_picture(),
         })
 }

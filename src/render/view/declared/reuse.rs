@@ -51,20 +51,12 @@ impl DrawnFrom {
         pipelines.iter().for_each(|pipeline| from.object(pipeline));
         for (binding, input) in pass.inputs.iter().filter(|(binding, _)| uses.pass_bindings.contains(binding)) {
             match input {
-                Input::Picture
-                | Input::Samples
-                | Input::Behind
-                | Input::Depth
-                | Input::Before(_)
-                | Input::Output
-                | Input::Buffer(..) => {
-                    return None;
-                }
+                input if input.is_of_picture() => return None,
                 Input::Image(name) => from.images.push(images.drawn_at(name)),
                 Input::Texture(name, kind) => {
                     frame.pipelines.textures().get(name, *kind).into_iter().for_each(|(i, _)| from.object(i))
                 }
-                Input::Parameters(..) | Input::Pass(..) => {
+                _ => {
                     from.bytes.extend(state.pass_blocks().get(&(index, *binding)).into_iter().flatten());
                 }
             }
