@@ -1,0 +1,7 @@
+//! Pictures as they are shown, stored and compared.
+
+mod capture;
+mod diff;
+mod display;
+mod golden;
+mod inspector;

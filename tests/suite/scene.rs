@@ -1,0 +1,6 @@
+//! Models on their way to the device, and what a look changes of them.
+
+mod gpu;
+mod look;
+mod materials;
+mod upload;

@@ -1,0 +1,194 @@
+//! Expressions of the shaders are shown over the model without a change of the source, and values are written back into it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::support::process::{Finished, run};
+use crate::support::{Tree, compiler, line_of, settings};
+use serde_json::Value;
+use specula::settings::ShaderValue;
+use specula::shader::rewrite::defaults;
+use specula::shader::{Change, Library, Source, TreePath, Update};
+use specula::write_back;
+
+const NDF: &str = "brdf/ndf.glsl";
+const A2: &str = "float a2 = alpha * alpha;";
+/// A pixel of the shader ball in the light of the lamps.
+const AT: [&str; 2] = ["--at", "48,30"];
+const VIEW: [&str; 11] = [
+    "--size",
+    "96x64",
+    "--env",
+    "none",
+    "--validate",
+    "--set",
+    "material.enabled=true",
+    "--set",
+    "material.roughness=0.5",
+    "--shaders",
+    "shaders",
+];
+
+/// The tree with a loop and a branch in the user's file.
+fn tree() -> Tree {
+    let tree = Tree::new();
+    let code = "float looped(float x) {\n    float sum = 0.0;\n    for (int i = 0; i < 5; ++i) sum += 0.1;\n    \
+        if (x < -1.0) {\n        sum = 2.0;\n    }\n    return sum + x;\n}\n\nvoid user_surface(";
+    let user = tree.read("user.glsl");
+    assert!(user.contains("void user_surface(inout Surface s, Fragment f, vec3 v) {"), "{user}");
+    let user = user.replacen("void user_surface(", code, 1);
+    let call = "void user_surface(inout Surface s, Fragment f, vec3 v) {\n    s.occlusion *= looped(0.5);";
+    tree.write("user.glsl", &user.replacen("void user_surface(inout Surface s, Fragment f, vec3 v) {", call, 1));
+    tree
+}
+
+fn probe(tree: &Tree, expression: &str, more: &[&str]) -> Finished {
+    let directory = tree.root();
+    let directory = directory.parent().expect("the folder beside the tree");
+    let shaders = tree.root().display().to_string();
+    let view: Vec<&str> = VIEW.iter().map(|word| if *word == "shaders" { shaders.as_str() } else { word }).collect();
+    run(directory, &[&["probe", "--json", "--watch-expr", expression], more, &AT, &view].concat())
+}
+
+/// The value of an expression at the pixel; null without data.
+fn value(tree: &Tree, expression: &str, more: &[&str]) -> Value {
+    probe(tree, expression, more).expect(0, &[]).json()["modes"]["expression"].clone()
+}
+
+fn first(value: &Value) -> f64 {
+    value[0].as_f64().unwrap_or_else(|| panic!("no number: {value}"))
+}
+
+#[test]
+fn an_expression_has_the_value_that_the_picture_is_made_of() {
+    let tree = tree();
+    let before = tree.read(NDF);
+    let at = |what: &str| format!("{NDF}:{}", line_of(&before, what));
+    // alpha = roughness^2, a2 = alpha^2
+    let a2 = value(&tree, &format!("{}:a2", at(A2)), &[]);
+    assert!((first(&a2) - 0.0625).abs() < 1e-6, "{a2}");
+    let product = value(&tree, &format!("{}:alpha * 4.0", at(A2)), &[]);
+    assert!((first(&product) - 1.0).abs() < 1e-6, "{product}");
+    // What the function returns is D, which the mode shows too, of one light.
+    let light = ["--set", "lights.chosen=1"];
+    let d = first(&value(&tree, &format!("{}:return", at("return a2 / (PI")), &light));
+    let mode = probe(&tree, "user.glsl:1:0.0", &[&light[..], &["--mode", "d"]].concat()).expect(0, &[]).json();
+    let expected = mode["modes"]["d"][0].as_f64().expect("D");
+    assert!((d - expected).abs() < 1e-4 * expected.max(1.0), "{d}, not {expected}");
+    assert_eq!(tree.read(NDF), before, "the source has changed");
+}
+
+#[test]
+fn loops_lights_and_lines_that_are_not_reached() {
+    let tree = tree();
+    let user = tree.read("user.glsl");
+    let at = |what: &str, name: &str| format!("user.glsl:{}:{name}", line_of(&user, what));
+    let looped = |name: &str, more: &[&str]| value(&tree, &at("sum += 0.1", name), more);
+    assert_eq!(first(&looped("i", &[])), 4.0, "the last evaluation counts");
+    assert_eq!(first(&looped("i", &["--set", "expression.evaluation=2"])), 1.0);
+    assert!(looped("i", &["--set", "expression.evaluation=9"]).is_null());
+    assert!((first(&looped("sum", &[])) - 0.5).abs() < 1e-6);
+    assert!((first(&value(&tree, &at("return sum + x", "return"), &[])) - 1.0).abs() < 1e-6);
+    assert_eq!(value(&tree, &at("sum = 2.0", "sum"), &[]), Value::Null, "a line that is not reached");
+
+    // A function that runs once for each light: the last light counts, or the chosen one.
+    let shade = tree.read("lighting/shade.glsl");
+    let light = format!("lighting/shade.glsl:{}:i", line_of(&shade, "Light light = light_at(i, s.position_ws);"));
+    assert_eq!(first(&value(&tree, &light, &[])), 2.0);
+    assert_eq!(first(&value(&tree, &light, &["--set", "lights.chosen=2"])), 1.0);
+    // What is declared outside of every function.
+    let params = tree.read("user/params.glsl");
+    let color = format!("user/params.glsl:{}:rim_color", line_of(&params, "vec3 rim_color"));
+    let color = value(&tree, &color, &[]);
+    assert!((color[1].as_f64().expect("green") - 0.8).abs() < 1e-6, "{color}");
+}
+
+#[test]
+fn what_cannot_be_watched_is_said_at_its_place() {
+    let tree = tree();
+    let ndf = tree.read(NDF);
+    let line = line_of(&ndf, A2);
+    let error = |expression: &str| probe(&tree, expression, &[]).expect(1, &[]).stderr.clone();
+    let unknown = error(&format!("{NDF}:{line}:a3"));
+    assert!(unknown.contains(&format!("{NDF}:{line}:")) && unknown.contains("cannot watch `a3`"), "{unknown}");
+    assert!(unknown.contains("a2"), "the nearest name: {unknown}");
+    assert!(error("passes/outline.frag:10:x").contains("not in vertex stages"));
+    assert!(error("brdf/nfd.glsl:10:x").contains("brdf/ndf.glsl"));
+    let usage = probe(&tree, "brdf/ndf.glsl:x:a2", &[]).expect(2, &[]).stderr.clone();
+    assert!(usage.contains("--watch-expr"), "{usage}");
+    // The picture has no part in it.
+    let args = ["--mode", "depth"];
+    let finished = probe(&tree, &format!("{NDF}:{line}:a3"), &args);
+    let told = |line: &str| line.starts_with("specula: ") && !line.contains("error");
+    assert!(finished.stderr.contains("cannot watch `a3`") || finished.stderr.lines().all(told), "{}", finished.stderr);
+}
+
+#[test]
+fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
+    let tree = Tree::new();
+    let mut library = Library::new(Source::Disk(tree.root()), compiler().clone(), &["fullscreen.vert"]);
+    let ready = |update: Update| match update {
+        Update::Ready(set, report) => (set, report),
+        other => panic!("{other:?}"),
+    };
+    let (plain, _) = ready(library.update(&Change::All));
+    let ndf = tree.read(NDF);
+    let line = line_of(&ndf, A2);
+    let expression = specula::shader::Expression::parse(&format!("{NDF}:{line}:a2"), 0).unwrap();
+    let change = library.watch(Some(expression.clone())).unwrap();
+    let (watching, report) = ready(library.update(&change));
+    assert_eq!(report.stages.len(), 1, "{:?}", report.stages);
+    let is_same = plain.stages.iter().all(|(path, stage)| std::sync::Arc::ptr_eq(stage, &watching.stages[path]));
+    assert!(is_same && watching.stages.len() == plain.stages.len() + 1);
+    let mode = watching.modes.iter().find(|mode| mode.slug == "expression").expect("the mode");
+    assert_eq!(mode.components, 1);
+    assert_eq!(plain.texts, watching.texts, "the texts of the tree are those on disk");
+
+    tree.write(NDF, &ndf.replace("// D: the", "// One more line.\n\n// D: the"));
+    let paths = Change::Paths(BTreeSet::from([TreePath::from(NDF)]));
+    let (moved, _) = ready(library.update(&paths));
+    assert_eq!((moved.watched.as_ref().map(|(_, line)| *line), moved.pending.len()), (Some(line + 2), 0));
+    assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
+
+    // Without the variable, the picture goes on, and the mode waits.
+    tree.write(NDF, &ndf.replace("a2", "squared"));
+    let (broken, _) = ready(library.update(&paths));
+    assert!(broken.is_complete() && !broken.pending.is_empty());
+    assert!(
+        broken.warnings.iter().any(|warning| warning.message.contains("cannot watch `a2`")),
+        "{:?}",
+        broken.warnings
+    );
+    let change = library.watch(None).unwrap();
+    let (without, _) = ready(library.update(&change));
+    assert!(without.modes.iter().all(|mode| mode.slug != "expression") && without.pending.is_empty());
+    assert!(without.warnings.is_empty(), "{:?}", without.warnings);
+}
+
+#[test]
+fn values_of_the_shipped_tree_become_its_defaults() {
+    let tree = Tree::new();
+    let source = Source::Disk(tree.root());
+    let mut library = Library::new(source.clone(), compiler().clone(), &["fullscreen.vert"]);
+    let Update::Ready(set, _) = library.update(&Change::All) else { panic!("the tree does not compile") };
+    let values: BTreeMap<String, ShaderValue> =
+        settings(&["NDF=Beckmann", "rim_strength=0.25", "rim_color=[0.5, 1, 0.25]", "TOON_BANDS=Three"]).shader;
+    let edits = defaults(&set, &values, None, |path| source.display_path(path)).unwrap();
+    assert_eq!(edits.len(), 4, "{edits:?}");
+    let crlf = tree.read("user/params.glsl").replace('\n', "\r\n");
+    std::fs::write(tree.path("user/params.glsl"), crlf.replacen("//", "\u{feff}//", 0)).unwrap();
+    // The text has other line ends than the edits expect, but the same lines.
+    write_back::write(&tree.root(), &edits).unwrap();
+    let written = tree.read("user/params.glsl");
+    assert_eq!(
+        written,
+        crlf.replace("causes it\" = 0.0", "causes it\" = 0.25").replace("= 1 0.8 0.6", "= 0.5 1 0.25"),
+        "only the values"
+    );
+    assert!(tree.read("brdf/models.glsl").contains("const uint NDF = BECKMANN;"));
+    assert!(tree.read("user.glsl").contains("const uint TOON_BANDS = 3u;"));
+    let paths = edits.iter().map(|edit| edit.path.clone()).collect();
+    let Update::Ready(set, _) = library.update(&Change::Paths(paths)) else { panic!("the edit does not compile") };
+    assert!(defaults(&set, &values, None, |path| source.display_path(path)).unwrap().is_empty());
+    // A second write finds other lines.
+    assert!(write_back::write(&tree.root(), &edits).unwrap_err().contains("nothing was written"));
+}
