@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
-use super::inspector::Page;
 use super::layout::Panel;
-use super::learn::LearnCommand;
-use super::selection::Selected;
+use super::state::exercise::LearnCommand;
+use super::state::inspection::Page;
+use super::state::selection::Selected;
 use crate::control::Request;
 use crate::file_kind::FileKind;
 use crate::shader::Source;

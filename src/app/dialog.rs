@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use crate::shader::embedded;
+
 /// The dialog to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dialog {
@@ -58,6 +60,27 @@ fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, S
     Ok(chosen)
 }
 
+/// Writes the built-in shaders, as `specula new` does, and returns their folder. Without a folder the user chooses one. It blocks, so
+/// it runs on a thread of its own.
+///
+/// # Errors
+/// A message: there is no dialog, or the folder cannot be written.
+pub(super) fn write_tree(folder: Option<PathBuf>) -> Result<Option<PathBuf>, String> {
+    let folder = match folder {
+        Some(folder) => Some(folder),
+        // A folder that holds other files gets one inside.
+        None => choose(Dialog::New)?.map(|chosen| {
+            let holds_files = std::fs::read_dir(&chosen).is_ok_and(|mut entries| entries.next().is_some());
+            if holds_files { chosen.join("specula-shaders") } else { chosen }
+        }),
+    };
+    let Some(folder) = folder else { return Ok(None) };
+    let folder = std::path::absolute(&folder).unwrap_or(folder);
+    embedded::write_to(&folder, None)
+        .map(|_| Some(folder.clone()))
+        .map_err(|error| format!("cannot write the shaders to {}: {error}", folder.display()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,5 +91,14 @@ mod tests {
         assert_eq!(answer(Some(path.clone()), Duration::ZERO), Ok(Some(path)));
         assert_eq!(answer(None, Duration::from_secs(2)), Ok(None));
         assert!(answer(None, Duration::from_millis(20)).unwrap_err().contains("Drop a file"));
+    }
+
+    #[test]
+    fn the_tree_is_written_once() {
+        let working = tempfile::tempdir().unwrap();
+        let folder = working.path().join("shaders");
+        assert_eq!(write_tree(Some(folder.clone())), Ok(Some(folder.clone())));
+        assert!(folder.join("user.glsl").is_file());
+        assert!(write_tree(Some(folder)).unwrap_err().contains("not empty"));
     }
 }

@@ -6,30 +6,17 @@
 mod command;
 mod control;
 mod dialog;
-mod difference;
 mod editor;
 mod gallery;
-mod grid;
-mod hint;
-mod history;
 mod input;
-mod inspector;
 mod keys;
-mod last_session;
 mod layout;
-mod learn;
 mod numbers;
 mod palette;
 mod panels;
-mod playback;
-mod recent;
 mod screen;
-mod selection;
-mod shader_log;
 mod source_line;
-mod stages;
-mod status;
-mod timing;
+mod state;
 mod viewer;
 mod widgets;
 
@@ -53,15 +40,13 @@ use crate::recovery::{Recorder, Work};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
-use crate::state;
-
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, Outbox, watch_files};
 use screen::{Next, Screen};
 use viewer::Viewer;
 
-pub use last_session::session_to_restore;
+pub use state::last_session::session_to_restore;
 
 /// How to open the window.
 pub struct AppOptions {

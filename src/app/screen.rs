@@ -30,7 +30,8 @@ use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use super::input::Mouse;
-use super::timing::CpuTimes;
+use super::state::grid::PictureRect;
+use super::state::timing::CpuTimes;
 use super::viewer::Viewer;
 use super::widgets;
 use crate::frame::FrameState;
@@ -54,13 +55,6 @@ const FRAMES_IN_FLIGHT: usize = 2;
 const RETRY: Duration = Duration::from_millis(500);
 /// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
-
-/// The part of the window that shows the picture, in pixels.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PictureRect {
-    pub(super) at: (u32, u32),
-    pub(super) size: (u32, u32),
-}
 
 /// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {

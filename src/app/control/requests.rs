@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::{Job, Next, Until};
 use crate::app::command::{Command, Side, open_as};
-use crate::app::grid::Grid;
 use crate::app::palette;
-use crate::app::selection::Selected;
+use crate::app::state::grid::Grid;
+use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::capture::modes_of;
 use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run, VersionsRequest};

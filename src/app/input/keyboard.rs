@@ -7,7 +7,7 @@ use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::keys;
 use crate::app::screen::Screen;
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::scene::CameraController;
 use crate::session::Session;

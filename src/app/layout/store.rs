@@ -5,7 +5,7 @@ use egui_tiles::{Tile, Tree};
 use serde::{Deserialize, Serialize};
 
 use super::{Panel, Preset};
-use crate::app::state;
+use crate::state;
 
 const FILE: &str = "layout.json";
 

@@ -8,8 +8,8 @@ use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
 use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
-use crate::app::difference::{Kind, Line};
 use crate::app::source_line::SourceLine;
+use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::viewer::{NO_FOLDER, Viewer};
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
@@ -285,7 +285,7 @@ fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::difference::difference;
+    use crate::app::state::shaders::difference::difference;
     use crate::shader::TreePath;
 
     #[test]

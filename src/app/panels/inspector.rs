@@ -10,7 +10,7 @@ mod values;
 use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use crate::app::command::Command;
-use crate::app::inspector::{Inspector, Page, text};
+use crate::app::state::inspection::{Inspector, Page, text};
 use crate::app::viewer::Viewer;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{choose, elided};

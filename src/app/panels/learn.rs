@@ -6,7 +6,7 @@ mod list;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::learn::{LearnCommand, Learning};
+use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::shader::{Diagnostic, Severity};
 
 use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET};

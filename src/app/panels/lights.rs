@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::QUIET;
 use crate::app::command::Command;
 use crate::app::numbers::{AMBIENT, ORBIT, RECTANGLE, SPIN};
-use crate::app::selection::{LightId, Selected};
+use crate::app::state::selection::{LightId, Selected};
 use crate::app::widgets::rows::{check, choose, color, heading, number, setting};
 use crate::settings::{LightSettings, LightSource, RectLight, Settings};
 

@@ -7,7 +7,7 @@ use egui::{RichText, Ui, vec2};
 
 use super::{PanelState, QUIET};
 use crate::app::gallery::GalleryState;
-use crate::app::grid::Grid;
+use crate::app::state::grid::Grid;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{icon, small_mono};

@@ -7,7 +7,7 @@ use egui::{TextureOptions, pos2, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
-use crate::app::recent::Kind;
+use crate::app::state::recent::Kind;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, body_font};

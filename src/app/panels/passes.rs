@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 
 use super::QUIET;
 use super::parameters::{is_true, show_constant, show_parameter};
-use crate::app::playback::Playback;
+use crate::app::state::playback::Playback;
 use crate::app::widgets::rows::{Row, check, set_option};
 use crate::app::widgets::search::{self, Words};
 use crate::settings::Settings;

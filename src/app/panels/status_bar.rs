@@ -3,8 +3,8 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::{plural, shaders};
-use crate::app::stages::StageRow;
-use crate::app::status::ShaderStatus;
+use crate::app::state::shaders::stages::StageRow;
+use crate::app::state::shaders::status::ShaderStatus;
 use crate::app::viewer::Waits;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};

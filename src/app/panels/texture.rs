@@ -5,7 +5,7 @@ use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::QUIET;
 use super::scene::tree::textures;
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search;
 use crate::app::widgets::theme::small_mono_font;

@@ -6,7 +6,7 @@ use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2,
 
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
-use crate::app::difference::{Kind, Line};
+use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::viewer::{Version, Viewer};
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};

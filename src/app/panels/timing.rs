@@ -6,7 +6,7 @@ mod table;
 
 use egui::{Grid, Label, RichText, Ui};
 
-use crate::app::timing::MemoryClock;
+use crate::app::state::timing::MemoryClock;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{GOOD, QUIET, WARNING};

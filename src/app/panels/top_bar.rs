@@ -6,7 +6,7 @@ use super::PanelState;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Layout, Panel, Preset};
-use crate::app::recent::Kind;
+use crate::app::state::recent::Kind;
 use crate::app::widgets::check_box;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{FRAMES_IN_FLIGHT, PictureRect, Screen};
-use crate::app::grid::cells;
+use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::state::grid::{PictureRect, cells};
 use crate::app::viewer::{LastComplete, Viewer};
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{Output, Redraw, View};

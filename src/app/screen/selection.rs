@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::selection::stands_out;
+use crate::app::state::selection::stands_out;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::SELECTION;
 use crate::gpu::{Encoder, GpuError, Image};

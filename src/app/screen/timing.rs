@@ -1,7 +1,7 @@
 //! Measures frames for the panel Timing.
 
 use super::Screen;
-use crate::app::timing::{DeviceTimes, Shown};
+use crate::app::state::timing::{DeviceTimes, Shown};
 use crate::app::viewer::Viewer;
 use crate::frame::FrameState;
 use crate::render::{BoundFrame, Redraw};

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use winit::window::Window;
 
-use super::{PictureRect, Screen};
+use super::Screen;
 use crate::app::panels::{self, Readings};
+use crate::app::state::grid::PictureRect;
 use crate::app::viewer::Viewer;
 use crate::gpu::{Attachments, Encoder, GpuError, Image, Rect, Use};
 

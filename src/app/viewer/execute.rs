@@ -7,7 +7,7 @@ use super::Viewer;
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
 use crate::app::layout::Panel;
-use crate::app::{dialog, editor, hint};
+use crate::app::{dialog, editor};
 use crate::picture::read_checked_look;
 use crate::scene::LoadOptions;
 use crate::shader::{Change, Source};
@@ -83,7 +83,7 @@ impl Viewer {
             Command::NewTree(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::NewTree(folder) => {
                 self.choosing = Some(Dialog::New);
-                self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
+                self.threads.wait(move || Some(Message::NewTree(dialog::write_tree(folder))));
             }
             Command::Learn(command) => self.learn(command),
             Command::Draft(edits) => self.draft(edits),

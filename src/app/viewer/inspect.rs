@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Viewer;
-use crate::app::inspector::{Asked, NotFiniteSearch, Page, Reading, Shown};
+use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, Shown};
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::render::Texel;

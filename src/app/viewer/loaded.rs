@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::Viewer;
 use crate::app::command::Command;
-use crate::app::recent::Kind;
-use crate::app::selection::Selected;
+use crate::app::state::recent::Kind;
+use crate::app::state::selection::Selected;
 use crate::message;
 use crate::scene::BUILT_IN;
 use crate::settings::{LightSource, SceneSettings};

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use super::{LastComplete, Viewer};
 use crate::app::panels::Readout;
-use crate::app::status::title;
 use crate::events::{Event, emit};
 use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
@@ -240,7 +239,7 @@ impl Viewer {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
     }
 
-    /// The title over the picture: see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
+    /// The title over the picture, see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
     pub(in crate::app) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
         let request = &shown.pipelines;
@@ -274,6 +273,17 @@ fn texts(mode: &Mode, picture: &PixelValue, exact: Option<Option<PixelValue>>) -
         // At an edge, the picture has a mean of several surfaces.
         Some(Some(exact)) if picture.value[3] >= 1.0 && exact.value[3] >= 1.0 => exact.parts_in_picture(mode),
         _ => picture.parts_in_picture(mode),
+    }
+}
+
+/// The title over the picture: the mode on screen and the selected mode that is being built. The final picture has no title.
+/// `paths` is the number of random paths per pixel so far in an accumulating mode.
+fn title(shown: &Mode, set: Option<&Mode>, paths: Option<u32>) -> Option<String> {
+    match (set.filter(|set| set.slug != shown.slug), paths) {
+        (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
+        (None, Some(1)) => Some(format!("{}   1 path per pixel", shown.name)),
+        (None, Some(paths)) => Some(format!("{}   {paths} paths per pixel", shown.name)),
+        (None, None) => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
     }
 }
 

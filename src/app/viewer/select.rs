@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Viewer;
-use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::events::{Event, SelectedEvent, emit};
 use crate::scene::{CameraController, CameraView, Model, pick};
 use crate::settings::LightSource;

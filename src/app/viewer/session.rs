@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Viewer;
 use crate::app::command::Command;
-use crate::app::last_session;
+use crate::app::state::last_session;
 use crate::picture::Look;
 use crate::recovery::Work;
 use crate::scene::BUILT_IN;

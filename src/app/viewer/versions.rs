@@ -7,7 +7,7 @@ use std::sync::Arc;
 use chrono::{DateTime, Local};
 
 use super::LastComplete;
-use crate::app::difference::{Line, difference};
+use crate::app::state::shaders::difference::{Line, difference};
 use crate::events::ReloadEvent;
 use crate::pipeline::PipelineSet;
 use crate::shader::ShaderSet;

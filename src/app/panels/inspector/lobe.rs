@@ -5,8 +5,8 @@ use egui::{RichText, Sense, Ui, vec2};
 
 use super::plot::{PARTS, Pair, albedo, polar};
 use super::solid;
-use crate::app::inspector::directions::Directions;
-use crate::app::inspector::{Asked, Reading, Shown};
+use crate::app::state::inspection::directions::Directions;
+use crate::app::state::inspection::{Asked, Reading, Shown};
 use crate::app::widgets::theme::{ERROR, QUIET, WARNING};
 use crate::measure::{Curves, Material};
 

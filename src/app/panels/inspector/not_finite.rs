@@ -6,7 +6,7 @@ use egui::{CursorIcon, RichText, Sense, Ui};
 
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::inspector::NotFiniteSearch;
+use crate::app::state::inspection::NotFiniteSearch;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 use crate::shader::not_finite::ELSEWHERE;

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Grid, Response, RichText, Stroke, Ui};
 use egui_plot::{Arrows, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
 
 use super::lobe::luminance;
-use crate::app::inspector::directions::Directions;
+use crate::app::state::inspection::directions::Directions;
 use crate::app::widgets::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
 use crate::measure::{Curves, Lobe, Material};
 

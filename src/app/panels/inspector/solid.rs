@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::lobe::luminance;
 use super::plot::GRID;
-use crate::app::inspector::directions::Directions;
+use crate::app::state::inspection::directions::Directions;
 use crate::app::widgets::theme::{ACCENT, WARNING, small_font};
 use crate::measure::Hemisphere;
 

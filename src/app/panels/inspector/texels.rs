@@ -6,7 +6,7 @@ use egui::{Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::widgets::search::Words;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, small_font, small_mono_font};
@@ -94,7 +94,7 @@ mod tests {
 
     use super::super::not_finite;
     use super::*;
-    use crate::app::inspector::NotFiniteSearch;
+    use crate::app::state::inspection::NotFiniteSearch;
     use crate::render::TexelPlace;
     use crate::scene::TextureSource;
     use crate::shader::not_finite::NotFinite;

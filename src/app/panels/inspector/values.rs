@@ -3,8 +3,8 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use crate::app::inspector::{Reading, text};
 use crate::app::panels::modes::text_of;
+use crate::app::state::inspection::{Reading, text};
 use crate::app::widgets::rows::option_text;
 use crate::app::widgets::search::Words;
 use crate::app::widgets::spoken;

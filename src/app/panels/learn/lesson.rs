@@ -4,8 +4,8 @@ use egui::{Frame, Label, Margin, RichText, Ui};
 
 use super::mark;
 use crate::app::command::Command;
-use crate::app::difference::Kind;
-use crate::app::learn::{LearnCommand, Learning, Measured};
+use crate::app::state::exercise::{LearnCommand, Learning, Measured};
+use crate::app::state::shaders::difference::Kind;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
 

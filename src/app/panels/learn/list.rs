@@ -4,7 +4,7 @@ use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
 
 use super::paint_mark;
 use crate::app::command::Command;
-use crate::app::learn::{LearnCommand, Learning};
+use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, QUIET, body_font, small_font};
 use crate::learn::{Exercise, Level, exercises};

@@ -4,7 +4,7 @@
 use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{SELECTION, small_font, small_mono_font};
 use crate::scene::{Bounds, CameraView, Light, light_direction, ray};

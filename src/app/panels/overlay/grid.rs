@@ -2,9 +2,9 @@
 
 use egui::{Align2, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use crate::app::grid::{GAP, places};
 use crate::app::panels::PanelState;
-use crate::app::screen::PictureRect;
+
+use crate::app::state::grid::{GAP, PictureRect, places};
 use crate::app::widgets::theme::{ACCENT, CARD, EDGE, PANEL, STRONG, small_font};
 use crate::session::Session;
 

@@ -5,7 +5,7 @@ use egui::{Align2, Id, Rect, RichText, Ui};
 use super::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::learn::LearnCommand;
+use crate::app::state::exercise::LearnCommand;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::learn::exercises;

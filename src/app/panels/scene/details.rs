@@ -7,7 +7,7 @@ use super::tree::kind;
 use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::panels::{ACCENT, QUIET, lights, plural};
-use crate::app::selection::{LightId, Selected, common_material, name_or};
+use crate::app::state::selection::{LightId, Selected, common_material, name_or};
 use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::heading;
 use crate::frame::Scene;

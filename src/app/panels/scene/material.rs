@@ -8,7 +8,7 @@ use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::numbers::Scale;
 use crate::app::panels::{ACCENT, QUIET, WARNING};
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::{Row, color, edit_number, heading, set_option, short};
 use crate::frame::Scene;

@@ -10,7 +10,7 @@ use egui::{RichText, ScrollArea, Ui};
 use super::QUIET;
 use crate::app::command::Command;
 use crate::app::layout::Panel;
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search::{self, Words};
 use tree::Tree;

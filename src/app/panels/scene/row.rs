@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyl
 
 use super::tree::Row;
 use crate::app::panels::{EDGE, QUIET};
-use crate::app::selection::Selected;
+use crate::app::state::selection::Selected;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::STRONG;
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::app::panels::plural;
-use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::widgets::search::Words;
 use crate::frame::Scene;
 use crate::scene::{LightKind, Model, TextureSource};

@@ -4,7 +4,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use super::super::{ERROR, QUIET};
 use super::lines;
-use crate::app::shader_log::{ShaderLog, reached};
+use crate::app::state::shaders::log::{ShaderLog, reached};
 use crate::app::widgets::rows::elided;
 use crate::events::in_short;
 

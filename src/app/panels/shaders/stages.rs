@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Checkbox, Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
-use crate::app::stages::{StageRow, StageState};
+use crate::app::state::shaders::stages::{StageRow, StageState};
 use crate::app::viewer::Viewer;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::elided;

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::timing::{FRAMES, Timing};
+use crate::app::state::timing::{FRAMES, Timing};
 use crate::app::widgets::theme::{EDGE, QUIET, WARNING, small_font};
 
 /// Heights of the graphs, in points.

@@ -3,7 +3,7 @@
 use egui::{Grid, RichText, Sense, Ui, vec2};
 
 use super::graph;
-use crate::app::timing::Timing;
+use crate::app::state::timing::Timing;
 use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 
 /// Size of the history of a pass, in points.
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, timing: &Timing, names: &[String]) {
                 false => ui.label(RichText::new(format!("{ms:6.2} ms")).monospace().small()),
             };
             if has_history {
-                let of = |sample: &crate::app::timing::Sample| match place {
+                let of = |sample: &crate::app::state::timing::Sample| match place {
                     Some(_) => sample.pass_ms(name).unwrap_or_default(),
                     None => sample.device_ms,
                 };

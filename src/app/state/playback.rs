@@ -17,14 +17,14 @@ struct Mouse {
 }
 
 /// The clock of the window's frames.
-pub(super) struct Playback {
+pub(in crate::app) struct Playback {
     clock: Clock,
     /// The time of the last frame, while the clock runs.
     last: Option<Instant>,
     /// Whether the user has paused the clock.
-    pub(super) paused: bool,
+    pub(in crate::app) paused: bool,
     /// Seconds of the clock per second of real time.
-    pub(super) speed: f32,
+    pub(in crate::app) speed: f32,
     step: bool,
     restarted: bool,
     /// The keys now. The clock has those of the last frame.
@@ -56,41 +56,41 @@ impl Default for Playback {
 
 impl Playback {
     /// Whether the clock runs.
-    pub(super) fn runs(&self) -> bool {
+    pub(in crate::app) fn runs(&self) -> bool {
         !self.paused || self.step
     }
 
     /// Advances the clock by one step in the next frame, and pauses it.
-    pub(super) fn step(&mut self) {
+    pub(in crate::app) fn step(&mut self) {
         (self.paused, self.step) = (true, true);
     }
 
     /// Sets the clock back to 0.
-    pub(super) fn restart(&mut self) {
+    pub(in crate::app) fn restart(&mut self) {
         let Clock { mouse_px, cursor_px, mouse_buttons, date, .. } = self.clock;
         self.clock = Clock { mouse_px, cursor_px, mouse_buttons, date, ..Clock::default() };
         (self.last, self.restarted) = (None, true);
     }
 
     /// Sets the clock to a time. Passes go on from what they drew before.
-    pub(super) fn seek(&mut self, time_s: f32) {
+    pub(in crate::app) fn seek(&mut self, time_s: f32) {
         (self.clock.time_s, self.last) = (time_s, None);
     }
 
     /// Whether the clock was set back since the last call. The passes must then restart too.
-    pub(super) fn take_restart(&mut self) -> bool {
+    pub(in crate::app) fn take_restart(&mut self) -> bool {
         std::mem::take(&mut self.restarted)
     }
 
     /// Seconds of the clock since its start.
-    pub(super) fn time_s(&self) -> f32 {
+    pub(in crate::app) fn time_s(&self) -> f32 {
         self.clock.time_s
     }
 
     /// The clock of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the
     /// start, so that a still picture need not be redrawn. Its keys are those that are down now, unless the clock is paused. A
     /// picture that does not read keys gets none.
-    pub(super) fn next(&mut self, is_animated: bool, reads_keys: bool) -> Clock {
+    pub(in crate::app) fn next(&mut self, is_animated: bool, reads_keys: bool) -> Clock {
         self.next_at(is_animated, reads_keys, (Instant::now(), Date::now()))
     }
 
@@ -130,45 +130,45 @@ impl Playback {
 
     /// Whether the next frame differs from the last one because a key counts as pressed in one frame only. Says nothing about
     /// an animated picture.
-    pub(super) fn ends_press(&self) -> bool {
+    pub(in crate::app) fn ends_press(&self) -> bool {
         self.clock.keys.any_pressed()
     }
 
     /// The keys, which events change.
-    pub(super) fn keys(&mut self) -> &mut Keys {
+    pub(in crate::app) fn keys(&mut self) -> &mut Keys {
         &mut self.keys
     }
 
     /// The mouse moved, with or without a button.
-    pub(super) fn hover(&mut self, at: [f32; 2]) {
+    pub(in crate::app) fn hover(&mut self, at: [f32; 2]) {
         self.mouse.cursor_px = at;
     }
 
     /// The button of this bit went down over the picture, or up.
-    pub(super) fn set_button(&mut self, bit: u32, is_down: bool) {
+    pub(in crate::app) fn set_button(&mut self, bit: u32, is_down: bool) {
         let buttons = &mut self.mouse.buttons;
         *buttons = if is_down { *buttons | bit } else { *buttons & !bit };
     }
 
     /// No button is down any more: the window has lost the focus.
-    pub(super) fn release_buttons(&mut self) {
+    pub(in crate::app) fn release_buttons(&mut self) {
         self.mouse.buttons = 0;
     }
 
     /// The left button went down over the picture.
-    pub(super) fn press(&mut self, [x, y]: [f32; 2]) {
+    pub(in crate::app) fn press(&mut self, [x, y]: [f32; 2]) {
         // The sign of w says whether this is the frame of a click, so it is not 0.
         (self.mouse.px, self.shows_click) = ([x, y, x, y.max(0.5)], false);
     }
 
     /// The mouse moved while the button is down.
-    pub(super) fn drag(&mut self, [x, y]: [f32; 2]) {
+    pub(in crate::app) fn drag(&mut self, [x, y]: [f32; 2]) {
         let [_, _, from_x, from_y] = self.mouse.px;
         self.mouse.px = [x, y, from_x, from_y];
     }
 
     /// The button went up.
-    pub(super) fn release(&mut self) {
+    pub(in crate::app) fn release(&mut self) {
         self.mouse.px[2] = -self.mouse.px[2].abs();
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::state;
+use crate::state;
 
 const FILE: &str = "recent.json";
 /// Most files of a kind.
@@ -12,7 +12,7 @@ const MOST: usize = 8;
 
 /// A kind of file that is remembered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in crate::app) enum Kind {
     Model,
     Environment,
     Tree,
@@ -21,7 +21,7 @@ pub(super) enum Kind {
 /// Absolute paths of files that could be opened, the newest first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct Recent {
+pub(in crate::app) struct Recent {
     models: Vec<PathBuf>,
     environments: Vec<PathBuf>,
     trees: Vec<PathBuf>,
@@ -29,11 +29,11 @@ pub(super) struct Recent {
 
 impl Recent {
     /// The files of the last run that are still there.
-    pub(super) fn restored() -> Self {
+    pub(in crate::app) fn restored() -> Self {
         state::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
     }
 
-    pub(super) fn of(&self, kind: Kind) -> &[PathBuf] {
+    pub(in crate::app) fn of(&self, kind: Kind) -> &[PathBuf] {
         match kind {
             Kind::Model => &self.models,
             Kind::Environment => &self.environments,
@@ -50,14 +50,14 @@ impl Recent {
     }
 
     /// Puts a file that has been opened first, and stores the list.
-    pub(super) fn remember(&mut self, kind: Kind, path: &Path) {
+    pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
         if self.insert(kind, path) {
             self.store();
         }
     }
 
     /// Removes a file that could not be opened, and stores the list.
-    pub(super) fn forget(&mut self, kind: Kind, path: &Path) {
+    pub(in crate::app) fn forget(&mut self, kind: Kind, path: &Path) {
         let Ok(path) = std::path::absolute(path) else { return };
         let list = self.of_mut(kind);
         if list.contains(&path) && !path.exists() {

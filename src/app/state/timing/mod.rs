@@ -8,11 +8,11 @@ use std::collections::VecDeque;
 
 use crate::events::Summary;
 use crate::gpu::{DrawCounts, PassTime};
-pub(super) use cost::Cost;
-pub(super) use memory::MemoryClock;
+pub(in crate::app) use cost::Cost;
+pub(in crate::app) use memory::MemoryClock;
 
 /// Number of frames in the history.
-pub(super) const FRAMES: usize = 240;
+pub(in crate::app) const FRAMES: usize = 240;
 /// Number of frames whose time for panels is kept for [`Timing::summary`].
 const SUMMARIZED: usize = 4096;
 /// Frames that are drawn only to measure a picture.
@@ -22,15 +22,15 @@ const NOT_OF_PICTURE: [&str; 4] = ["tone map", "ui", "outline", "texture"];
 
 /// Inputs of a frame. Times can be compared between frames with equal inputs.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Shown {
+pub(in crate::app) struct Shown {
     /// Generation of the shaders.
-    pub(super) generation: u64,
+    pub(in crate::app) generation: u64,
     /// Slug of the mode.
-    pub(super) mode: String,
+    pub(in crate::app) mode: String,
     /// Size of the picture in pixels.
-    pub(super) size: (u32, u32),
+    pub(in crate::app) size: (u32, u32),
     /// Name of the model.
-    pub(super) model: String,
+    pub(in crate::app) model: String,
 }
 
 impl Shown {
@@ -42,27 +42,27 @@ impl Shown {
 
 /// CPU time of a frame, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct CpuTimes {
+pub(in crate::app) struct CpuTimes {
     /// Running the panels and making triangles of them.
-    pub(super) ui_ms: f64,
+    pub(in crate::app) ui_ms: f64,
     /// Recording the commands of picture and panels.
-    pub(super) record_ms: f64,
+    pub(in crate::app) record_ms: f64,
 }
 
 /// A frame that the device has finished.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sample {
-    pub(super) shown: Shown,
-    pub(super) cpu: CpuTimes,
+pub(in crate::app) struct Sample {
+    pub(in crate::app) shown: Shown,
+    pub(in crate::app) cpu: CpuTimes,
     /// Device time of the whole frame.
-    pub(super) device_ms: f64,
-    pub(super) passes: Vec<PassTime>,
-    pub(super) counts: DrawCounts,
+    pub(in crate::app) device_ms: f64,
+    pub(in crate::app) passes: Vec<PassTime>,
+    pub(in crate::app) counts: DrawCounts,
 }
 
 impl Sample {
     /// The time of a pass; `None` if the frame has none of this name. A pass that was kept took none.
-    pub(super) fn pass_ms(&self, name: &str) -> Option<f64> {
+    pub(in crate::app) fn pass_ms(&self, name: &str) -> Option<f64> {
         let mut of_name = self.passes.iter().filter(|pass| pass.name == name).map(|pass| pass.ms).peekable();
         of_name.peek()?;
         Some(of_name.sum())
@@ -76,19 +76,19 @@ impl Sample {
 }
 
 /// Device times of a finished frame.
-pub(super) struct DeviceTimes<'a> {
+pub(in crate::app) struct DeviceTimes<'a> {
     /// Serial number of the frame.
-    pub(super) serial: u64,
-    pub(super) ms: f64,
-    pub(super) passes: &'a [PassTime],
-    pub(super) counts: DrawCounts,
+    pub(in crate::app) serial: u64,
+    pub(in crate::app) ms: f64,
+    pub(in crate::app) passes: &'a [PassTime],
+    pub(in crate::app) counts: DrawCounts,
     /// Whether the device compiles in the first frame of new shaders, as a software device does.
-    pub(super) compiles_in_frame: bool,
+    pub(in crate::app) compiles_in_frame: bool,
 }
 
 /// The history.
 #[derive(Default)]
-pub(super) struct Timing {
+pub(in crate::app) struct Timing {
     /// Frames that the device has not finished: serial number, what they show, and the CPU's times.
     submitted: VecDeque<(u64, Shown, CpuTimes)>,
     /// Frames that have drawn the picture.
@@ -104,7 +104,7 @@ pub(super) struct Timing {
 
 impl Timing {
     /// Notes a frame that goes to the device.
-    pub(super) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
+    pub(in crate::app) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
         self.submitted.push_back((serial, shown, cpu));
         if self.submitted.len() > 8 {
             self.submitted.pop_front();
@@ -115,7 +115,7 @@ impl Timing {
     }
 
     /// Takes the times of a finished frame, once.
-    pub(super) fn finished(&mut self, times: &DeviceTimes<'_>) {
+    pub(in crate::app) fn finished(&mut self, times: &DeviceTimes<'_>) {
         let Some(at) = self.submitted.iter().position(|(serial, ..)| *serial == times.serial) else { return };
         let Some((_, shown, cpu)) = self.submitted.drain(..=at).next_back() else { return };
         let DeviceTimes { ms, passes, counts, .. } = *times;
@@ -128,33 +128,33 @@ impl Timing {
     }
 
     /// Frames that have drawn the picture, the oldest first.
-    pub(super) fn pictures(&self) -> &VecDeque<Sample> {
+    pub(in crate::app) fn pictures(&self) -> &VecDeque<Sample> {
         &self.pictures
     }
 
     /// The CPU's times of the last frames, the oldest first.
-    pub(super) fn frames(&self) -> &VecDeque<CpuTimes> {
+    pub(in crate::app) fn frames(&self) -> &VecDeque<CpuTimes> {
         &self.frames
     }
 
     /// Device time of the last frame that drew the picture, milliseconds.
-    pub(super) fn frame_ms(&self) -> Option<f64> {
+    pub(in crate::app) fn frame_ms(&self) -> Option<f64> {
         self.pictures.back().map(|sample| sample.device_ms)
     }
 
     /// Cost of the last edit; `None` before the first edit.
-    pub(super) fn cost(&self) -> Option<Cost> {
+    pub(in crate::app) fn cost(&self) -> Option<Cost> {
         self.cost.cost()
     }
 
     /// Number of frames so far, and the time that the panels took in the last of them.
-    pub(super) fn summary(&self) -> (u64, Summary) {
+    pub(in crate::app) fn summary(&self) -> (u64, Summary) {
         (self.drawn, Summary::of(self.ui_ms.iter().copied()))
     }
 
     /// Whether to draw the picture once more although it is the same, because too few frames tell what new shaders take. Each call
     /// counts as a frame.
-    pub(super) fn wants_frame(&mut self, shown: &Shown) -> bool {
+    pub(in crate::app) fn wants_frame(&mut self, shown: &Shown) -> bool {
         if self.extra.as_ref().is_none_or(|(of, _)| of != shown) {
             self.extra = Some((shown.clone(), 0));
         }
@@ -172,7 +172,7 @@ fn push<T>(list: &mut VecDeque<T>, item: T, most: usize) {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(in crate::app) mod tests {
     use super::*;
 
     pub(in crate::app) fn shown(generation: u64) -> Shown {

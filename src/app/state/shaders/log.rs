@@ -12,16 +12,16 @@ const MOST: usize = 64;
 
 /// An edit, and the time of each of its steps.
 #[derive(Clone, Debug)]
-pub(super) struct Edit {
-    pub(super) at: DateTime<Local>,
-    pub(super) reload: ReloadEvent,
+pub(in crate::app) struct Edit {
+    pub(in crate::app) at: DateTime<Local>,
+    pub(in crate::app) reload: ReloadEvent,
     /// The stages that were compiled after the picture was on screen.
-    pub(super) rest: Option<CompletedEvent>,
+    pub(in crate::app) rest: Option<CompletedEvent>,
 }
 
 impl Edit {
     /// The times of the steps: `4 + 9 + 16 ms` to compile, for the pipelines, and for the first frame.
-    pub(super) fn times(&self) -> String {
+    pub(in crate::app) fn times(&self) -> String {
         let ReloadEvent { compile_ms, pipeline_ms, first_frame_ms, ok, .. } = &self.reload;
         match ok {
             true => format!("{compile_ms:.0} + {pipeline_ms:.0} + {first_frame_ms:.0} ms"),
@@ -31,7 +31,7 @@ impl Edit {
 }
 
 /// The changed files without folders, and the stages that a reload has reached: `ndf.glsl -> pbr.frag`.
-pub(super) fn reached(reload: &ReloadEvent) -> String {
+pub(in crate::app) fn reached(reload: &ReloadEvent) -> String {
     let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
     let changed: Vec<String> = reload.changed.iter().map(name).collect();
     match (changed.as_slice(), reload.stages.as_slice()) {
@@ -44,7 +44,7 @@ pub(super) fn reached(reload: &ReloadEvent) -> String {
 
 /// The last edits, the newest first.
 #[derive(Default)]
-pub(super) struct ShaderLog {
+pub(in crate::app) struct ShaderLog {
     edits: VecDeque<Edit>,
     /// Time to compile each stage, the last time that it was, in milliseconds.
     compile_ms: BTreeMap<String, f64>,
@@ -56,7 +56,7 @@ pub(super) struct ShaderLog {
 
 impl ShaderLog {
     /// Notes what a reload has compiled. `is_good`: nothing of the edit is wrong.
-    pub(super) fn compiled(&mut self, report: &Report, is_good: bool) {
+    pub(in crate::app) fn compiled(&mut self, report: &Report, is_good: bool) {
         self.compile_ms.extend(report.stages.iter().cloned());
         let is_again = |stage: &String| report.stages.iter().any(|(compiled, _)| compiled == stage);
         self.failed.retain(|stage| !is_good && !is_again(stage));
@@ -65,7 +65,7 @@ impl ShaderLog {
     }
 
     /// Notes a finished reload.
-    pub(super) fn finished(&mut self, reload: &ReloadEvent) {
+    pub(in crate::app) fn finished(&mut self, reload: &ReloadEvent) {
         if self.edits.front().is_some_and(|last| last.reload.generation > reload.generation) {
             // Another tree, or the worker has started again.
             self.edits.clear();
@@ -75,27 +75,27 @@ impl ShaderLog {
     }
 
     /// Notes the stages that were compiled after the picture was on screen.
-    pub(super) fn completed(&mut self, event: &CompletedEvent) {
+    pub(in crate::app) fn completed(&mut self, event: &CompletedEvent) {
         let of = self.edits.iter_mut().find(|edit| edit.reload.ok && edit.reload.generation == event.generation);
         if let Some(edit) = of {
             edit.rest = Some(event.clone());
         }
     }
 
-    pub(super) fn edits(&self) -> impl ExactSizeIterator<Item = &Edit> {
+    pub(in crate::app) fn edits(&self) -> impl ExactSizeIterator<Item = &Edit> {
         self.edits.iter()
     }
 
-    pub(super) fn compile_ms(&self, stage: &str) -> Option<f64> {
+    pub(in crate::app) fn compile_ms(&self, stage: &str) -> Option<f64> {
         self.compile_ms.get(stage).copied()
     }
 
-    pub(super) fn has_failed(&self, stage: &str) -> bool {
+    pub(in crate::app) fn has_failed(&self, stage: &str) -> bool {
         self.failed.contains(stage)
     }
 
     /// Whether a file, as displayed, waits for the repair of others.
-    pub(super) fn is_waiting(&self, file: &str) -> bool {
+    pub(in crate::app) fn is_waiting(&self, file: &str) -> bool {
         self.waiting.iter().any(|waiting| waiting == file)
     }
 }

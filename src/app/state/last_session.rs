@@ -7,9 +7,9 @@ use chrono::{DateTime, Local};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::state;
 use crate::recovery::Work;
 use crate::scene::BUILT_IN;
+use crate::state;
 
 const FILE: &str = "sessions.json";
 /// Most directories that are remembered.
@@ -27,17 +27,17 @@ struct Stored {
 
 /// A session that has ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct LastSession {
+pub(in crate::app) struct LastSession {
     /// The working directory.
     directory: PathBuf,
     /// When its window closed, in seconds since 1970.
     at: i64,
-    pub(super) work: Work,
+    pub(in crate::app) work: Work,
 }
 
 impl LastSession {
     /// Describes the session for the user.
-    pub(super) fn words(&self) -> String {
+    pub(in crate::app) fn words(&self) -> String {
         let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let model = self.work.model.as_ref().map_or_else(|| BUILT_IN[0].to_owned(), name);
         let settings = &self.work.settings;
@@ -57,27 +57,27 @@ impl LastSession {
 
 /// Earlier sessions.
 #[derive(Default)]
-pub(super) struct LastSessions {
+pub(in crate::app) struct LastSessions {
     /// Whether a window goes on with the last session by itself.
     always: bool,
     /// The last session in the working directory.
-    pub(super) here: Option<LastSession>,
+    pub(in crate::app) here: Option<LastSession>,
 }
 
 impl LastSessions {
-    pub(super) fn restored() -> Self {
+    pub(in crate::app) fn restored() -> Self {
         let stored = load();
         let directory = std::env::current_dir().ok();
         let here = directory.and_then(|directory| find(&stored, &directory)).filter(LastSession::is_there);
         Self { always: stored.always, here }
     }
 
-    pub(super) fn is_always(&self) -> bool {
+    pub(in crate::app) fn is_always(&self) -> bool {
         self.always
     }
 
     /// Stores whether a window goes on with the last session by itself.
-    pub(super) fn set_always(&mut self, always: bool) {
+    pub(in crate::app) fn set_always(&mut self, always: bool) {
         self.always = always;
         save(&Stored { always, ..load() });
     }
@@ -90,7 +90,7 @@ pub fn session_to_restore() -> Option<Work> {
 }
 
 /// Remembers the work of a session that ends.
-pub(super) fn remember(work: &Work) {
+pub(in crate::app) fn remember(work: &Work) {
     let Ok(directory) = std::env::current_dir() else { return };
     // Another window may have written the file meanwhile.
     let mut stored = load();

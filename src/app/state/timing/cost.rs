@@ -50,16 +50,16 @@ impl Cost {
 
 /// Collects the frames before and after an edit.
 #[derive(Default)]
-pub(super) struct Tracker {
+pub(in crate::app) struct Tracker {
     /// Whether the device compiles in the first frame of new shaders, whose time then says nothing about the shaders.
-    pub(super) compiles_in_frame: bool,
+    pub(in crate::app) compiles_in_frame: bool,
     before: Vec<Sample>,
     after: VecDeque<Sample>,
 }
 
 impl Tracker {
     /// Takes a frame that drew the picture. `earlier`: those before it.
-    pub(super) fn take(&mut self, sample: &Sample, earlier: &VecDeque<Sample>) {
+    pub(in crate::app) fn take(&mut self, sample: &Sample, earlier: &VecDeque<Sample>) {
         let newest = earlier.back().map(|last| &last.shown);
         if newest.is_some_and(|last| last.generation < sample.shown.generation) {
             // The frames before the edit that show the same.
@@ -80,7 +80,7 @@ impl Tracker {
         }
     }
 
-    pub(super) fn cost(&self) -> Option<Cost> {
+    pub(in crate::app) fn cost(&self) -> Option<Cost> {
         let after = self.of_value(self.after.iter().rev().cloned().collect());
         let (before, first) = (self.before.first()?, after.first()?);
         let sides = [&self.before, &after];

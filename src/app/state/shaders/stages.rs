@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::shader_log::ShaderLog;
+use super::log::ShaderLog;
 use crate::frame::PipelineRequest;
 use crate::pipeline::{Figure, PipelineSet, StageReport, figures};
 use crate::shader::{ShaderSet, StageKind, TreePath};
 
 /// Current state of a shader stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum StageState {
+pub(in crate::app) enum StageState {
     /// Its newest text does not compile.
     Failed,
     /// It draws the picture.
@@ -24,7 +24,7 @@ pub(super) enum StageState {
 }
 
 impl StageState {
-    pub(super) fn words(self) -> (&'static str, &'static str) {
+    pub(in crate::app) fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Failed => {
                 ("failed", "Its newest version does not compile. The last version that compiled stays in use")
@@ -39,21 +39,21 @@ impl StageState {
 
 /// A row of the table.
 #[derive(Clone, Debug)]
-pub(super) struct StageRow {
-    pub(super) path: String,
-    pub(super) state: StageState,
+pub(in crate::app) struct StageRow {
+    pub(in crate::app) path: String,
+    pub(in crate::app) state: StageState,
     /// Time to compile it, the last time that it was, in milliseconds.
-    pub(super) compile_ms: Option<f64>,
-    pub(super) now: StageReport,
+    pub(in crate::app) compile_ms: Option<f64>,
+    pub(in crate::app) now: StageReport,
     /// The same in the version before.
-    pub(super) before: Option<StageReport>,
+    pub(in crate::app) before: Option<StageReport>,
     /// Its numbers in a line.
-    pub(super) figures: Vec<Figure>,
+    pub(in crate::app) figures: Vec<Figure>,
 }
 
 /// The table. It is made anew only when the shaders, the picture, or what is known of them changes.
 #[derive(Default)]
-pub(super) struct StageTable {
+pub(in crate::app) struct StageTable {
     rows: Vec<StageRow>,
     /// Path of the stage that draws the model, or the pass that covers it.
     main: String,
@@ -62,27 +62,27 @@ pub(super) struct StageTable {
 
 impl StageTable {
     /// All stages: those that failed first, then those on screen.
-    pub(super) fn rows(&self) -> &[StageRow] {
+    pub(in crate::app) fn rows(&self) -> &[StageRow] {
         &self.rows
     }
 
     /// The stage that draws the model, or the pass that covers it.
-    pub(super) fn main(&self) -> Option<&StageRow> {
+    pub(in crate::app) fn main(&self) -> Option<&StageRow> {
         self.rows.iter().find(|row| row.path == self.main)
     }
 
     /// Whether the table is of other shaders or another picture.
-    pub(super) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) -> bool {
+    pub(in crate::app) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) -> bool {
         !self.made_of.as_ref().is_some_and(|(of, known)| Arc::ptr_eq(of, set) && known == request)
     }
 
     /// Marks what is known of the stages as changed.
-    pub(super) fn invalidate(&mut self) {
+    pub(in crate::app) fn invalidate(&mut self) {
         self.made_of = None;
     }
 
     /// Makes the table of a set. `before` is the version before.
-    pub(super) fn update(
+    pub(in crate::app) fn update(
         &mut self,
         set: &Arc<PipelineSet>,
         request: &PipelineRequest,

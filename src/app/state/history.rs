@@ -7,7 +7,7 @@ const STEPS: usize = 100;
 
 /// The settings before and after each change, apart from the camera, the mode and what orbits by itself.
 #[derive(Default)]
-pub(super) struct History {
+pub(in crate::app) struct History {
     past: Vec<Settings>,
     future: Vec<Settings>,
     /// The settings when they were last recorded.
@@ -16,7 +16,7 @@ pub(super) struct History {
 
 impl History {
     /// Records the settings of a frame as a step if they have changed. `is_held`: a control is being dragged, so the step goes on.
-    pub(super) fn record(&mut self, now: &Settings, is_held: bool) {
+    pub(in crate::app) fn record(&mut self, now: &Settings, is_held: bool) {
         let Some(last) = &self.last else {
             self.last = Some(now.clone());
             return;
@@ -30,13 +30,13 @@ impl History {
     }
 
     /// Takes the last step back. Returns whether there was one.
-    pub(super) fn undo(&mut self, now: &mut Settings) -> bool {
+    pub(in crate::app) fn undo(&mut self, now: &mut Settings) -> bool {
         self.record(now, false);
         Self::step(&mut self.past, &mut self.future, &mut self.last, now)
     }
 
     /// Takes the last undo back. Returns whether there was one.
-    pub(super) fn redo(&mut self, now: &mut Settings) -> bool {
+    pub(in crate::app) fn redo(&mut self, now: &mut Settings) -> bool {
         self.record(now, false);
         Self::step(&mut self.future, &mut self.past, &mut self.last, now)
     }

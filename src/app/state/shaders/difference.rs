@@ -12,7 +12,7 @@ const CONTEXT: usize = 2;
 
 /// Kind of a line in a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in crate::app) enum Kind {
     /// The name of the file that the next lines are of, or a gap between them.
     Place,
     Removed,
@@ -22,14 +22,17 @@ pub(super) enum Kind {
 
 /// A line of a difference.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Line {
-    pub(super) kind: Kind,
+pub(in crate::app) struct Line {
+    pub(in crate::app) kind: Kind,
     /// Its text with a sign in front, as in a unified difference.
-    pub(super) text: String,
+    pub(in crate::app) text: String,
 }
 
 /// The lines in which the files differ, file by file.
-pub(super) fn difference(before: &BTreeMap<TreePath, Arc<str>>, after: &BTreeMap<TreePath, Arc<str>>) -> Vec<Line> {
+pub(in crate::app) fn difference(
+    before: &BTreeMap<TreePath, Arc<str>>,
+    after: &BTreeMap<TreePath, Arc<str>>,
+) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut add = |kind, text: String| lines.push(Line { kind, text });
     let paths = before.keys().chain(after.keys().filter(|path| !before.contains_key(*path)));

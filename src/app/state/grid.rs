@@ -1,33 +1,39 @@
 //! Several modes side by side in the picture: which modes, and where each lies.
 
-use super::screen::PictureRect;
 use crate::shader::{Mode, PATHS_STAGE};
 
 /// Most modes at once.
 const MOST: usize = 9;
 /// Pixels between two modes.
-pub(super) const GAP: u32 = 3;
+pub(in crate::app) const GAP: u32 = 3;
+
+/// A part of the window that shows a picture, in pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::app) struct PictureRect {
+    pub(in crate::app) at: (u32, u32),
+    pub(in crate::app) size: (u32, u32),
+}
 
 /// The modes that are shown side by side.
 #[derive(Default)]
-pub(super) struct Grid {
+pub(in crate::app) struct Grid {
     /// Their slugs, row by row. Fewer than two are no grid.
     modes: Vec<String>,
 }
 
 impl Grid {
     /// Whether several modes are shown.
-    pub(super) fn is_on(&self) -> bool {
+    pub(in crate::app) fn is_on(&self) -> bool {
         self.modes.len() > 1
     }
 
     /// The slugs of the modes, row by row.
-    pub(super) fn modes(&self) -> &[String] {
+    pub(in crate::app) fn modes(&self) -> &[String] {
         &self.modes
     }
 
     /// Adds a mode beside the selected one, or takes it away. Returns whether there was room for it.
-    pub(super) fn toggle(&mut self, slug: &str, selected: &str) -> bool {
+    pub(in crate::app) fn toggle(&mut self, slug: &str, selected: &str) -> bool {
         if self.modes.is_empty() {
             self.modes.push(selected.to_owned());
         }
@@ -48,7 +54,7 @@ impl Grid {
     }
 
     /// Whether a mode can be one of several: it takes one frame.
-    pub(super) fn can_show(mode: &Mode) -> bool {
+    pub(in crate::app) fn can_show(mode: &Mode) -> bool {
         mode.stage != PATHS_STAGE && !mode.accumulate
     }
 
@@ -56,7 +62,7 @@ impl Grid {
     ///
     /// # Errors
     /// A message if there are too many.
-    pub(super) fn show(&mut self, modes: Vec<String>) -> Result<(), String> {
+    pub(in crate::app) fn show(&mut self, modes: Vec<String>) -> Result<(), String> {
         let mut each = Vec::new();
         for mode in modes {
             if !each.contains(&mode) {
@@ -71,12 +77,12 @@ impl Grid {
     }
 
     /// Shows one mode alone.
-    pub(super) fn end(&mut self) {
+    pub(in crate::app) fn end(&mut self) {
         self.modes.clear();
     }
 
     /// Ends when the selected mode is none of the grid's.
-    pub(super) fn follow(&mut self, selected: &str) {
+    pub(in crate::app) fn follow(&mut self, selected: &str) {
         if !self.modes.iter().any(|mode| mode == selected) {
             self.end();
         }
@@ -90,7 +96,7 @@ fn columns_and_rows(count: usize) -> (u32, u32) {
 }
 
 /// Where `count` pictures lie in `whole`, row by row, in pixels of the window, and then the places that stay empty.
-pub(super) fn places(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+pub(in crate::app) fn places(count: usize, whole: PictureRect) -> Vec<PictureRect> {
     let (columns, rows) = columns_and_rows(count);
     let side = |length: u32, parts: u32| (length.saturating_sub(GAP * (parts - 1)) / parts).max(1);
     let size = (side(whole.size.0, columns), side(whole.size.1, rows));
@@ -102,7 +108,7 @@ pub(super) fn places(count: usize, whole: PictureRect) -> Vec<PictureRect> {
 }
 
 /// The places of `count` pictures.
-pub(super) fn cells(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+pub(in crate::app) fn cells(count: usize, whole: PictureRect) -> Vec<PictureRect> {
     let mut cells = places(count, whole);
     cells.truncate(count);
     cells

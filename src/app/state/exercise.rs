@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::difference::{Line, difference};
+use super::shaders::difference::{Line, difference};
 use crate::learn::{Exercise, Finding, Progress};
 use crate::shader::{ShaderSet, TreePath};
 
 /// Commands that the exercise panel sends.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum LearnCommand {
+pub(in crate::app) enum LearnCommand {
     /// Open the exercise with this number.
     Open(usize),
     /// Show the list of exercises.
@@ -29,7 +29,7 @@ pub(super) enum LearnCommand {
 
 /// How far the measurement of the goals is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) enum Measured {
+pub(in crate::app) enum Measured {
     /// Nothing has been measured yet.
     #[default]
     Nothing,
@@ -41,47 +41,47 @@ pub(super) enum Measured {
 
 /// The exercise that is open.
 #[derive(Default)]
-pub(super) struct Learning {
+pub(in crate::app) struct Learning {
     /// `None`: the tree is none of an exercise, and the panel shows the list.
-    pub(super) exercise: Option<&'static Exercise>,
+    pub(in crate::app) exercise: Option<&'static Exercise>,
     /// Folder of its tree.
-    pub(super) folder: PathBuf,
-    pub(super) progress: Progress,
-    pub(super) measured: Measured,
+    pub(in crate::app) folder: PathBuf,
+    pub(in crate::app) progress: Progress,
+    pub(in crate::app) measured: Measured,
     /// Number of the request whose result is awaited.
-    pub(super) checking: Option<u64>,
+    pub(in crate::app) checking: Option<u64>,
     /// Whether the list is shown although an exercise is open.
-    pub(super) shows_list: bool,
+    pub(in crate::app) shows_list: bool,
     /// Difference between the current files and the solution, while the solution is shown.
-    pub(super) solution: Option<Vec<Line>>,
+    pub(in crate::app) solution: Option<Vec<Line>>,
     /// Whether the user is asked before the files of the start are written.
-    pub(super) asks: bool,
+    pub(in crate::app) asks: bool,
 }
 
 impl Learning {
-    pub(super) fn restored() -> Self {
+    pub(in crate::app) fn restored() -> Self {
         Self { progress: Progress::load(), ..Self::default() }
     }
 
     /// The folder that holds the folders of the exercises.
-    pub(super) fn parent(&self) -> PathBuf {
+    pub(in crate::app) fn parent(&self) -> PathBuf {
         let standard = || std::path::absolute("specula-learn").unwrap_or_else(|_| "specula-learn".into());
         self.progress.folder.clone().unwrap_or_else(standard)
     }
 
     /// Takes the exercise of a tree that has been opened.
-    pub(super) fn open(&mut self, folder: &Path, exercise: Option<&'static Exercise>) {
+    pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<&'static Exercise>) {
         let progress = std::mem::take(&mut self.progress);
         *self = Self { exercise, folder: folder.to_owned(), progress, ..Self::default() };
     }
 
     /// Whether all goals are reached.
-    pub(super) fn is_solved(&self) -> bool {
+    pub(in crate::app) fn is_solved(&self) -> bool {
         matches!(&self.measured, Measured::Findings(all) if all.iter().all(|finding| finding.passed))
     }
 
     /// Compares the solution with the files on screen.
-    pub(super) fn update_solution(&mut self, shaders: Option<&ShaderSet>) {
+    pub(in crate::app) fn update_solution(&mut self, shaders: Option<&ShaderSet>) {
         let Some((exercise, shaders)) = self.exercise.zip(shaders).filter(|_| self.solution.is_some()) else { return };
         let after: BTreeMap<TreePath, Arc<str>> =
             exercise.solution().map(|(path, text)| (path.clone(), Arc::from(text))).collect();

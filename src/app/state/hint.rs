@@ -3,9 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::dialog::{self, Dialog};
 use crate::events::ReloadEvent;
-use crate::shader::embedded;
 use crate::state;
 
 const FILE: &str = "hint.json";
@@ -13,34 +11,34 @@ const FILE: &str = "hint.json";
 const DISMISSED: &str = "{\"dismissed\": true}";
 
 /// Whether the hint is shown, and what it offers.
-pub(super) struct Hint {
+pub(in crate::app) struct Hint {
     is_shown: bool,
     /// The folder to which its button writes the built-in shaders.
-    pub(super) folder: PathBuf,
+    pub(in crate::app) folder: PathBuf,
 }
 
 impl Hint {
-    pub(super) fn restored() -> Self {
+    pub(in crate::app) fn restored() -> Self {
         Self { is_shown: state::load(FILE).is_none(), folder: standard_folder(Path::new("")) }
     }
 
-    pub(super) fn is_shown(&self) -> bool {
+    pub(in crate::app) fn is_shown(&self) -> bool {
         self.is_shown
     }
 
     /// Hides it in this run.
-    pub(super) fn hide(&mut self) {
+    pub(in crate::app) fn hide(&mut self) {
         self.is_shown = false;
     }
 
     /// Hides it for good.
-    pub(super) fn dismiss(&mut self) {
+    pub(in crate::app) fn dismiss(&mut self) {
         self.is_shown = false;
         state::save(FILE, DISMISSED);
     }
 
     /// Dismisses it if a save of the user's own files has changed the picture: the user has done what it says.
-    pub(super) fn saved(&mut self, reload: &ReloadEvent) {
+    pub(in crate::app) fn saved(&mut self, reload: &ReloadEvent) {
         if self.is_shown && reaches_picture(reload) {
             self.dismiss();
         }
@@ -59,27 +57,6 @@ fn standard_folder(working: &Path) -> PathBuf {
         entries.map_or(!working.join(name).exists(), |mut entries| entries.next().is_none())
     };
     ["shaders", "specula-shaders", "specula-shaders-2"].into_iter().find(is_free).unwrap_or("specula-shaders-3").into()
-}
-
-/// Writes the built-in shaders, as `specula new` does, and returns their folder. Without a folder the user chooses one. It blocks, so
-/// it runs on a thread of its own.
-///
-/// # Errors
-/// A message: there is no dialog, or the folder cannot be written.
-pub(super) fn write_tree(folder: Option<PathBuf>) -> Result<Option<PathBuf>, String> {
-    let folder = match folder {
-        Some(folder) => Some(folder),
-        // A folder that holds other files gets one inside.
-        None => dialog::choose(Dialog::New)?.map(|chosen| {
-            let holds_files = std::fs::read_dir(&chosen).is_ok_and(|mut entries| entries.next().is_some());
-            if holds_files { chosen.join("specula-shaders") } else { chosen }
-        }),
-    };
-    let Some(folder) = folder else { return Ok(None) };
-    let folder = std::path::absolute(&folder).unwrap_or(folder);
-    embedded::write_to(&folder, None)
-        .map(|_| Some(folder.clone()))
-        .map_err(|error| format!("cannot write the shaders to {}: {error}", folder.display()))
 }
 
 #[cfg(test)]
@@ -113,14 +90,5 @@ mod tests {
         ] {
             assert!(!reaches_picture(&other), "{other:?}");
         }
-    }
-
-    #[test]
-    fn the_tree_is_written_once() {
-        let working = tempfile::tempdir().unwrap();
-        let folder = working.path().join("shaders");
-        assert_eq!(write_tree(Some(folder.clone())), Ok(Some(folder.clone())));
-        assert!(folder.join("user.glsl").is_file());
-        assert!(write_tree(Some(folder)).unwrap_err().contains("not empty"));
     }
 }

@@ -5,7 +5,7 @@ use crate::scene::{Model, TextureSource};
 
 /// A part of the scene. Indices are into the vectors of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) enum Selected {
+pub(in crate::app) enum Selected {
     #[default]
     Nothing,
     /// A node with all below it.
@@ -20,7 +20,7 @@ pub(super) enum Selected {
 
 /// A light: one of the settings, or one of the model's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum LightId {
+pub(in crate::app) enum LightId {
     Orbit(usize),
     Rectangle,
     Model(usize),
@@ -28,7 +28,7 @@ pub(super) enum LightId {
 
 impl Selected {
     /// Whether each instance belongs to the selection; empty if none does.
-    pub(super) fn instances(self, scene: &Scene) -> Vec<bool> {
+    pub(in crate::app) fn instances(self, scene: &Scene) -> Vec<bool> {
         let model = scene.model();
         match self {
             Self::Node(node) => model.named(&[model.node_key(node)]),
@@ -41,12 +41,12 @@ impl Selected {
     }
 
     /// The selection after a click on an instance: that instance, or nothing if it was selected already.
-    pub(super) fn clicked(self, instance: Option<usize>) -> Self {
+    pub(in crate::app) fn clicked(self, instance: Option<usize>) -> Self {
         instance.map(Self::Instance).filter(|selected| *selected != self).unwrap_or_default()
     }
 
     /// The name by which settings hide and isolate it.
-    pub(super) fn key(self, model: &Model) -> Option<String> {
+    pub(in crate::app) fn key(self, model: &Model) -> Option<String> {
         match self {
             Self::Node(node) => Some(model.node_key(node)),
             Self::Instance(index) => {
@@ -62,7 +62,7 @@ impl Selected {
     }
 
     /// The material that it has.
-    pub(super) fn material(self, scene: &Scene) -> Option<usize> {
+    pub(in crate::app) fn material(self, scene: &Scene) -> Option<usize> {
         let instances = &scene.model().instances;
         match self {
             Self::Material(material) => Some(material),
@@ -73,7 +73,7 @@ impl Selected {
     }
 
     /// Whether the model has it.
-    pub(super) fn is_in(self, model: &Model) -> bool {
+    pub(in crate::app) fn is_in(self, model: &Model) -> bool {
         match self {
             Self::Nothing | Self::Light(LightId::Orbit(_) | LightId::Rectangle) => true,
             Self::Node(node) => node < model.nodes.len(),
@@ -86,7 +86,7 @@ impl Selected {
     }
 
     /// Whether both versions of a model have it, under the same name. After a file has changed, an index may mean another part.
-    pub(super) fn is_same(self, before: &Model, after: &Model) -> bool {
+    pub(in crate::app) fn is_same(self, before: &Model, after: &Model) -> bool {
         self.is_in(before) && self.is_in(after) && self.name(before) == self.name(after)
     }
 
@@ -103,7 +103,7 @@ impl Selected {
 }
 
 /// Whether an outline of these instances tells something: others are drawn, too, or they are of several nodes.
-pub(super) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
+pub(in crate::app) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
     let nodes: Vec<(usize, usize)> =
         scene.numbered_instances().map(|(index, instance)| (index, instance.node)).collect();
     let is_other = |(index, node): &(usize, usize)| *node != nodes[0].1 || instances.get(*index) != Some(&true);
@@ -111,7 +111,7 @@ pub(super) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
 }
 
 /// The material that all of these instances have.
-pub(super) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize> {
+pub(in crate::app) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize> {
     let selected = scene.model().instances.iter().zip(instances).filter(|(_, is)| **is);
     let mut found = selected.map(|(instance, _)| scene.material_of(instance));
     let first = found.next()?;
@@ -119,7 +119,7 @@ pub(super) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize
 }
 
 /// Names of a node, a camera or a light that may have none.
-pub(super) fn name_or(name: &str, other: impl FnOnce() -> String) -> String {
+pub(in crate::app) fn name_or(name: &str, other: impl FnOnce() -> String) -> String {
     if name.is_empty() { other() } else { name.to_owned() }
 }
 

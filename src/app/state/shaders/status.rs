@@ -1,0 +1,28 @@
+//! The state of the shader tree.
+
+use std::path::PathBuf;
+
+use super::log::ShaderLog;
+use crate::events::ReloadEvent;
+use crate::frame::PipelineRequest;
+
+/// The state of the shader tree.
+#[derive(Default)]
+pub(in crate::app) struct ShaderStatus {
+    /// Name of the tree: its folder, or that of the built-in tree.
+    pub(in crate::app) tree: String,
+    /// Folder or file of a tree on disk.
+    pub(in crate::app) location: Option<PathBuf>,
+    /// Whether the tree is a single file of another playground.
+    pub(in crate::app) is_single_file: bool,
+    /// Whether a compile is under way.
+    pub(in crate::app) compiling: bool,
+    /// The last finished reload.
+    pub(in crate::app) last: Option<ReloadEvent>,
+    /// Log of the last edits.
+    pub(in crate::app) log: ShaderLog,
+    /// Whether to ask the driver about the machine code of each picture.
+    pub(in crate::app) asks_driver: bool,
+    /// The picture that the driver was last asked about.
+    pub(in crate::app) told: Option<PipelineRequest>,
+}
