@@ -1,5 +1,6 @@
 //! `specula bench reload|frame|load|bake|thumbnails|passes`: measures times on this machine, and prints them with the device's name.
 
+mod edits;
 mod passes;
 
 use std::collections::BTreeMap;
@@ -54,6 +55,9 @@ pub struct Args {
     /// File to edit for reload, relative to the root of the tree. The edit changes no pixel
     #[arg(long, value_name = "FILE", default_value = "pbr.frag")]
     edit: String,
+    /// Replay the edits of this file for reload, with and without compiling only edited functions
+    #[arg(long, value_name = "FILE", hide = true)]
+    edits: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -70,6 +74,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
     let mut result = match args.what {
+        What::Reload if args.edits.is_some() => edits::edits(&args, &gpu, &compiler, &progress)?,
         What::Reload => reload(&args, &gpu, &compiler, &progress)?,
         What::Frame => frame(&args, &gpu, &compiler, &progress)?,
         What::Load => load(&args, &gpu, &compiler, (start, &progress))?,

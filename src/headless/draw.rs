@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Headless, HeadlessError};
 use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image, Use};
-use crate::render::{BoundFrame, Capture, Output, Redraw, View};
+use crate::render::{BoundFrame, Capture, Output, ProvideError, Redraw, View};
 
 /// How far a picture or a readout is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,6 +106,16 @@ impl Headless {
     /// As [`Headless::render`].
     pub fn draw(&mut self) -> Result<(), HeadlessError> {
         let frame = self.bind()?;
+        self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
+    }
+
+    /// [`Headless::draw`] of the first picture that a window shows after an edit: in the light that was baked before it.
+    ///
+    /// # Errors
+    /// Settings that do not fit, a device error, or a resource that no edit replaces is missing.
+    pub fn draw_on_screen(&mut self) -> Result<(), HeadlessError> {
+        let state = Arc::new(self.frame_state()?);
+        let frame = self.resources.bind(&state, false)?.ok_or(ProvideError::Stale)?;
         self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
     }
 

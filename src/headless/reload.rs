@@ -20,6 +20,16 @@ impl Headless {
         self.reload(|reloader, request| reloader.update_first(change, true, request, || false))
     }
 
+    /// Reloads the changed shaders that a window needs for its next picture: not those that only bake light.
+    pub fn update_on_screen(&mut self, change: Change) -> Reload {
+        self.reload(|reloader, request| reloader.update_first(change, false, request, || false))
+    }
+
+    /// Selects whether edits compile whole stages instead of edited functions.
+    pub fn compile_whole(&mut self, is_whole: bool) {
+        self.reloader.compile_whole(is_whole);
+    }
+
     /// Compiles the stages that [`Headless::update_first`] has left; `None` if there are none.
     pub fn finish(&mut self) -> Option<Reload> {
         let is_pending = self.session.shaders.as_ref().is_some_and(|shaders| !shaders.pending.is_empty());

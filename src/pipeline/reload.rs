@@ -105,6 +105,11 @@ impl Reloader {
         &self.library
     }
 
+    /// [`Library::compile_whole`].
+    pub fn compile_whole(&mut self, is_whole: bool) {
+        self.library.compile_whole(is_whole);
+    }
+
     /// Compiles the stages that `change` made dirty, and builds the pipelines that `request` returns for the new shaders.
     pub fn update(&mut self, change: Change, request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest) -> Reload {
         let update = self.library.update(&change);

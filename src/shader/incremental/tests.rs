@@ -207,6 +207,37 @@ fn fifty_edits_one_after_the_other() {
     assert!((0.98..1.02).contains(&growth), "{} words, {} at first", last.spirv.len(), first.spirv.len());
 }
 
+/// The edits that `specula bench reload --edits` times.
+#[test]
+fn edits_of_users() {
+    let list: toml::Table = include_str!("../../../tests/edits.toml").parse().unwrap();
+    let edits = list["edit"].as_array().unwrap();
+    assert_eq!(edits.len(), 40);
+    let texts = shipped();
+    let stages: Vec<TreePath> = texts.keys().filter(|path| StageKind::of(path).is_some()).cloned().collect();
+    let bases: BTreeMap<TreePath, Built> =
+        stages.into_par_iter().map(|stage| (stage.clone(), whole(&texts, &stage).unwrap())).collect();
+    let linked = edits.par_iter().filter(|edit| {
+        let [file, from, to] = ["file", "from", "to"].map(|name| edit[name].as_str().unwrap());
+        let file = TreePath::from(file);
+        let text = &texts[&file];
+        assert_eq!(text.matches(from).count(), 1, "{file}: {from}");
+        let mut edited = texts.clone();
+        edited.insert(file.clone(), text.replacen(from, &to.replace("{n}", "1"), 1));
+        // What a window compiles first, and else any stage.
+        let first = ["pbr.frag", "debug.frag"].map(TreePath::from);
+        let stages = first.iter().chain(bases.keys());
+        let (stage, base) =
+            stages.map(|stage| (stage, &bases[stage])).find(|(_, base)| base.files.contains_key(&file)).unwrap();
+        let expected = whole(&edited, stage).unwrap_or_else(|error| panic!("{file}: {to}: {error}"));
+        let linked = incremental(&edited, stage, base);
+        linked.iter().for_each(|linked| assert_same(&linked.spirv, &expected.spirv, &format!("{file}: {to}")));
+        linked.is_some()
+    });
+    let linked = linked.count();
+    assert!(linked >= 28, "{linked} of 40 edits are linked");
+}
+
 const SMALL: &str = "#version 460
     layout(location = 0) in vec4 x;
     layout(location = 0) out vec4 color;

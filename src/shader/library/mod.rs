@@ -147,6 +147,8 @@ pub struct Library {
     watched: Option<Watched>,
     /// Whether the source holds a part of a tree, so that annotations may name what is in other files.
     is_part: bool,
+    /// See [`Library::compile_whole`].
+    is_whole: bool,
 }
 
 impl Library {
@@ -155,13 +157,18 @@ impl Library {
         let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
         let (fixed, beside) = (slots.len(), BTreeSet::new());
-        let (set, failed, relink, watched, is_part) = (None, false, false, None, false);
-        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched, is_part }
+        let (set, failed, relink, watched, is_part, is_whole) = (None, false, false, None, false, false);
+        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched, is_part, is_whole }
     }
 
     /// A library whose source holds a part of a tree: the constants that `when=` names may be in other files.
     pub fn of_part(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         Self { is_part: true, ..Self::new(source, compiler, stages) }
+    }
+
+    /// Selects whether edits compile whole stages instead of edited functions, for `specula bench reload --edits`.
+    pub fn compile_whole(&mut self, is_whole: bool) {
+        self.is_whole = is_whole;
     }
 
     /// The tree.
@@ -302,7 +309,7 @@ impl Library {
     ) {
         let (compiler, cache) = (&self.compiler, &self.cache);
         let bases: Vec<Option<&Built>> =
-            stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole)).collect();
+            stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole && !self.is_whole)).collect();
         let compiled: Vec<(usize, Done)> = stages
             .par_iter()
             .zip(bases)
