@@ -42,7 +42,7 @@ use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::WorkerMessage;
-use crate::threads::{Message, Outbox, watch_files};
+use crate::threads::{Message, MessageSender, watch_files};
 use screen::{Next, Screen};
 use viewer::Viewer;
 
@@ -115,13 +115,13 @@ pub fn run(mut options: AppOptions) -> Result<(), AppError> {
     // Its end writes the last events, so it outlives the window.
     let control = std::mem::take(&mut options.control);
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
-    let outbox = Outbox::new(event_loop.create_proxy());
+    let sender = MessageSender::new(event_loop.create_proxy());
     if let Some(socket) = control.socket() {
         emit(control.clients(), &Event::Listening { socket: &socket.display().to_string() });
     }
-    let early = Early::begin(&options, control.clients(), &outbox);
+    let early = Early::begin(&options, control.clients(), &sender);
     let asked = control.asked();
-    let mut app = App { outbox, asked, options: Some((options, early)), open: None, result: Ok(()) };
+    let mut app = App { sender, asked, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
 }
@@ -142,10 +142,10 @@ struct Early {
 }
 
 impl Early {
-    fn begin(options: &AppOptions, events: &Clients, outbox: &Outbox) -> Self {
+    fn begin(options: &AppOptions, events: &Clients, sender: &MessageSender) -> Self {
         // Watch the file before reading it, so that no save is missed in between.
         let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
-        let watcher = watch_files(&files, outbox).unwrap_or_else(|message| {
+        let watcher = watch_files(&files, sender).unwrap_or_else(|message| {
             crate::message::tell(message);
             None
         });
@@ -159,7 +159,7 @@ impl Early {
 }
 
 struct App {
-    outbox: Outbox,
+    sender: MessageSender,
     /// Commands from outside.
     asked: Receiver<Asked>,
     options: Option<(AppOptions, Early)>,
@@ -198,9 +198,9 @@ impl App {
         })?;
         let layouts = SetLayouts::new(&gpu)?;
         let mut screen = Screen::new(&gpu, &layouts, &window)?;
-        screen.init_accessibility(event_loop, &window, &self.outbox);
+        screen.init_accessibility(event_loop, &window, &self.sender);
         window.set_visible(true);
-        let viewer = Viewer::new(&gpu, &layouts, options, early, &self.outbox)?;
+        let viewer = Viewer::new(&gpu, &layouts, options, early, &self.sender)?;
         Ok(Open { viewer, screen, gpu, window })
     }
 
@@ -249,7 +249,7 @@ impl ApplicationHandler<Message> for App {
         let Some((options, early)) = self.options.take() else { return };
         match self.open(event_loop, options, early) {
             Ok(open) => {
-                self.outbox.pass_on(self.asked.clone());
+                self.sender.pass_on(self.asked.clone());
                 open.window.request_redraw();
                 self.open = Some(open);
             }

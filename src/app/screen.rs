@@ -39,7 +39,7 @@ use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRender
 use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
-use crate::threads::Outbox;
+use crate::threads::MessageSender;
 use background::Background;
 pub(super) use background::Next;
 use error_map::ErrorMap;
@@ -194,8 +194,8 @@ impl Screen {
     }
 
     /// Offers the window to screen readers. Nothing is made for them until one comes.
-    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, outbox: &Outbox) {
-        self.input.init_accesskit(event_loop, window, outbox.proxy());
+    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, sender: &MessageSender) {
+        self.input.init_accesskit(event_loop, window, sender.proxy());
     }
 
     pub(super) fn on_accessibility(&mut self, event: accesskit_winit::WindowEvent) {

@@ -44,7 +44,7 @@ use crate::session::Session;
 use crate::settings::{LightSource, Settings};
 use crate::shader::{Compiler, Diagnostic, Source};
 use crate::threads::worker::{Snapshot, Worker};
-use crate::threads::{Outbox, Threads};
+use crate::threads::{MessageSender, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
 use edits::Edits;
 pub(super) use edits::NO_FOLDER;
@@ -189,7 +189,7 @@ impl Viewer {
         layouts: &Arc<SetLayouts>,
         options: AppOptions,
         early: Early,
-        outbox: &Outbox,
+        sender: &MessageSender,
     ) -> Result<Self, GpuError> {
         let session = Session::new(options.settings);
         let lights = &session.settings.lights;
@@ -202,8 +202,8 @@ impl Viewer {
         };
         let source = options.source;
         let recorder = options.recorder;
-        let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
-        let threads = Threads::start((gpu, layouts), &options.compiler, worker, early.watcher, outbox);
+        let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, sender);
+        let threads = Threads::start((gpu, layouts), &options.compiler, worker, early.watcher, sender);
         let edits = Edits::new(&session.settings.expression);
         let mut viewer = Self {
             session,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
-use super::{Message, Outbox, Role};
+use super::{Message, MessageSender, TaskKind};
 use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::pipeline::PipelineSet;
@@ -37,7 +37,7 @@ struct Bake {
 /// Starts bakes, and cancels outdated ones.
 pub(crate) struct Baker {
     gpu: Arc<Gpu>,
-    outbox: Outbox,
+    sender: MessageSender,
     bake: Option<Bake>,
     /// The newest tables. The window takes them, and ignores older ones.
     tables: Option<TablesKey>,
@@ -51,11 +51,11 @@ pub(crate) struct Baker {
 }
 
 impl Baker {
-    pub(crate) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
+    pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
         let (newest, threads) = Default::default();
         Self {
             gpu: gpu.clone(),
-            outbox: outbox.clone(),
+            sender: sender.clone(),
             bake: None,
             tables: None,
             reading: None,
@@ -84,18 +84,18 @@ impl Baker {
         self.bake = Some(Bake { number, key: key.clone(), progress: (0.0, String::new()) });
         let (set, newest) = (set.clone(), self.newest.clone());
         let before = resources.baked_environment().cloned();
-        self.spawn(Role::Baker(number), move |outbox| {
+        self.spawn(TaskKind::Baker(number), move |sender| {
             fault::delay("bake-delay-ms");
             assert!(!fault::strikes("bake-panic"), "the injected fault bake-panic");
             let progress = |done: f32, next: &str| {
-                outbox.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
+                sender.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
             };
             let superseded = || newest.load(Ordering::SeqCst) != number;
             let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
             let result = GpuEnvironment::bake(&set, &key, before.as_ref(), &control);
             // Release them before the window takes the result.
             drop((set, before));
-            outbox.send(Message::Bake(BakeMessage::Environment(number, result)));
+            sender.send(Message::Bake(BakeMessage::Environment(number, result)));
         });
     }
 
@@ -105,10 +105,10 @@ impl Baker {
         let Some(key) = key.filter(|key| !is_running(key)) else { return };
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
-        self.spawn(Role::Tables(key.clone()), move |outbox| {
+        self.spawn(TaskKind::Tables(key.clone()), move |sender| {
             let result = Tables::bake(&set, &key, before.as_deref());
             drop((set, before));
-            outbox.send(Message::Bake(BakeMessage::Tables(key, result)));
+            sender.send(Message::Bake(BakeMessage::Tables(key, result)));
         });
     }
 
@@ -117,10 +117,10 @@ impl Baker {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
         let gpu = self.gpu.clone();
-        self.spawn(Role::Reader(key.clone()), move |outbox| {
+        self.spawn(TaskKind::Reader(key.clone()), move |sender| {
             let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
             drop(gpu);
-            outbox.send(Message::Bake(BakeMessage::Measured(key, result)));
+            sender.send(Message::Bake(BakeMessage::Measured(key, result)));
         });
     }
 
@@ -129,13 +129,13 @@ impl Baker {
         let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
         self.tracing = Some(request.key().clone());
         let gpu = self.gpu.clone();
-        self.spawn(Role::Tracer(request.key().clone()), move |outbox| {
+        self.spawn(TaskKind::Tracer(request.key().clone()), move |sender| {
             let result = Traced::new(&gpu, &request).map_err(|error| error.to_string());
             let key = request.key().clone();
             // Release the device objects before the window takes the result.
             drop((gpu, request));
             return_freed_memory();
-            outbox.send(Message::Bake(BakeMessage::Traced(key, result)));
+            sender.send(Message::Bake(BakeMessage::Traced(key, result)));
         });
     }
 
@@ -166,9 +166,9 @@ impl Baker {
         self.reading.take_if(|reading| reading == key).is_some()
     }
 
-    fn spawn(&mut self, role: Role, body: impl FnOnce(&Outbox) + Send + 'static) {
+    fn spawn(&mut self, role: TaskKind, body: impl FnOnce(&MessageSender) + Send + 'static) {
         self.threads.retain(|thread| !thread.is_finished());
-        self.threads.push(self.outbox.spawn(role, body));
+        self.threads.push(self.sender.spawn(role, body));
     }
 }
 

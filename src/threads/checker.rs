@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Sender, unbounded};
 
-use super::{Message, Outbox, Role};
+use super::{Message, MessageSender, TaskKind};
 use crate::gpu::Gpu;
 use crate::learn::{Exercise, Finding, Lab, LearnError};
 use crate::shader::{Compiler, Source};
@@ -30,16 +30,16 @@ struct Request {
 pub(crate) struct Checker {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
-    outbox: Outbox,
+    sender: MessageSender,
     /// The number of the newest request. A measurement with another number is superseded.
     newest: Arc<AtomicU64>,
     thread: Option<(Sender<Request>, JoinHandle<()>)>,
 }
 
 impl Checker {
-    pub(crate) fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, outbox: &Outbox) -> Self {
-        let (gpu, compiler, outbox) = (gpu.clone(), compiler.clone(), outbox.clone());
-        Self { gpu, compiler, outbox, newest: Arc::default(), thread: None }
+    pub(crate) fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, sender: &MessageSender) -> Self {
+        let (gpu, compiler, sender) = (gpu.clone(), compiler.clone(), sender.clone());
+        Self { gpu, compiler, sender, newest: Arc::default(), thread: None }
     }
 
     /// Measures a tree. Returns the number of the request.
@@ -48,7 +48,7 @@ impl Checker {
         let (sender, _) = self.thread.get_or_insert_with(|| {
             let (gpu, compiler, newest) = (self.gpu.clone(), self.compiler.clone(), self.newest.clone());
             let (sender, requests) = unbounded::<Request>();
-            let run = move |outbox: &Outbox| {
+            let run = move |sender: &MessageSender| {
                 let mut lab = Lab::new(&gpu, &compiler);
                 for Request { number, exercise, source } in requests {
                     let is_old = || newest.load(Ordering::Relaxed) != number;
@@ -59,10 +59,10 @@ impl Checker {
                         Err(LearnError::Superseded) => continue,
                         result => result.map_err(|error| error.to_string()),
                     };
-                    outbox.send(Message::Checked(Checked { number, result }));
+                    sender.send(Message::Checked(Checked { number, result }));
                 }
             };
-            (sender, self.outbox.spawn(Role::Checker, run))
+            (sender, self.sender.spawn(TaskKind::Checker, run))
         });
         let _ = sender.send(Request { number, exercise, source });
         number

@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use super::{Message, Outbox, Role};
+use super::{Message, MessageSender, TaskKind};
 use crate::frame::{Clock, FrameInputs, Revisions, Scene, TargetFormat};
 use crate::gpu::{Frames, Gpu};
 use crate::headless::{Search, first_not_finite};
@@ -32,7 +32,7 @@ pub(crate) struct FindRequest {
 /// The window's end of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
 pub(crate) struct Finder {
     gpu: Arc<Gpu>,
-    outbox: Outbox,
+    sender: MessageSender,
     jobs: Option<Sender<(u64, Box<FindRequest>)>>,
     /// Number of the newest request. The work of older ones ends before its next step.
     newest: Arc<AtomicU64>,
@@ -40,8 +40,8 @@ pub(crate) struct Finder {
 }
 
 impl Finder {
-    pub(crate) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
-        Self { gpu: gpu.clone(), outbox: outbox.clone(), jobs: None, newest: Arc::default(), thread: None }
+    pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
+        Self { gpu: gpu.clone(), sender: sender.clone(), jobs: None, newest: Arc::default(), thread: None }
     }
 
     /// Looks for the statement, instead of what was requested before. Returns the number of the request.
@@ -51,7 +51,7 @@ impl Finder {
         if self.jobs.is_none() || is_over {
             let (sender, inbox) = unbounded();
             let (gpu, newest) = (self.gpu.clone(), self.newest.clone());
-            self.thread = Some(self.outbox.spawn(Role::Finder, move |outbox| run(&gpu, &inbox, &newest, outbox)));
+            self.thread = Some(self.sender.spawn(TaskKind::Finder, move |sender| run(&gpu, &inbox, &newest, sender)));
             self.jobs = Some(sender);
         }
         if let Some(jobs) = &self.jobs {
@@ -77,7 +77,7 @@ impl Drop for Finder {
     }
 }
 
-fn run(gpu: &Arc<Gpu>, inbox: &Receiver<(u64, Box<FindRequest>)>, newest: &AtomicU64, outbox: &Outbox) {
+fn run(gpu: &Arc<Gpu>, inbox: &Receiver<(u64, Box<FindRequest>)>, newest: &AtomicU64, sender: &MessageSender) {
     while let Ok(first) = inbox.recv() {
         let (number, mut request) = inbox.try_iter().last().unwrap_or(first);
         let is_canceled = || newest.load(Ordering::SeqCst) != number;
@@ -87,7 +87,7 @@ fn run(gpu: &Arc<Gpu>, inbox: &Receiver<(u64, Box<FindRequest>)>, newest: &Atomi
         let found = find(gpu, &mut request, &is_canceled);
         if !is_canceled() {
             let found = NotFinite { mode: request.mode.slug.clone(), found };
-            outbox.send(Message::NotFinite(number, Box::new(found)));
+            sender.send(Message::NotFinite(number, Box::new(found)));
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use super::{DeviceGate, Message, Outbox, Role};
+use super::{DeviceGate, Message, MessageSender, TaskKind};
 use crate::gpu::{Gpu, SetLayouts, fault, return_freed_memory};
 use crate::message::panic_text;
 use crate::render::GpuModel;
@@ -48,22 +48,22 @@ pub(crate) struct Loader {
     gpu: Weak<Gpu>,
     layouts: Weak<SetLayouts>,
     gate: Arc<DeviceGate>,
-    outbox: Outbox,
+    sender: MessageSender,
     /// Number of the newest load.
     pub(crate) newest: u64,
 }
 
 impl Loader {
-    pub(crate) fn new((gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>), outbox: &Outbox) -> Self {
+    pub(crate) fn new((gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>), sender: &MessageSender) -> Self {
         let (gpu, layouts) = (Arc::downgrade(gpu), Arc::downgrade(layouts));
-        Self { gpu, layouts, gate: Arc::default(), outbox: outbox.clone(), newest: 0 }
+        Self { gpu, layouts, gate: Arc::default(), sender: sender.clone(), newest: 0 }
     }
 
     /// Uploads a model once it has been read. Sends the result as a message.
     pub(crate) fn upload(&mut self, reading: Reading) {
         self.newest += 1;
         let (gpu, layouts, gate, number) = (self.gpu.clone(), self.layouts.clone(), self.gate.clone(), self.newest);
-        self.outbox.spawn(Role::Loader(number), move |outbox| {
+        self.sender.spawn(TaskKind::Loader(number), move |sender| {
             let Reading { path, start, model } = reading;
             let result = match model.join() {
                 Ok(model) => model.map_err(|error| (error.to_string(), error.files)),
@@ -84,7 +84,7 @@ impl Loader {
             return_freed_memory();
             if let Some(result) = result {
                 let ms = start.elapsed().as_secs_f64() * 1e3;
-                outbox.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));
+                sender.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));
             }
         });
     }

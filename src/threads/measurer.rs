@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use super::{Message, Outbox, Role};
+use super::{Message, MessageSender, TaskKind};
 use crate::gpu::Gpu;
 use crate::measure::{Bench, Curves, Material, prepare};
 use crate::settings::Settings;
@@ -39,7 +39,7 @@ pub(crate) struct Measured {
 /// The window's end of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
 pub(crate) struct Measurer {
     gpu: Arc<Gpu>,
-    outbox: Outbox,
+    sender: MessageSender,
     jobs: Option<Sender<(u64, CurvesRequest)>>,
     /// Number of the newest request. The work of older ones ends before its next step.
     newest: Arc<AtomicU64>,
@@ -47,8 +47,8 @@ pub(crate) struct Measurer {
 }
 
 impl Measurer {
-    pub(crate) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
-        Self { gpu: gpu.clone(), outbox: outbox.clone(), jobs: None, newest: Arc::default(), thread: None }
+    pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
+        Self { gpu: gpu.clone(), sender: sender.clone(), jobs: None, newest: Arc::default(), thread: None }
     }
 
     /// Measures, instead of what was requested before. Returns the number of the request.
@@ -59,7 +59,7 @@ impl Measurer {
             let (sender, inbox) = unbounded();
             let benches = Benches { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
             let newest = self.newest.clone();
-            self.thread = Some(self.outbox.spawn(Role::Measurer, move |outbox| run(benches, &inbox, &newest, outbox)));
+            self.thread = Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(benches, &inbox, &newest, sender)));
             self.jobs = Some(sender);
         }
         if let Some(jobs) = &self.jobs {
@@ -85,7 +85,7 @@ impl Drop for Measurer {
     }
 }
 
-fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &AtomicU64, outbox: &Outbox) {
+fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &AtomicU64, sender: &MessageSender) {
     while let Ok(first) = inbox.recv() {
         let (number, request) = inbox.try_iter().last().unwrap_or(first);
         let is_canceled = || newest.load(Ordering::SeqCst) != number;
@@ -103,7 +103,7 @@ fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &At
         }
         let before = before.and_then(Result::ok);
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        outbox.send(Message::Curves(Box::new(Measured { number, now, before, ms })));
+        sender.send(Message::Curves(Box::new(Measured { number, now, before, ms })));
     }
 }
 

@@ -92,7 +92,7 @@ pub(crate) enum Message {
     /// The pipelines of outlines and pictures of textures, or why there are none.
     Tools(Result<Arc<Tools>, String>),
     /// A thread has panicked, with this message.
-    Panicked(Role, String),
+    Panicked(TaskKind, String),
 }
 
 impl From<egui_winit::accesskit_winit::Event> for Message {
@@ -102,7 +102,7 @@ impl From<egui_winit::accesskit_winit::Event> for Message {
 }
 
 /// The work of a thread, with its number or key.
-pub(crate) enum Role {
+pub(crate) enum TaskKind {
     Worker,
     Loader(u64),
     Baker(u64),
@@ -149,9 +149,9 @@ impl Side {
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
 #[derive(Clone)]
-pub(crate) struct Outbox(EventLoopProxy<Message>);
+pub(crate) struct MessageSender(EventLoopProxy<Message>);
 
-impl Outbox {
+impl MessageSender {
     pub(crate) fn new(proxy: EventLoopProxy<Message>) -> Self {
         Self(proxy)
     }
@@ -167,18 +167,18 @@ impl Outbox {
 
     /// Sends the commands from outside, on a thread that lasts as long as the process.
     pub(crate) fn pass_on(&self, asked: Receiver<Asked>) {
-        let outbox = self.clone();
-        let work = move || asked.iter().for_each(|asked| outbox.send(Message::Asked(Box::new(asked))));
+        let sender = self.clone();
+        let work = move || asked.iter().for_each(|asked| sender.send(Message::Asked(Box::new(asked))));
         // Without the thread, commands wait in vain, and the window works as ever.
         let _ = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work);
     }
 
     /// Runs `body` on a new thread. If it panics, the window receives a message.
-    fn spawn(&self, role: Role, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
-        let outbox = self.clone();
+    fn spawn(&self, role: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
+        let sender = self.clone();
         std::thread::spawn(move || {
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&outbox))) {
-                outbox.send(Message::Panicked(role, panic_text(&*panic).to_owned()));
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&sender))) {
+                sender.send(Message::Panicked(role, panic_text(&*panic).to_owned()));
             }
         })
     }
@@ -220,7 +220,7 @@ pub(crate) struct Threads {
     capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
     /// Held by the capture that is being drawn, so that the others wait.
     capturing: Arc<Mutex<()>>,
-    outbox: Outbox,
+    sender: MessageSender,
 }
 
 impl Threads {
@@ -230,23 +230,23 @@ impl Threads {
         compiler: &Arc<Compiler>,
         worker: Worker,
         file_watcher: Option<Watcher>,
-        outbox: &Outbox,
+        sender: &MessageSender,
     ) -> Self {
         Self {
             tree_watcher: None,
             file_watcher,
             watched: Vec::new(),
             worker,
-            loader: Loader::new(device, outbox),
-            baker: Baker::new(device.0, outbox),
-            checker: Checker::new(device.0, compiler, outbox),
-            measurer: Measurer::new(device.0, outbox),
-            finder: Finder::new(device.0, outbox),
+            loader: Loader::new(device, sender),
+            baker: Baker::new(device.0, sender),
+            checker: Checker::new(device.0, compiler, sender),
+            measurer: Measurer::new(device.0, sender),
+            finder: Finder::new(device.0, sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturers: Vec::new(),
             capturing: Arc::default(),
-            outbox: outbox.clone(),
+            sender: sender.clone(),
         }
     }
 
@@ -268,9 +268,9 @@ impl Threads {
     pub(crate) fn scale(&mut self, number: u64, picture: Arc<Picture>, size: (u32, u32)) {
         self.device_threads.retain(|thread| !thread.is_finished());
         let gpu = self.gpu.clone();
-        self.device_threads.push(self.outbox.spawn(Role::Scaler(number), move |outbox| {
+        self.device_threads.push(self.sender.spawn(TaskKind::Scaler(number), move |sender| {
             let still = Still::new(&gpu, &picture, size).map(Arc::new).map_err(|error| error.to_string());
-            outbox.send(Message::PictureFits(number, still));
+            sender.send(Message::PictureFits(number, still));
         }));
     }
 
@@ -283,8 +283,8 @@ impl Threads {
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
     pub(crate) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
         self.device_threads.retain(|thread| !thread.is_finished());
-        self.device_threads.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
-            outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
+        self.device_threads.push(self.sender.spawn(TaskKind::Explainer(words), move |sender| {
+            sender.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
     }
 
@@ -293,31 +293,31 @@ impl Threads {
         &mut self,
         number: u64,
         canceled: Arc<AtomicBool>,
-        work: impl FnOnce(&Outbox) + Send + 'static,
+        work: impl FnOnce(&MessageSender) + Send + 'static,
     ) {
         self.capturers.retain(|(_, thread)| !thread.is_finished());
         let capturing = self.capturing.clone();
-        let thread = self.outbox.spawn(Role::Capturer(number), move |outbox| {
+        let thread = self.sender.spawn(TaskKind::Capturer(number), move |sender| {
             let _alone = capturing.lock().unwrap_or_else(PoisonError::into_inner);
-            work(outbox);
+            work(sender);
         });
         self.capturers.push((canceled, thread));
     }
 
     /// The end of the messages to the window, for work that answers later.
-    pub(crate) fn outbox(&self) -> Outbox {
-        self.outbox.clone()
+    pub(crate) fn sender(&self) -> MessageSender {
+        self.sender.clone()
     }
 
     /// Sends the pipelines that `make` returns.
     pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
-        self.device_threads.push(self.outbox.spawn(Role::Toolmaker, |outbox| outbox.send(Message::Tools(make()))));
+        self.device_threads.push(self.sender.spawn(TaskKind::Toolmaker, |sender| sender.send(Message::Tools(make()))));
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
     /// window.
     pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
-        self.outbox.spawn(Role::Waiter, |outbox| work().into_iter().for_each(|message| outbox.send(message)));
+        self.sender.spawn(TaskKind::Waiter, |sender| work().into_iter().for_each(|message| sender.send(message)));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.
@@ -353,7 +353,7 @@ impl Threads {
         }
         match &self.file_watcher {
             Some(watcher) => watcher.set_files(&files),
-            None => self.file_watcher = watch_files(&files, &self.outbox)?,
+            None => self.file_watcher = watch_files(&files, &self.sender)?,
         }
         self.watched = files;
         Ok(())
@@ -371,11 +371,11 @@ impl Drop for Threads {
 }
 
 /// Watches files, if there are any.
-pub(crate) fn watch_files(files: &[PathBuf], outbox: &Outbox) -> Result<Option<Watcher>, String> {
+pub(crate) fn watch_files(files: &[PathBuf], sender: &MessageSender) -> Result<Option<Watcher>, String> {
     if files.is_empty() {
         return Ok(None);
     }
-    let outbox = outbox.clone();
-    let on_batch = move |batch: Batch| outbox.send(Message::FilesChanged(batch.paths));
+    let sender = sender.clone();
+    let on_batch = move |batch: Batch| sender.send(Message::FilesChanged(batch.paths));
     Watcher::new(None, files, on_batch).map(Some).map_err(|error| error.to_string())
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::worker::Snapshot;
-use super::{Message, Role, Threads};
+use super::{Message, TaskKind, Threads};
 use crate::frame::FrameState;
 use crate::gpu::SetLayouts;
 use crate::pipeline::{Outcome, PipelineSet, Reloader};
@@ -63,8 +63,8 @@ impl SecondTree {
         let watcher = source.location().is_some().then(|| watch(&source, jobs.clone())).transpose()?;
         let reloader = Reloader::new(&threads.gpu, layouts, compiler, source);
         let mut tree = Tree { reloader, snapshot, canceled: canceled.clone() };
-        let thread = threads.outbox.spawn(Role::SecondTree(number), move |outbox| {
-            tree.run(&inbox, |message| outbox.send(Message::SecondTree(number, message)));
+        let thread = threads.sender.spawn(TaskKind::SecondTree(number), move |sender| {
+            tree.run(&inbox, |message| sender.send(Message::SecondTree(number, message)));
         });
         threads.keep(thread);
         Ok(Self { _watcher: watcher, jobs, canceled, number })

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use crossbeam_channel::{Sender, unbounded};
 
-use super::Outbox;
+use super::MessageSender;
 use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
@@ -141,9 +141,9 @@ impl Worker {
         source: Source,
         snapshot: Snapshot,
         recorder: &Recorder,
-        outbox: &Outbox,
+        sender: &MessageSender,
     ) -> Self {
-        let (sender, inbox) = unbounded();
+        let (jobs, inbox) = unbounded();
         let (edits, reloaded) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let snapshot = Arc::new(Mutex::new(snapshot));
         let mut state = Thread {
@@ -162,10 +162,10 @@ impl Worker {
             unfinished: false,
             is_shown: false,
             recorder: recorder.clone(),
-            outbox: outbox.clone(),
+            sender: sender.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
-        Self { jobs: Some(Jobs { sender, edits, reloaded }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
+        Self { jobs: Some(Jobs { sender: jobs, edits, reloaded }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
     }
 
     /// Sets what the next reload builds pipelines for.

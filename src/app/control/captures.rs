@@ -217,12 +217,12 @@ impl Viewer {
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
         let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.work());
-        self.threads.capture(number, canceled.clone(), move |outbox| {
+        self.threads.capture(number, canceled.clone(), move |sender| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {
                 if last.is_none_or(|last| last.elapsed() >= REPORT) {
                     last = Some(Instant::now());
-                    outbox.send(Message::Captures(number, done, of));
+                    sender.send(Message::Captures(number, done, of));
                     reply.progress(done, of);
                 }
                 !canceled.load(Ordering::Relaxed)
@@ -235,7 +235,7 @@ impl Viewer {
                     }),
                 false => Err(CaptureError::Canceled),
             };
-            outbox.send(Message::Captured(number));
+            sender.send(Message::Captured(number));
             match result {
                 Ok(result) => reply.done(result),
                 Err(CaptureError::Render(HeadlessError::Shaders(diagnostics))) if !diagnostics.is_empty() => {

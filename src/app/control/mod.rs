@@ -73,13 +73,13 @@ impl Viewer {
 
     /// Carries out a command of the window itself, and shows its result as a message.
     pub(super) fn ask_self(&mut self, request: Request) {
-        let outbox = self.threads.outbox();
+        let sender = self.threads.sender();
         let reply = Reply::to_window(move |result| {
             let text = match result {
                 Ok(result) => result["file"].as_str().map(|file| format!("wrote {file}")),
                 Err(message) => Some(message),
             };
-            text.into_iter().for_each(|text| outbox.send(crate::threads::Message::Say(text)));
+            text.into_iter().for_each(|text| sender.send(crate::threads::Message::Say(text)));
         });
         self.carry_out(request, reply);
     }

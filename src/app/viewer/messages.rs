@@ -18,7 +18,7 @@ use crate::settings::GROUND;
 use crate::shader::{Diagnostic, Severity, ShaderSet, Source, expression};
 use crate::threads::baker::BakeMessage;
 use crate::threads::worker::WorkerMessage;
-use crate::threads::{Message, Role};
+use crate::threads::{Message, TaskKind};
 
 impl Viewer {
     /// Shows the panels for a single file, which has no model, or those of before for a tree.
@@ -315,45 +315,45 @@ impl Viewer {
     }
 
     /// Reports that a thread has panicked, and treats its work as failed.
-    fn on_panic(&mut self, role: Role, text: &str) {
+    fn on_panic(&mut self, role: TaskKind, text: &str) {
         let thread = match role {
-            Role::Worker => {
+            TaskKind::Worker => {
                 self.shader.compiling = false;
                 "worker"
             }
-            Role::Loader(number) => {
+            TaskKind::Loader(number) => {
                 self.model.loading &= number != self.threads.loader.newest;
                 "loader"
             }
-            Role::Baker(number) => {
+            TaskKind::Baker(number) => {
                 let failed = self.threads.baker.ended(number);
                 failed.into_iter().for_each(|key| self.resources.set_environment(key, None));
                 "baker"
             }
-            Role::Tables(key) => {
+            TaskKind::Tables(key) => {
                 if self.threads.baker.has_tables(&key) {
                     self.resources.set_tables(key, None);
                 }
                 "baker"
             }
-            Role::Reader(key) => {
+            TaskKind::Reader(key) => {
                 if self.threads.baker.has_read(&key) {
                     self.resources.set_measured(key, None);
                 }
                 "reader"
             }
-            Role::Explainer(words) => {
+            TaskKind::Explainer(words) => {
                 if self.endless_loop.as_ref().is_some_and(|endless| endless.words == words) {
                     self.endless_loop = None;
                 }
                 "explainer"
             }
-            Role::Checker => {
+            TaskKind::Checker => {
                 self.threads.checker.failed();
                 self.learning.checking = None;
                 "checking"
             }
-            Role::Measurer => {
+            TaskKind::Measurer => {
                 // The same question would panic again, so it stays asked until another one comes.
                 let inspector = &mut self.panels.inspector;
                 if let Some(asked) = &inspector.asked {
@@ -362,28 +362,28 @@ impl Viewer {
                 }
                 "measuring"
             }
-            Role::Finder => {
+            TaskKind::Finder => {
                 self.panels.inspector.fail_search();
                 "finding"
             }
-            Role::Capturer(number) => {
+            TaskKind::Capturer(number) => {
                 self.controlled.captures.ended(number);
                 "capturing"
             }
-            Role::Toolmaker => "toolmaker",
-            Role::SecondTree(number) => {
+            TaskKind::Toolmaker => "toolmaker",
+            TaskKind::SecondTree(number) => {
                 self.second_tree_failed(number);
                 "second tree"
             }
-            Role::Scaler(number) => {
+            TaskKind::Scaler(number) => {
                 self.on_picture_fits(number, Err("the picture could not be scaled".to_owned()));
                 "scaling"
             }
-            Role::Waiter => {
+            TaskKind::Waiter => {
                 (self.choosing, self.compare.measuring) = (None, None);
                 "waiting"
             }
-            Role::Tracer(key) => {
+            TaskKind::Tracer(key) => {
                 if self.threads.baker.has_traced(&key) {
                     self.resources.set_traced(key, None);
                 }

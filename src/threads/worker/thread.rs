@@ -20,7 +20,7 @@ use crate::recovery::Recorder;
 use crate::settings::Settings;
 use crate::shader::annotation::neighbors;
 use crate::shader::{Change, ShaderSet, Source, TreePath, text_hash};
-use crate::threads::{Message, Outbox, Role};
+use crate::threads::{Message, MessageSender, TaskKind};
 
 /// How many times in a row the thread restarts after a panic.
 const RESTARTS: u32 = 3;
@@ -62,7 +62,7 @@ pub(super) struct Thread {
     /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
     pub(super) is_shown: bool,
     pub(super) recorder: Recorder,
-    pub(super) outbox: Outbox,
+    pub(super) sender: MessageSender,
 }
 
 impl Thread {
@@ -70,7 +70,7 @@ impl Thread {
     pub(super) fn run(&mut self) {
         let mut edit = Some(Edit::new(Change::All, Instant::now()));
         while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.work(edit.take()))) {
-            self.outbox.send(Message::Panicked(Role::Worker, panic_text(&*panic).to_owned()));
+            self.sender.send(Message::Panicked(TaskKind::Worker, panic_text(&*panic).to_owned()));
             self.reloader.open(self.reloader.library().source().clone());
             self.panics += 1;
             // If each attempt panics, wait for the next edit, with which a new reloader compiles the whole tree.
@@ -135,7 +135,7 @@ impl Thread {
                 }
                 let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
-                self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
+                self.sender.send(Message::Worker(WorkerMessage::Built(built)));
                 // A comparison asks for pipelines of older sets, whose neighboring modes nobody needs.
                 if self.reloader.library().set().is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
                     self.build_ahead(&set);
@@ -180,7 +180,7 @@ impl Thread {
         let source = self.reloader.library().source().clone();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source };
-        self.outbox.send(Message::Worker(message));
+        self.sender.send(Message::Worker(message));
         self.reloaded.store(taken, Ordering::SeqCst);
         if let Some(set) = &set {
             self.build_ahead(set);
@@ -212,7 +212,7 @@ impl Thread {
             Ok(Some(watched)) => change.and(watched),
             Ok(None) => change,
             Err(message) => {
-                self.outbox.send(Message::Say(message));
+                self.sender.send(Message::Say(message));
                 change
             }
         }
@@ -252,7 +252,7 @@ impl Thread {
             Outcome::Ready(set) => Some(set.clone()),
             Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
         };
-        self.outbox.send(Message::Worker(WorkerMessage::Completed(Box::new(reload))));
+        self.sender.send(Message::Worker(WorkerMessage::Completed(Box::new(reload))));
         if let Some(set) = &set {
             self.build_ahead(set);
         }
@@ -280,7 +280,7 @@ impl Thread {
             Ok(None) => self.questions = None,
             Err(error) => tracing::debug!("the driver tells nothing of a pipeline: {error}"),
         }
-        self.outbox.send(Message::Worker(WorkerMessage::DriverTold));
+        self.sender.send(Message::Worker(WorkerMessage::DriverTold));
         true
     }
 
@@ -305,13 +305,13 @@ impl Thread {
         // The window shows no thumbnail, or no values, where this fails.
         let Some((set, request)) = requests.pop_front().map(|request| (set.clone(), request)) else { return };
         self.join_aside();
-        let outbox = self.outbox.clone();
+        let sender = self.sender.clone();
         let (done, ended) = bounded::<()>(0);
         self.aside = Some(std::thread::spawn(move || {
             if let Err(error) = set.build_aside(&request) {
                 tracing::debug!("no thumbnails: {error}");
             }
-            outbox.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
+            sender.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
             drop(done);
         }));
         // A driver takes tens of milliseconds, for which a save need not wait.
