@@ -117,7 +117,7 @@ impl Baker {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
         let gpu = self.gpu.clone();
-        self.spawn(TaskKind::Reader(key.clone()), move |sender| {
+        self.spawn(TaskKind::MeasuredBrdf(key.clone()), move |sender| {
             let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
             drop(gpu);
             sender.send(Message::Bake(BakeMessage::Measured(key, result)));
@@ -129,7 +129,7 @@ impl Baker {
         let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
         self.tracing = Some(request.key().clone());
         let gpu = self.gpu.clone();
-        self.spawn(TaskKind::Tracer(request.key().clone()), move |sender| {
+        self.spawn(TaskKind::PathTracing(request.key().clone()), move |sender| {
             let result = Traced::new(&gpu, &request).map_err(|error| error.to_string());
             let key = request.key().clone();
             // Release the device objects before the window takes the result.
@@ -166,9 +166,9 @@ impl Baker {
         self.reading.take_if(|reading| reading == key).is_some()
     }
 
-    fn spawn(&mut self, role: TaskKind, body: impl FnOnce(&MessageSender) + Send + 'static) {
+    fn spawn(&mut self, task: TaskKind, body: impl FnOnce(&MessageSender) + Send + 'static) {
         self.threads.retain(|thread| !thread.is_finished());
-        self.threads.push(self.sender.spawn(role, body));
+        self.threads.push(self.sender.spawn(task, body));
     }
 }
 

@@ -107,23 +107,23 @@ pub(crate) enum TaskKind {
     Loader(u64),
     Baker(u64),
     Tables(TablesKey),
-    Tracer(TraceKey),
-    Reader(MeasuredKey),
-    Explainer([u32; 2]),
+    PathTracing(TraceKey),
+    MeasuredBrdf(MeasuredKey),
+    LoopDiagnosis([u32; 2]),
     Checker,
     /// Measures the BRDF.
     Measurer,
     /// Looks for the statement that makes NaN.
     Finder,
-    Capturer(u64),
+    Capture(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),
     /// Scales the picture of a file.
-    Scaler(u64),
+    ImageScaling(u64),
     /// Makes the pipelines of outlines and pictures of textures.
-    Toolmaker,
+    ToolPipelines,
     /// Waits for what is outside of Specula, or compares pictures.
-    Waiter,
+    External,
 }
 
 /// One of two pictures that are compared.
@@ -174,11 +174,11 @@ impl MessageSender {
     }
 
     /// Runs `body` on a new thread. If it panics, the window receives a message.
-    fn spawn(&self, role: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
+    fn spawn(&self, task: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
         let sender = self.clone();
         std::thread::spawn(move || {
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&sender))) {
-                sender.send(Message::Panicked(role, panic_text(&*panic).to_owned()));
+                sender.send(Message::Panicked(task, panic_text(&*panic).to_owned()));
             }
         })
     }
@@ -268,7 +268,7 @@ impl Threads {
     pub(crate) fn scale(&mut self, number: u64, picture: Arc<Picture>, size: (u32, u32)) {
         self.device_threads.retain(|thread| !thread.is_finished());
         let gpu = self.gpu.clone();
-        self.device_threads.push(self.sender.spawn(TaskKind::Scaler(number), move |sender| {
+        self.device_threads.push(self.sender.spawn(TaskKind::ImageScaling(number), move |sender| {
             let still = Still::new(&gpu, &picture, size).map(Arc::new).map_err(|error| error.to_string());
             sender.send(Message::PictureFits(number, still));
         }));
@@ -283,7 +283,7 @@ impl Threads {
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
     pub(crate) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
         self.device_threads.retain(|thread| !thread.is_finished());
-        self.device_threads.push(self.sender.spawn(TaskKind::Explainer(words), move |sender| {
+        self.device_threads.push(self.sender.spawn(TaskKind::LoopDiagnosis(words), move |sender| {
             sender.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
     }
@@ -297,7 +297,7 @@ impl Threads {
     ) {
         self.capturers.retain(|(_, thread)| !thread.is_finished());
         let capturing = self.capturing.clone();
-        let thread = self.sender.spawn(TaskKind::Capturer(number), move |sender| {
+        let thread = self.sender.spawn(TaskKind::Capture(number), move |sender| {
             let _alone = capturing.lock().unwrap_or_else(PoisonError::into_inner);
             work(sender);
         });
@@ -311,13 +311,13 @@ impl Threads {
 
     /// Sends the pipelines that `make` returns.
     pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
-        self.device_threads.push(self.sender.spawn(TaskKind::Toolmaker, |sender| sender.send(Message::Tools(make()))));
+        self.device_threads.push(self.sender.spawn(TaskKind::ToolPipelines, |sender| sender.send(Message::Tools(make()))));
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
     /// window.
     pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
-        self.sender.spawn(TaskKind::Waiter, |sender| work().into_iter().for_each(|message| sender.send(message)));
+        self.sender.spawn(TaskKind::External, |sender| work().into_iter().for_each(|message| sender.send(message)));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.

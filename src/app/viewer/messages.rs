@@ -105,7 +105,7 @@ impl Viewer {
             Message::Prepared(exercise, prepared) => self.on_prepared(exercise, prepared),
             Message::Exercise(folder, exercise) => self.on_exercise(folder, exercise),
             Message::Checked(checked) => self.on_checked(checked),
-            Message::Panicked(role, text) => self.on_panic(role, &text),
+            Message::Panicked(task, text) => self.on_panic(task, &text),
         }
     }
 
@@ -315,8 +315,8 @@ impl Viewer {
     }
 
     /// Reports that a thread has panicked, and treats its work as failed.
-    fn on_panic(&mut self, role: TaskKind, text: &str) {
-        let thread = match role {
+    fn on_panic(&mut self, task: TaskKind, text: &str) {
+        let thread = match task {
             TaskKind::Worker => {
                 self.shader.compiling = false;
                 "worker"
@@ -336,13 +336,13 @@ impl Viewer {
                 }
                 "baker"
             }
-            TaskKind::Reader(key) => {
+            TaskKind::MeasuredBrdf(key) => {
                 if self.threads.baker.has_read(&key) {
                     self.resources.set_measured(key, None);
                 }
                 "reader"
             }
-            TaskKind::Explainer(words) => {
+            TaskKind::LoopDiagnosis(words) => {
                 if self.endless_loop.as_ref().is_some_and(|endless| endless.words == words) {
                     self.endless_loop = None;
                 }
@@ -366,24 +366,24 @@ impl Viewer {
                 self.panels.inspector.fail_search();
                 "finding"
             }
-            TaskKind::Capturer(number) => {
+            TaskKind::Capture(number) => {
                 self.controlled.captures.ended(number);
                 "capturing"
             }
-            TaskKind::Toolmaker => "toolmaker",
+            TaskKind::ToolPipelines => "toolmaker",
             TaskKind::SecondTree(number) => {
                 self.second_tree_failed(number);
                 "second tree"
             }
-            TaskKind::Scaler(number) => {
+            TaskKind::ImageScaling(number) => {
                 self.on_picture_fits(number, Err("the picture could not be scaled".to_owned()));
                 "scaling"
             }
-            TaskKind::Waiter => {
+            TaskKind::External => {
                 (self.choosing, self.compare.measuring) = (None, None);
                 "waiting"
             }
-            TaskKind::Tracer(key) => {
+            TaskKind::PathTracing(key) => {
                 if self.threads.baker.has_traced(&key) {
                     self.resources.set_traced(key, None);
                 }
