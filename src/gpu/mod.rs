@@ -34,7 +34,7 @@ pub use resources::image::{Image, ImageDesc};
 pub use resources::pass_layout::{PassBinding, PassBindings, PassLayout, PassResource};
 pub use resources::pipeline::{Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use resources::sampler::{Sampler, SamplerDesc};
-pub use resources::statistics::{Executable, Facts, PipelineStage, Statistic};
+pub use resources::statistics::{Executable, CompileInfo, PipelineStage, Statistic};
 pub use resources::uses::Uses;
 pub use window::surface::Surface;
 pub use window::swapchain::{Acquired, Swapchain};

@@ -164,7 +164,7 @@ impl Gpu {
         self.optional_stages
     }
 
-    /// Whether the driver tells numbers of compiled pipelines: [`crate::gpu::Facts::statistics`].
+    /// Whether the driver tells numbers of compiled pipelines: [`crate::gpu::CompileInfo::statistics`].
     pub fn tells_statistics(&self) -> bool {
         self.executables.is_some()
     }

@@ -9,7 +9,7 @@ use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
 use super::pipeline::{CAPTURE, MAIN, ShaderModule};
-use super::statistics::{self, Executable, Facts, feedback_ms};
+use super::statistics::{self, Executable, CompileInfo, feedback_ms};
 use super::uses::Uses;
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
@@ -22,8 +22,8 @@ pub struct ComputePipeline {
     pub layout: Option<Arc<PassLayout>>,
     /// The descriptors that its stage uses.
     pub uses: Uses,
-    /// Facts about the compiled code.
-    pub facts: Facts,
+    /// Information about the compiled code.
+    pub compile_info: CompileInfo,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -45,11 +45,11 @@ impl ComputePipeline {
         module: &ShaderModule,
         layout: Option<Arc<PassLayout>>,
     ) -> Result<Arc<Self>, GpuError> {
-        let (raw, facts) = Self::create(gpu, layouts, module, layout.as_deref(), vk::PipelineCreateFlags::empty())?;
+        let (raw, compile_info) = Self::create(gpu, layouts, module, layout.as_deref(), vk::PipelineCreateFlags::empty())?;
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
         let uses = module.uses.clone();
-        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, uses, facts, loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, uses, compile_info, loops, raw }))
     }
 
     /// Builds a pipeline once more to ask the driver about it.
@@ -75,7 +75,7 @@ impl ComputePipeline {
         module: &ShaderModule,
         layout: Option<&PassLayout>,
         flags: vk::PipelineCreateFlags,
-    ) -> Result<(vk::Pipeline, Facts), GpuError> {
+    ) -> Result<(vk::Pipeline, CompileInfo), GpuError> {
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module.raw)
@@ -92,8 +92,8 @@ impl ComputePipeline {
         let name = format!("`{}`", module.name);
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
-        let facts = Facts::new(vec![module.facts(feedback_ms(&whole))], start.elapsed().as_secs_f64() * 1e3, is_cached);
-        Ok((raw, facts))
+        let compile_info = CompileInfo::new(vec![module.stage_info(feedback_ms(&whole))], start.elapsed().as_secs_f64() * 1e3, is_cached);
+        Ok((raw, compile_info))
     }
 }
 

@@ -9,7 +9,7 @@ use ash::vk;
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
-use super::statistics::{self, Executable, Facts, PipelineStage, feedback_ms};
+use super::statistics::{self, Executable, CompileInfo, PipelineStage, feedback_ms};
 use super::uses::Uses;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
@@ -68,7 +68,7 @@ impl ShaderModule {
     }
 
     /// Returns the report on this stage in a pipeline.
-    pub(super) fn facts(&self, driver_ms: Option<f64>) -> PipelineStage {
+    pub(super) fn stage_info(&self, driver_ms: Option<f64>) -> PipelineStage {
         PipelineStage { stage: self.name.clone(), words_before: self.words_before, words: self.words, driver_ms }
     }
 }
@@ -170,8 +170,8 @@ pub struct Pipeline {
     pub layout: Arc<PassLayout>,
     /// The descriptors that its stages use.
     pub uses: Uses,
-    /// Facts about the compiled code.
-    pub facts: Facts,
+    /// Information about the compiled code.
+    pub compile_info: CompileInfo,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -188,12 +188,12 @@ impl Pipeline {
     /// # Errors
     /// The driver rejects the pipeline or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, desc: &PipelineDesc<'_>) -> Result<Arc<Self>, GpuError> {
-        let (raw, facts) = Self::create(gpu, desc, vk::PipelineCreateFlags::empty())?;
+        let (raw, compile_info) = Self::create(gpu, desc, vk::PipelineCreateFlags::empty())?;
         gpu.name(raw, &desc.name());
         let names_loops = desc.modules().any(|(_, module)| module.names_loops);
         let loops = names_loops.then(|| layouts.blank.loops.clone());
         let uses = desc.modules().fold(Uses::default(), |uses, (_, module)| uses.union(&module.uses));
-        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, facts, loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, compile_info, loops, raw }))
     }
 
     /// Builds a pipeline once more to ask the driver about it, since drivers keep such numbers only where they are told to.
@@ -212,7 +212,7 @@ impl Pipeline {
         gpu: &Gpu,
         desc: &PipelineDesc<'_>,
         flags: vk::PipelineCreateFlags,
-    ) -> Result<(vk::Pipeline, Facts), GpuError> {
+    ) -> Result<(vk::Pipeline, CompileInfo), GpuError> {
         let stage = |stage, module: &ShaderModule| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN)
         };
@@ -297,10 +297,10 @@ impl Pipeline {
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
         let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
         let stages: Vec<PipelineStage> =
-            desc.modules().zip(&parts).map(|((_, module), part)| module.facts(feedback_ms(part))).collect();
+            desc.modules().zip(&parts).map(|((_, module), part)| module.stage_info(feedback_ms(part))).collect();
         let times: Vec<Option<f64>> = stages.iter().map(|stage| stage.driver_ms).collect();
         tracing::debug!("`{name}`: {:?} ms, stages {times:?} ms, cached: {is_cached}", feedback_ms(&whole));
-        Ok((raw, Facts::new(stages, start.elapsed().as_secs_f64() * 1e3, is_cached)))
+        Ok((raw, CompileInfo::new(stages, start.elapsed().as_secs_f64() * 1e3, is_cached)))
     }
 }
 

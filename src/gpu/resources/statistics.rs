@@ -47,9 +47,9 @@ pub struct PipelineStage {
     pub driver_ms: Option<f64>,
 }
 
-/// Facts about a compiled pipeline.
+/// Information about a compiled pipeline.
 #[derive(Debug, Default)]
-pub struct Facts {
+pub struct CompileInfo {
     /// Its stages, in the order in which they run.
     pub stages: Vec<PipelineStage>,
     /// Time of the call that created it, milliseconds.
@@ -59,12 +59,12 @@ pub struct Facts {
     statistics: OnceLock<Vec<Executable>>,
 }
 
-impl Facts {
+impl CompileInfo {
     pub(super) fn new(stages: Vec<PipelineStage>, ms: f64, is_cached: bool) -> Self {
         Self { stages, ms, is_cached, statistics: OnceLock::new() }
     }
 
-    /// The numbers that the driver has told; `None` until it is asked ([`Facts::set_statistics`]).
+    /// The numbers that the driver has told; `None` until it is asked ([`CompileInfo::set_statistics`]).
     pub fn statistics(&self) -> Option<&[Executable]> {
         self.statistics.get().map(Vec::as_slice)
     }

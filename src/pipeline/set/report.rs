@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{PipelineSet, lock};
 use crate::frame::{PipelineKey, PipelineRequest};
-use crate::gpu::{ComputePipeline, Executable, Facts, GpuError, Pipeline, Specialization};
+use crate::gpu::{ComputePipeline, Executable, CompileInfo, GpuError, Pipeline, Specialization};
 use crate::pipeline::bounds::shader_module;
 use crate::shader::{GraphPass, StageKind};
 
@@ -46,15 +46,15 @@ enum Found {
 }
 
 impl Found {
-    fn facts(&self) -> &Facts {
+    fn compile_info(&self) -> &CompileInfo {
         match self {
-            Self::Graphics(_, pipeline) => &pipeline.facts,
-            Self::Compute(_, pipeline) => &pipeline.facts,
+            Self::Graphics(_, pipeline) => &pipeline.compile_info,
+            Self::Compute(_, pipeline) => &pipeline.compile_info,
         }
     }
 
     fn words(&self) -> usize {
-        self.facts().stages.iter().map(|stage| stage.words).sum()
+        self.compile_info().stages.iter().map(|stage| stage.words).sum()
     }
 }
 
@@ -70,8 +70,8 @@ impl PipelineSet {
         let mut all: BTreeMap<String, StageReport> =
             self.shaders.stages.iter().map(|(path, stage)| (path.clone(), new(stage.spirv.len()))).collect();
         for found in self.found(request) {
-            let facts = found.facts();
-            for stage in &facts.stages {
+            let compile_info = found.compile_info();
+            for stage in &compile_info.stages {
                 let Some(report) = all.get_mut(&stage.stage) else { continue };
                 report.pipelines += 1;
                 // The first of several equal ones, so that the same picture always tells the same.
@@ -85,9 +85,9 @@ impl PipelineSet {
                     words_before: stage.words_before,
                     words: stage.words,
                     driver_ms: stage.driver_ms,
-                    pipeline_ms: facts.ms,
-                    is_cached: facts.is_cached,
-                    executables: facts.statistics().map(of_stage),
+                    pipeline_ms: compile_info.ms,
+                    is_cached: compile_info.is_cached,
+                    executables: compile_info.statistics().map(of_stage),
                 });
             }
         }
@@ -109,10 +109,10 @@ impl PipelineSet {
         let mut stages: Vec<&str> = Vec::new();
         let mut next = None;
         for found in &found {
-            let of = || found.facts().stages.iter().map(|stage| stage.stage.as_str());
+            let of = || found.compile_info().stages.iter().map(|stage| stage.stage.as_str());
             let is_shown = of().any(|stage| !stages.contains(&stage));
             stages.extend(of());
-            if is_shown && found.facts().statistics().is_none() && next.is_none() {
+            if is_shown && found.compile_info().statistics().is_none() && next.is_none() {
                 next = Some(found);
             }
         }
@@ -123,7 +123,7 @@ impl PipelineSet {
             Found::Compute(pass, _) => self.ask_about(pass, &request.pass_constants()),
         };
         // A driver that refuses is not asked again.
-        next.facts().set_statistics(told.as_ref().ok().cloned().unwrap_or_default());
+        next.compile_info().set_statistics(told.as_ref().ok().cloned().unwrap_or_default());
         told.map(|_| Some(start.elapsed().as_secs_f64() * 1e3))
     }
 
