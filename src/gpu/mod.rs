@@ -35,7 +35,7 @@ pub use resources::pass_layout::{PassBinding, PassBindings, PassLayout, PassReso
 pub use resources::pipeline::{Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use resources::sampler::{Sampler, SamplerDesc};
 pub use resources::statistics::{Executable, CompileInfo, PipelineStage, Statistic};
-pub use resources::uses::Uses;
+pub use resources::resource_usage::ResourceUsage;
 pub use window::surface::Surface;
 pub use window::swapchain::{Acquired, Swapchain};
 pub use window::ui::{UiImage, UiRenderer};

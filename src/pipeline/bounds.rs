@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Gpu, GpuError, ShaderModule, Uses, fault};
+use crate::gpu::{Gpu, GpuError, ShaderModule, ResourceUsage, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::contract::access::resource_of;
 use crate::shader::source::snapshot::Snapshot;
@@ -99,13 +99,13 @@ fn bounded_module(
         words.len(),
         if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
     );
-    let uses = Uses {
+    let usage = ResourceUsage {
         frame_bindings: used_bindings(&words, interface::SET_FRAME),
         frame_bytes: used_bytes(&words, interface::SET_FRAME, interface::BINDING_FRAME),
         pass_bindings: used_bindings(&words, interface::SET_PASS),
         resources: reached(&words).into_iter().filter_map(resource_of).collect(),
     };
-    ShaderModule::optimized(gpu, path, (&words, specialized), is_bounded && stores, uses)
+    ShaderModule::optimized(gpu, path, (&words, specialized), is_bounded && stores, usage)
 }
 
 /// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again, for

@@ -46,8 +46,8 @@ impl BoundPipelines {
 
     /// Whether a pipeline reads one of these ranges of bytes of the block `interface::Frame`.
     pub(crate) fn read_frame(&self, bytes: &[Range<usize>]) -> bool {
-        self.pipelines.values().any(|pipeline| pipeline.uses.reads_frame(bytes))
-            || self.computes.values().any(|pipeline| pipeline.uses.reads_frame(bytes))
+        self.pipelines.values().any(|pipeline| pipeline.usage.reads_frame(bytes))
+            || self.computes.values().any(|pipeline| pipeline.usage.reads_frame(bytes))
     }
 
     /// The textures that the tree declares.
@@ -297,7 +297,7 @@ impl PipelineSet {
     ) -> Result<Arc<PassLayout>, GpuError> {
         let used = inputs
             .iter()
-            .filter(|(binding, _)| modules.iter().any(|module| module.uses.pass_bindings.contains(*binding)));
+            .filter(|(binding, _)| modules.iter().any(|module| module.usage.pass_bindings.contains(*binding)));
         let bindings: PassBindings = used.map(|(binding, input)| (*binding, kind_of(input))).collect();
         let mut known = lock(&self.pass_layouts);
         let key = (bindings, draws_model);
@@ -386,7 +386,7 @@ fn flag_of(kind: StageKind) -> vk::ShaderStageFlags {
 
 /// Refuses a module that reads a resource which nothing binds: the driver would crash, or read 0.
 fn check_bound(module: &ShaderModule, role: StageRole) -> Result<(), GpuError> {
-    match module.uses.resources.iter().find(|resource| !role.binds(**resource)) {
+    match module.usage.resources.iter().find(|resource| !role.binds(**resource)) {
         None => Ok(()),
         Some(resource) => {
             Err(GpuError::Unbound { stage: module.name.clone(), role: role.name(), resource: resource.name() })

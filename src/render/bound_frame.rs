@@ -74,8 +74,8 @@ impl BoundFrame {
         let passes = || request.passes.iter().filter(|pass| pass.part <= Part::Mean);
         let before = || passes().filter(|pass| pass.part == Part::BeforeModel);
         let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
-        let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.uses.reads_frame(&CLOCK));
-        keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.uses.reads_frame(&CLOCK)))
+        let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.usage.reads_frame(&CLOCK));
+        keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.usage.reads_frame(&CLOCK)))
             || passes().any(|pass| pass.moves)
             || before().any(|pass| compute(&pass.note.stage))
     }

@@ -10,7 +10,7 @@ use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
 use super::pipeline::{CAPTURE, MAIN, ShaderModule};
 use super::statistics::{self, Executable, CompileInfo, feedback_ms};
-use super::uses::Uses;
+use super::resource_usage::ResourceUsage;
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
@@ -20,8 +20,8 @@ pub struct ComputePipeline {
     layouts: Arc<SetLayouts>,
     /// The layout of a declared pass.
     pub layout: Option<Arc<PassLayout>>,
-    /// The descriptors that its stage uses.
-    pub uses: Uses,
+    /// The descriptors that its stage usage.
+    pub usage: ResourceUsage,
     /// Information about the compiled code.
     pub compile_info: CompileInfo,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
@@ -48,8 +48,8 @@ impl ComputePipeline {
         let (raw, compile_info) = Self::create(gpu, layouts, module, layout.as_deref(), vk::PipelineCreateFlags::empty())?;
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
-        let uses = module.uses.clone();
-        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, uses, compile_info, loops, raw }))
+        let usage = module.usage.clone();
+        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, usage, compile_info, loops, raw }))
     }
 
     /// Builds a pipeline once more to ask the driver about it.

@@ -10,4 +10,4 @@ pub(in crate::gpu) mod pass_layout;
 pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod sampler;
 pub(in crate::gpu) mod statistics;
-pub(in crate::gpu) mod uses;
+pub(in crate::gpu) mod resource_usage;

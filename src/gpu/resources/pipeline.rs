@@ -10,7 +10,7 @@ use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
 use super::statistics::{self, Executable, CompileInfo, PipelineStage, feedback_ms};
-use super::uses::Uses;
+use super::resource_usage::ResourceUsage;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
@@ -28,7 +28,7 @@ pub struct ShaderModule {
     words: usize,
     words_before: usize,
     /// The descriptors that its functions use.
-    pub uses: Uses,
+    pub usage: ResourceUsage,
 }
 
 impl ShaderModule {
@@ -42,9 +42,9 @@ impl ShaderModule {
         name: &str,
         spirv: &[u32],
         names_loops: bool,
-        uses: Uses,
+        usage: ResourceUsage,
     ) -> Result<Arc<Self>, GpuError> {
-        Self::optimized(gpu, name, (spirv, spirv.len()), names_loops, uses)
+        Self::optimized(gpu, name, (spirv, spirv.len()), names_loops, usage)
     }
 
     /// The same of a module that had `words_before` words before it was optimized.
@@ -56,7 +56,7 @@ impl ShaderModule {
         name: &str,
         (spirv, words_before): (&[u32], usize),
         names_loops: bool,
-        uses: Uses,
+        usage: ResourceUsage,
     ) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::spirv`, whose output is valid SPIR-V.
@@ -64,7 +64,7 @@ impl ShaderModule {
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
         let (name, words) = (name.to_owned(), spirv.len());
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name, names_loops, words, words_before, uses }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name, names_loops, words, words_before, usage }))
     }
 
     /// Returns the report on this stage in a pipeline.
@@ -169,7 +169,7 @@ pub struct Pipeline {
     /// Its layout.
     pub layout: Arc<PassLayout>,
     /// The descriptors that its stages use.
-    pub uses: Uses,
+    pub usage: ResourceUsage,
     /// Information about the compiled code.
     pub compile_info: CompileInfo,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
@@ -192,8 +192,8 @@ impl Pipeline {
         gpu.name(raw, &desc.name());
         let names_loops = desc.modules().any(|(_, module)| module.names_loops);
         let loops = names_loops.then(|| layouts.blank.loops.clone());
-        let uses = desc.modules().fold(Uses::default(), |uses, (_, module)| uses.union(&module.uses));
-        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, compile_info, loops, raw }))
+        let usage = desc.modules().fold(ResourceUsage::default(), |usage, (_, module)| usage.union(&module.usage));
+        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), usage, compile_info, loops, raw }))
     }
 
     /// Builds a pipeline once more to ask the driver about it, since drivers keep such numbers only where they are told to.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::gpu::{
     Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts,
-    ShaderModule, Swapchain, Uses, vk,
+    ShaderModule, Swapchain, ResourceUsage, vk,
 };
 use crate::interface::Vertex;
 use crate::shader::{Compiler, StageKind};
@@ -52,7 +52,7 @@ impl Tools {
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Compiler) -> Result<Arc<Self>, String> {
         let stage = |name: &str, kind, text| -> Result<_, String> {
             let words = compiler.compile_alone(name, text, kind)?;
-            ShaderModule::new(gpu, name, &words, false, Uses::default()).map_err(|error| error.to_string())
+            ShaderModule::new(gpu, name, &words, false, ResourceUsage::default()).map_err(|error| error.to_string())
         };
         let (vertex, fragment) = (StageKind::Vertex, StageKind::Fragment);
         let screen = stage("tools/screen.vert", vertex, include_str!("screen.vert"))?;

@@ -9,7 +9,7 @@ use crate::support::{assert_validated, gpu};
 use specula::gpu::{
     Attachments, Buffer, DescriptorSet, Encoder, Frames, Gpu, GpuError, GpuOptions, Image, ImageDesc, Memory,
     PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, Rect, Sampler, SamplerDesc, SetLayouts,
-    SetWriter, ShaderModule, Submission, Use, Uses, fault, one_shot, vk,
+    SetWriter, ShaderModule, Submission, Use, ResourceUsage, fault, one_shot, vk,
 };
 use specula::interface::SET_FRAME;
 
@@ -94,7 +94,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let compiler = shaderc::Compiler::new().unwrap();
     let module = |name: &str, kind, glsl: &str| {
         let spirv = compiler.compile_into_spirv(glsl, kind, name, "main", None).unwrap();
-        ShaderModule::new(&gpu, name, spirv.as_binary(), false, Uses::default()).unwrap()
+        ShaderModule::new(&gpu, name, spirv.as_binary(), false, ResourceUsage::default()).unwrap()
     };
     let vertex =
         module("one.vert", shaderc::ShaderKind::Vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }");

@@ -5,7 +5,7 @@ use std::sync::{Arc, Weak};
 
 use super::Drawn;
 use super::images::Images;
-use crate::gpu::{Pipeline, Uses};
+use crate::gpu::{Pipeline, ResourceUsage};
 use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Target;
@@ -45,11 +45,11 @@ impl DrawnFrom {
         if pipelines.iter().any(|pipeline| pipeline.names_loops()) {
             return None;
         }
-        let uses = pipelines.iter().fold(Uses::default(), |all, pipeline| all.union(&pipeline.uses));
+        let usage = pipelines.iter().fold(ResourceUsage::default(), |all, pipeline| all.union(&pipeline.usage));
         let (frame, state) = (drawn.frame, &drawn.frame.state);
         let mut from = Self::default();
         pipelines.iter().for_each(|pipeline| from.object(pipeline));
-        for (binding, input) in pass.inputs.iter().filter(|(binding, _)| uses.pass_bindings.contains(binding)) {
+        for (binding, input) in pass.inputs.iter().filter(|(binding, _)| usage.pass_bindings.contains(binding)) {
             match input {
                 input if input.is_of_picture() => return None,
                 Input::Image(name) => from.images.push(images.drawn_at(name)),
@@ -62,17 +62,17 @@ impl DrawnFrom {
             }
         }
         let constants = bytemuck::bytes_of(drawn.constants);
-        for bytes in &uses.frame_bytes {
+        for bytes in &usage.frame_bytes {
             from.bytes.extend(constants.get(bytes.start..bytes.end.min(constants.len())).into_iter().flatten());
         }
-        if uses.frame_bindings.contains(&BINDING_LIGHTS) {
+        if usage.frame_bindings.contains(&BINDING_LIGHTS) {
             from.bytes.extend_from_slice(bytemuck::cast_slice(&frame.lights()));
         }
-        if uses.frame_bindings.contains(&BINDING_PARAMS) {
+        if usage.frame_bindings.contains(&BINDING_PARAMS) {
             from.bytes.extend_from_slice(state.params());
         }
         let is_block = |binding: &u32| [BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS].contains(binding);
-        if !uses.frame_bindings.iter().all(is_block) {
+        if !usage.frame_bindings.iter().all(is_block) {
             from.object(&frame.environment);
             from.object(&frame.tables);
             from.object(&frame.measured);

@@ -8,7 +8,7 @@ use crate::interface::Resource;
 /// The descriptors that the functions of a module use, or those of all modules of a pipeline. What a module only declares
 /// does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Uses {
+pub struct ResourceUsage {
     /// Bindings in `interface::SET_FRAME`.
     pub frame_bindings: BTreeSet<u32>,
     /// Bytes of the block `interface::Frame`. The ranges may overlap, and the last may end beyond the block.
@@ -19,7 +19,7 @@ pub struct Uses {
     pub resources: BTreeSet<Resource>,
 }
 
-impl Uses {
+impl ResourceUsage {
     /// Everything that one of the two uses.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
