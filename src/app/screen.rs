@@ -271,7 +271,7 @@ impl Screen {
         let frame = self.next_frame(viewer)?;
         self.prepare_reference(viewer, frame.as_ref())?;
         self.prepare_grid(viewer)?;
-        self.view.surveys = viewer.panels.legend.shows_histogram && viewer.panels.visible;
+        self.view.samples_range = viewer.panels.legend.shows_histogram && viewer.panels.visible;
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);

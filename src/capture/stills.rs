@@ -238,7 +238,7 @@ impl Stills {
         let result = result?;
         // SYNC: this thread reads the picture, or draws the next over it.
         self.frames.wait()?;
-        self.view.take_survey(slot);
+        self.view.take_range_sample(slot);
         match self.frames.endless_loop(self.frames.current()) {
             Some(words) => Err(HeadlessError::Gpu(GpuError::EndlessLoop(words))),
             None => Ok(result),

@@ -138,7 +138,7 @@ impl Headless {
         }
         let result = submitted?;
         self.frames.wait()?;
-        self.view.take_survey(slot);
+        self.view.take_range_sample(slot);
         match self.frames.endless_loop(self.frames.current()) {
             Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
             None => Ok(result),

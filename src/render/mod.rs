@@ -23,5 +23,5 @@ pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
 pub use resources::{Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};
-pub use view::{Capture, Output, PixelAt, PixelModes, Readback, Redraw, Survey, Thumbnails, View, beyond_memory};
+pub use view::{Capture, Output, PixelAt, PixelModes, Readback, Redraw, RangeSample, Thumbnails, View, beyond_memory};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -43,7 +43,7 @@ use crate::app::state::inspection::Inspector;
 use crate::app::state::last_session::LastSessions;
 use crate::app::state::recent::{Kind, Recent};
 use crate::frame::Limits;
-use crate::render::Survey;
+use crate::render::RangeSample;
 use crate::settings::Colormap;
 use crate::shader::Mode;
 
@@ -156,7 +156,7 @@ pub(super) struct LegendOf {
     /// The values that the display shows as black and white; `None` for those of the mode.
     pub(super) limits: Option<Limits>,
     /// Samples of the picture's values.
-    pub(super) survey: Option<Arc<Survey>>,
+    pub(super) range_sample: Option<Arc<RangeSample>>,
     pub(super) colormap: Colormap,
     /// Factor from luminance to the display's 0..1.
     pub(super) exposure: f32,

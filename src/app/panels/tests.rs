@@ -41,7 +41,7 @@ fn the_legend_names_the_mode_and_its_switches() {
     let of = LegendOf {
         mode,
         limits: Some((2.9, 4.2)),
-        survey: None,
+        range_sample: None,
         colormap: Colormap::None,
         exposure: 1.0,
         swatches: Vec::new(),
@@ -70,7 +70,7 @@ fn the_legend_names_the_colors_of_numbers() {
     let number_colors = vec![Some([0x3f, 0xbc, 0x59]), Some([0xe7, 0x45, 0x30])];
     let mode = Mode { name: "Face orientation".into(), numbers, number_colors, components: 3, ..Mode::default() };
     let swatches = swatches(&mode, None, &ShaderSet::default());
-    let of = LegendOf { mode, limits: None, survey: None, colormap: Colormap::None, exposure: 1.0, swatches };
+    let of = LegendOf { mode, limits: None, range_sample: None, colormap: Colormap::None, exposure: 1.0, swatches };
     let state = (Settings::of_window().view, LegendState::default());
     let mut harness = harness(state, move |ui, (view, state)| {
         let legend = Legend { title: None, of: &of, value: None };

@@ -18,7 +18,7 @@ impl Screen {
         let mut views = frame.map(|frame| (&self.view, frame)).into_iter().chain(reference).chain(cells);
         let is_unfinished = |(view, frame): (&View, &BoundFrame)| {
             let gets_better = frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED;
-            gets_better || view.is_moving(frame) || view.awaits_survey()
+            gets_better || view.is_moving(frame) || view.awaits_range_sample()
         };
         self.awaits_pixel()
             || self.window_shot.is_some()

@@ -34,12 +34,12 @@ impl Screen {
     }
 
     /// Reads the samples of the newest finished frames, which decide automatic ranges and fill the histogram.
-    pub(super) fn read_survey(&mut self) {
+    pub(super) fn read_range_sample(&mut self) {
         for slot in (0..FRAMES_IN_FLIGHT).filter(|slot| self.frames.is_finished(*slot)) {
-            self.view.take_survey(slot);
-            self.cells.iter_mut().for_each(|cell| cell.view.take_survey(slot));
+            self.view.take_range_sample(slot);
+            self.cells.iter_mut().for_each(|cell| cell.view.take_range_sample(slot));
             if let Some(reference) = &mut self.reference {
-                reference.view.take_survey(slot);
+                reference.view.take_range_sample(slot);
             }
         }
     }
@@ -97,7 +97,7 @@ impl Screen {
             swatches: swatches(&mode, scene.as_ref(), &state.shaders),
             mode,
             limits: view.limits(),
-            survey: view.survey().cloned(),
+            range_sample: view.range_sample().cloned(),
             colormap: state.display.colormap(),
             exposure: state.exposure(),
         })

@@ -19,7 +19,7 @@ impl Screen {
         viewer: &mut Viewer,
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
-        self.read_survey();
+        self.read_range_sample();
         self.show_background(viewer);
         self.take_copies(viewer);
         self.finish_window_shot(viewer);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Survey, View};
+use super::{RangeSample, View};
 use crate::frame::Limits;
 use crate::render::BoundFrame;
 
@@ -19,12 +19,12 @@ impl View {
             self.mode_since = Some((mode, self.picture));
         }
         let since = self.mode_since.map_or(0, |(_, since)| since);
-        let survey = self.survey.as_ref().filter(|survey| survey.picture >= since);
-        let values = match (survey, self.measured) {
-            (Some(survey), Some((picture, values))) if survey.picture == picture => values,
-            (Some(survey), _) if state.display.is_measured() => {
-                let values = survey.limits(state.mode().map_or(3, |mode| mode.components));
-                self.measured = Some((survey.picture, values));
+        let range_sample = self.range_sample.as_ref().filter(|range_sample| range_sample.picture >= since);
+        let values = match (range_sample, self.measured) {
+            (Some(range_sample), Some((picture, values))) if range_sample.picture == picture => values,
+            (Some(range_sample), _) if state.display.is_measured() => {
+                let values = range_sample.limits(state.mode().map_or(3, |mode| mode.components));
+                self.measured = Some((range_sample.picture, values));
                 values
             }
             _ => None,
@@ -45,7 +45,7 @@ impl View {
     pub fn lacks_limits(&self, frame: &BoundFrame) -> bool {
         let mode = frame.state.pipelines.mode;
         let since = self.mode_since.filter(|(last, _)| *last == mode).map(|(_, since)| since);
-        let knows = |since| self.survey.as_ref().is_some_and(|survey| survey.picture >= since);
+        let knows = |since| self.range_sample.as_ref().is_some_and(|range_sample| range_sample.picture >= since);
         frame.state.display.is_measured() && self.followed.is_none() && !since.is_some_and(knows)
     }
 
@@ -68,16 +68,16 @@ impl View {
     }
 
     /// Takes the samples of slot `slot`. SYNC: after the fence of its last frame.
-    pub fn take_survey(&mut self, slot: usize) {
-        let taken = self.in_flight.get_mut(slot).and_then(|in_flight| in_flight.survey.take());
-        if let Some(survey) = taken.filter(|taken| self.survey.as_ref().is_none_or(|old| old.picture < taken.picture)) {
-            self.survey = Some(Arc::new(survey));
+    pub fn take_range_sample(&mut self, slot: usize) {
+        let taken = self.in_flight.get_mut(slot).and_then(|in_flight| in_flight.range_sample.take());
+        if let Some(range_sample) = taken.filter(|taken| self.range_sample.as_ref().is_none_or(|old| old.picture < taken.picture)) {
+            self.range_sample = Some(Arc::new(range_sample));
         }
     }
 
     /// The newest samples of the picture's values.
-    pub fn survey(&self) -> Option<&Arc<Survey>> {
-        self.survey.as_ref()
+    pub fn range_sample(&self) -> Option<&Arc<RangeSample>> {
+        self.range_sample.as_ref()
     }
 
     /// Shows values between these limits, those of a picture that this view's is compared with. `None`: between the limits of its own
@@ -87,8 +87,8 @@ impl View {
     }
 
     /// Whether samples of the picture are on their way, or the last frame showed new limits, which a legend does not know yet.
-    pub fn awaits_survey(&self) -> bool {
+    pub fn awaits_range_sample(&self) -> bool {
         self.is_shown_anew
-            || self.surveyed != 0 && self.survey.as_ref().map(|survey| survey.picture) != Some(self.surveyed)
+            || self.range_sampled != 0 && self.range_sample.as_ref().map(|range_sample| range_sample.picture) != Some(self.range_sampled)
     }
 }

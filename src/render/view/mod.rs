@@ -7,7 +7,7 @@ mod limits;
 mod model_draws;
 mod passes;
 mod pixel_modes;
-mod survey;
+mod range_sample;
 mod targets;
 mod thumbnails;
 mod uniforms;
@@ -21,12 +21,12 @@ use capture::PixelReadback;
 pub use capture::{Capture, Readback};
 pub use declared::beyond_memory;
 pub use pixel_modes::PixelModes;
-pub use survey::Survey;
+pub use range_sample::RangeSample;
 use targets::{TargetDesc, Targets};
 pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
-use survey::SurveyReadback;
+use range_sample::RangeSampleReadback;
 
 use declared::{Blocks, DeclaredPasses, Drawn, Given};
 
@@ -77,7 +77,7 @@ struct InFlight {
     uniforms: Uniforms,
     blocks: Blocks,
     pixel: PixelReadback,
-    survey: SurveyReadback,
+    range_sample: RangeSampleReadback,
 }
 
 /// Draws frames, and redraws only what has changed.
@@ -98,11 +98,11 @@ pub struct View {
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
     /// Whether samples of each picture are wanted, although no range follows them.
-    pub surveys: bool,
+    pub samples_range: bool,
     /// The newest samples.
-    survey: Option<Arc<Survey>>,
+    range_sample: Option<Arc<RangeSample>>,
     /// The picture of which the last samples were copied.
-    surveyed: u64,
+    range_sampled: u64,
     /// The limits between which almost all values of a picture lie.
     measured: Option<(u64, Option<Limits>)>,
     /// The value of `MODE`, and its first picture since it was chosen.
@@ -132,7 +132,7 @@ impl View {
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, frames_in_flight: usize) -> Result<Self, GpuError> {
         let in_flight = || -> Result<_, GpuError> {
             let (uniforms, pixel) = (Uniforms::new(gpu)?, PixelReadback::new(gpu)?);
-            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel, survey: SurveyReadback::default() })
+            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel, range_sample: RangeSampleReadback::default() })
         };
         let (nearest, shared) = (Sampler::new(gpu, &SamplerDesc::NEAREST)?, SharedImages::new(gpu)?);
         Ok(Self {
@@ -147,9 +147,9 @@ impl View {
             picture: 0,
             sample_index: 0,
             probe: None,
-            surveys: false,
-            survey: None,
-            surveyed: 0,
+            samples_range: false,
+            range_sample: None,
+            range_sampled: 0,
             measured: None,
             mode_since: None,
             known_limits: HashMap::new(),
@@ -217,7 +217,7 @@ impl View {
         let is_shown_anew =
             self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
         self.is_shown_anew = is_shown_anew;
-        let surveys = (self.surveys || frame.state.display.is_measured()) && self.surveyed != self.picture;
+        let samples_range = (self.samples_range || frame.state.display.is_measured()) && self.range_sampled != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
 
@@ -252,9 +252,9 @@ impl View {
         let is_on_display = frame.state.pipelines.shows_display();
         let in_light = self.probe.filter(|_| !is_on_display);
         in_flight.pixel.record(encoder, &picture, in_light, self.picture);
-        if surveys {
-            in_flight.survey.record(&self.gpu, encoder, &picture, self.picture)?;
-            self.surveyed = self.picture;
+        if samples_range {
+            in_flight.range_sample.record(&self.gpu, encoder, &picture, self.picture)?;
+            self.range_sampled = self.picture;
         }
 
         // The HDR picture to the display: exposure, tone map, sRGB.
@@ -321,7 +321,7 @@ impl View {
     /// undefined.
     pub fn forget(&mut self) {
         (self.drawn, self.cameras) = (None, None);
-        self.surveyed = 0;
+        self.range_sampled = 0;
         self.declared.forget();
     }
 

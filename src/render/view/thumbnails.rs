@@ -48,9 +48,9 @@ impl Thumbnails {
             self.pending.remove(&slot).unwrap_or_default().into_iter().enumerate()
         {
             let in_flight = self.view.in_flight.get_mut(slot * Self::MOST_AT_ONCE + index);
-            let Some(survey) = in_flight.and_then(|in_flight| in_flight.survey.take()) else { continue };
+            let Some(range_sample) = in_flight.and_then(|in_flight| in_flight.range_sample.take()) else { continue };
             let before = self.limits.get(&mode).copied();
-            let limits = display.limits(survey.limits(components), before);
+            let limits = display.limits(range_sample.limits(components), before);
             if limits != before {
                 changed.push(mode);
             }
@@ -116,7 +116,7 @@ impl Thumbnails {
         for (index, ((picture, key), corner)) in pictures.zip(request.tonemap_keys()).zip(corners).enumerate() {
             encoder.transition(picture, Use::Color, Use::Sampled);
             if frame.state.displays.get(index).is_some_and(|(_, _, display)| display.is_measured()) {
-                view.in_flight[first + index].survey.record(&view.gpu, encoder, picture, 1)?;
+                view.in_flight[first + index].range_sample.record(&view.gpu, encoder, picture, 1)?;
                 self.pending.insert(slot, frame.state.displays.clone());
             }
             encoder.bind_set(&view.layouts, &tonemap_sets[index]);

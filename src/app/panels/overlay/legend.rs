@@ -253,12 +253,12 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
     let (rect, response) = ui.allocate_exact_size(HISTOGRAM, Sense::hover());
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
-    let Some(survey) = &legend.of.survey else { return };
+    let Some(range_sample) = &legend.of.range_sample else { return };
     let axis = legend.shown().map_or(Axis::Stops(legend.of.exposure), Axis::Linear);
-    let is_known = |(picture, of, _): &&(u64, Axis, _)| *picture == survey.picture && *of == axis;
+    let is_known = |(picture, of, _): &&(u64, Axis, _)| *picture == range_sample.picture && *of == axis;
     if state.counts.as_ref().filter(is_known).is_none() {
-        let counts = survey.histogram(BINS, |value| axis.place(value));
-        state.counts = Some((survey.picture, axis, counts));
+        let counts = range_sample.histogram(BINS, |value| axis.place(value));
+        state.counts = Some((range_sample.picture, axis, counts));
     }
     let Some((.., counts)) = &state.counts else { return };
     let shown: Vec<(usize, Color32)> = match (legend.of.mode.components, view.channels) {

@@ -10,19 +10,19 @@ use crate::shader::PixelValue;
 
 /// Most samples of a picture: enough for a hundredth of it to be more than a hundred samples.
 const SAMPLES: u32 = 1 << 14;
-/// The part of the values beyond each end of [`Survey::limits`].
+/// The part of the values beyond each end of [`RangeSample::limits`].
 const BEYOND: f32 = 0.01;
 
 /// Values of a picture at the points of a grid.
 #[derive(Clone, Debug, Default)]
-pub struct Survey {
+pub struct RangeSample {
     /// [`super::View::picture`] of the picture.
     pub picture: u64,
     /// Raw values where the picture has one, without coverage.
     pub values: Vec<[f32; 3]>,
 }
 
-impl Survey {
+impl RangeSample {
     /// The values between which all but a hundredth at each end lie, over the first `components`. `None` without values.
     pub fn limits(&self, components: u8) -> Option<Limits> {
         let count = usize::from(components).clamp(1, 3);
@@ -52,13 +52,13 @@ impl Survey {
 
 /// Copies samples of a slot's frames.
 #[derive(Default)]
-pub(super) struct SurveyReadback {
+pub(super) struct RangeSampleReadback {
     image: Option<(Arc<Image>, Arc<Buffer>)>,
     /// The picture whose samples the buffer holds.
     copied: Option<u64>,
 }
 
-impl SurveyReadback {
+impl RangeSampleReadback {
     /// Records the copy of an HDR image, which is in [`Use::Sampled`] before and after.
     pub(super) fn record(
         &mut self,
@@ -92,22 +92,22 @@ impl SurveyReadback {
         // Nothing samples the image, but every image has a view.
         let copies = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         let usage = copies | vk::ImageUsageFlags::SAMPLED;
-        let image = Image::new(gpu, "survey", ImageDesc::new(size.0, size.1, format, usage))?;
+        let image = Image::new(gpu, "range_sample", ImageDesc::new(size.0, size.1, format, usage))?;
         let bytes = u64::from(size.0) * u64::from(size.1) * if is_half(format) { 8 } else { 16 };
-        let buffer = Buffer::new(gpu, "survey", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
+        let buffer = Buffer::new(gpu, "range_sample", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
         self.image = Some((image.clone(), buffer.clone()));
         Ok((image, buffer))
     }
 
     /// Takes the samples of the last frame that recorded some. SYNC: after that frame's fence.
-    pub(super) fn take(&mut self) -> Option<Survey> {
+    pub(super) fn take(&mut self) -> Option<RangeSample> {
         let picture = self.copied.take()?;
         let (image, buffer) = self.image.as_ref()?;
         let decoded = texels(buffer.content(), is_half(image.desc().format)).map(PixelValue::decode);
         let known = decoded.filter(|pixel| !pixel.no_data && !pixel.not_finite && pixel.value[3] > 0.5);
         let values =
             known.map(|PixelValue { value: [r, g, b, coverage], .. }| [r, g, b].map(|c| c / coverage)).collect();
-        Some(Survey { picture, values })
+        Some(RangeSample { picture, values })
     }
 }
 
@@ -123,15 +123,15 @@ mod tests {
     fn limits_leave_out_a_hundredth_at_each_end() {
         let mut values: Vec<[f32; 3]> = (0..1000).map(|i| [i as f32, 0.0, 0.0]).collect();
         values[5] = [1e9, 0.0, 0.0];
-        let survey = Survey { picture: 1, values };
-        assert_eq!(survey.limits(1), Some((11.0, 990.0)));
-        assert_eq!(Survey::default().limits(3), None);
+        let range_sample = RangeSample { picture: 1, values };
+        assert_eq!(range_sample.limits(1), Some((11.0, 990.0)));
+        assert_eq!(RangeSample::default().limits(3), None);
     }
 
     #[test]
     fn a_histogram_counts_every_value() {
         let values = vec![[0.0, 0.5, 2.0], [0.1, 0.5, -3.0]];
-        let [r, g, b] = Survey { picture: 1, values }.histogram(4, |value| value);
+        let [r, g, b] = RangeSample { picture: 1, values }.histogram(4, |value| value);
         assert_eq!((r, g, b), (vec![2, 0, 0, 0], vec![0, 0, 2, 0], vec![1, 0, 0, 1]));
     }
 }
