@@ -134,13 +134,13 @@ struct Shared {
 }
 
 /// Measures one shader set with one choice of models.
-pub struct Bench {
+pub struct BrdfMeter {
     shared: Arc<Shared>,
     constants: Specialization,
     frame: Arc<DescriptorSet>,
 }
 
-impl Bench {
+impl BrdfMeter {
     /// Prepares shaders with [`crate::frame::stages::all_stages`]. The author's constants and parameters come from `settings`.
     ///
     /// # Errors
@@ -164,7 +164,7 @@ impl Bench {
     /// The same shaders with other settings.
     ///
     /// # Errors
-    /// As [`Bench::new`].
+    /// As [`BrdfMeter::new`].
     pub fn with(&self, settings: &Settings) -> Result<Self, GpuError> {
         Self::on(self.shared.clone(), settings)
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::json;
-use specula::learn::{Exercise, Finding, Lab, LearnError, Progress, exercises, find, prepare};
+use specula::learn::{Exercise, Finding, GoalMeter, LearnError, Progress, exercises, find, prepare};
 use specula::message::tell;
 use specula::shader::{Source, is_specula_tree};
 
@@ -112,13 +112,13 @@ fn check(args: &Args) -> Result<(), Failure> {
     let gpu = args.common.gpu()?;
     let progress = super::progress::Progress::new(!args.common.emits());
     progress.say("compiling the shaders and measuring the goals");
-    let mut lab = Lab::new(&gpu, &compiler()?);
-    let findings = lab.check(exercise, &source, || false).map_err(|error| match error {
+    let mut meter = GoalMeter::new(&gpu, &compiler()?);
+    let findings = meter.check(exercise, &source, || false).map_err(|error| match error {
         LearnError::Shaders(diagnostics) => Failure::Shaders(diagnostics),
         LearnError::Headless(error) => error.into(),
         other => Failure::Input(other.to_string()),
     });
-    drop(lab);
+    drop(meter);
     drop(progress);
     let findings = findings?;
     check_validation(&gpu)?;

@@ -71,7 +71,7 @@ impl Headless {
         Ok((this, reload))
     }
 
-    /// Like [`Headless::new`], with the stages that [`crate::measure::Bench`] needs. Unknown names in the settings are accepted, and
+    /// Like [`Headless::new`], with the stages that [`crate::measure::BrdfMeter`] needs. Unknown names in the settings are accepted, and
     /// the resources of a frame are created when it is rendered.
     ///
     /// # Errors

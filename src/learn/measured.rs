@@ -2,7 +2,7 @@
 
 use super::goal::Check;
 use crate::gpu::GpuError;
-use crate::measure::{Bench, Grid, Surface};
+use crate::measure::{BrdfMeter, Grid, Surface};
 
 /// Coarse enough for a software device, fine enough to find the worst place.
 const ROWS: u32 = 10;
@@ -14,7 +14,7 @@ pub(super) type Verdict = (bool, String);
 /// Measures the BRDF. `None` for a goal of another kind. `solved` is called for the solution's BRDF if that is needed.
 pub(super) fn verdict(
     check: &Check,
-    bench: &Bench,
+    meter: &BrdfMeter,
     solved: impl FnOnce(Surface, Grid) -> Result<Vec<[f32; 3]>, GpuError>,
 ) -> Option<Result<Verdict, GpuError>> {
     Some(match check {
@@ -22,22 +22,22 @@ pub(super) fn verdict(
             let surface = Surface { base_color: *base_color, metallic: *metallic };
             let grid = Grid { roughness: *roughness, ..ANGLES };
             let is_white = *base_color == [1.0; 3];
-            furnace(bench, surface, grid, *within, (!is_white).then_some(solved))
+            furnace(meter, surface, grid, *within, (!is_white).then_some(solved))
         }
-        Check::Normalization { within } => normalization(bench, *within),
-        Check::Reciprocity { within } => reciprocity(bench, *within),
+        Check::Normalization { within } => normalization(meter, *within),
+        Check::Reciprocity { within } => reciprocity(meter, *within),
         _ => return None,
     })
 }
 
 fn furnace(
-    bench: &Bench,
+    meter: &BrdfMeter,
     surface: Surface,
     grid: Grid,
     within: f64,
     solved: Option<impl FnOnce(Surface, Grid) -> Result<Vec<[f32; 3]>, GpuError>>,
 ) -> Result<Verdict, GpuError> {
-    let found = bench.furnace(surface, grid)?;
+    let found = meter.furnace(surface, grid)?;
     let expected = match solved {
         Some(solved) => solved(surface, grid)?,
         None => vec![[1.0; 3]; found.len()],
@@ -58,9 +58,9 @@ fn furnace(
     Ok((is_good, with_expected(says, is_good, expected)))
 }
 
-fn normalization(bench: &Bench, within: f64) -> Result<Verdict, GpuError> {
+fn normalization(meter: &BrdfMeter, within: f64) -> Result<Verdict, GpuError> {
     let grid = Grid { rows: ROWS, roughness: (0.1, 1.0), columns: 1, theta: (0.0, 0.0), samples: 4096 };
-    let all = bench.normalization(grid)?;
+    let all = meter.normalization(grid)?;
     let all = all.into_iter().enumerate().map(|(row, found)| (row, f64::from(found), 1.0));
     let Some((row, found, expected)) = worst(all) else { return Ok((false, "nothing was measured".into())) };
     let is_good = (found - expected).abs() <= within;
@@ -69,12 +69,12 @@ fn normalization(bench: &Bench, within: f64) -> Result<Verdict, GpuError> {
     Ok((is_good, with_expected(says, is_good, expected)))
 }
 
-fn reciprocity(bench: &Bench, within: f64) -> Result<Verdict, GpuError> {
+fn reciprocity(meter: &BrdfMeter, within: f64) -> Result<Verdict, GpuError> {
     let grid = Grid { rows: ROWS, roughness: (0.1, 1.0), columns: 16, theta: (0.0, 0.0), samples: 256 };
     let mut worst = (0.0_f64, 0);
     for metallic in [0.0, 1.0] {
         let surface = Surface { base_color: [0.8, 0.5, 0.2], metallic };
-        for (index, found) in bench.reciprocity(surface, grid)?.into_iter().enumerate() {
+        for (index, found) in meter.reciprocity(surface, grid)?.into_iter().enumerate() {
             let error = if found.error.is_nan() { f64::INFINITY } else { f64::from(found.error) };
             if error > worst.0 {
                 worst = (error, index as u32 / grid.columns);

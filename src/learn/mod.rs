@@ -6,7 +6,7 @@
 mod exercise;
 mod folder;
 mod goal;
-mod lab;
+mod goal_meter;
 mod measured;
 mod progress;
 mod shown;
@@ -18,7 +18,7 @@ use include_dir::{Dir, include_dir};
 pub use exercise::{Exercise, Level, Place};
 pub use folder::{exercise_of, prepare};
 pub use goal::{Finding, Goal};
-pub use lab::{Lab, LearnError};
+pub use goal_meter::{GoalMeter, LearnError};
 pub use progress::{Progress, Record};
 
 /// The exercises that the program embeds, with their texts.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Bench, Grid, Lobe, Surface};
+use super::{BrdfMeter, Grid, Lobe, Surface};
 use crate::frame::stages::{HEMISPHERE_STAGE, MEASURE_STAGES, TABLE_STAGES};
 use crate::gpu::{Gpu, GpuError};
 use crate::settings::Settings;
@@ -38,7 +38,7 @@ pub struct Material {
 /// Measured curves of a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
-    /// Lobes in the plane of incidence, as [`Bench::lobes`] returns them.
+    /// Lobes in the plane of incidence, as [`BrdfMeter::lobes`] returns them.
     pub lobes: Vec<Lobe>,
     /// Albedo, linear RGB: see [`Curves::angle_deg`].
     pub albedo: Vec<[f32; 3]>,
@@ -62,7 +62,7 @@ impl Curves {
     ///
     /// # Errors
     /// A device error.
-    pub fn measure(bench: &Bench, material: &Material) -> Result<Self, GpuError> {
+    pub fn measure(meter: &BrdfMeter, material: &Material) -> Result<Self, GpuError> {
         let Material { base_color, metallic, roughness, light_deg } = *material;
         let surface = Surface { base_color, metallic };
         let lobes = Grid {
@@ -74,14 +74,14 @@ impl Curves {
         };
         let albedo = Grid { columns: ALBEDO_COLUMNS, theta: (0.0, LAST_DEG), samples: ALBEDO_SAMPLES, ..lobes };
         let sphere = Grid { rows: RINGS, columns: AZIMUTHS, ..lobes };
-        let values = match bench.has(HEMISPHERE_STAGE) {
-            true => Some(bench.run(HEMISPHERE_STAGE, surface, sphere)?),
+        let values = match meter.has(HEMISPHERE_STAGE) {
+            true => Some(meter.run(HEMISPHERE_STAGE, surface, sphere)?),
             false => None,
         };
         Ok(Self {
-            lobes: bench.lobes(surface, lobes)?,
-            albedo: bench.furnace(surface, albedo)?,
-            furnace: bench.furnace(Surface { base_color: [1.0; 3], metallic }, albedo)?,
+            lobes: meter.lobes(surface, lobes)?,
+            albedo: meter.furnace(surface, albedo)?,
+            furnace: meter.furnace(Surface { base_color: [1.0; 3], metallic }, albedo)?,
             hemisphere: values.map(|values| Hemisphere { azimuths: AZIMUTHS as usize, values }),
         })
     }
@@ -102,7 +102,7 @@ pub fn prepare(
     tree: &Source,
     texts: &BTreeMap<TreePath, Arc<str>>,
     settings: &Settings,
-) -> Result<Bench, String> {
+) -> Result<BrdfMeter, String> {
     let measured = [&TABLE_STAGES[..], &[MEASURE_STAGES[0], MEASURE_STAGES[3]]].concat();
     let source = only_measuring(tree, texts);
     let has_hemisphere = source.read(&HEMISPHERE_STAGE.into()).is_ok();
@@ -123,7 +123,7 @@ pub fn prepare(
         }
         Update::Unchanged { .. } => return Err("the stages that measure the BRDF were not compiled".into()),
     };
-    Bench::new(gpu, &shaders, settings).map_err(|error| error.to_string())
+    BrdfMeter::new(gpu, &shaders, settings).map_err(|error| error.to_string())
 }
 
 /// The texts that the measuring stages may include. Other stages are left out, so that they are not compiled.

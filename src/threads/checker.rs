@@ -9,7 +9,7 @@ use crossbeam_channel::{Sender, unbounded};
 
 use super::{Message, MessageSender, TaskKind};
 use crate::gpu::Gpu;
-use crate::learn::{Exercise, Finding, Lab, LearnError};
+use crate::learn::{Exercise, Finding, GoalMeter, LearnError};
 use crate::shader::{Compiler, Source};
 
 /// Result of a check.
@@ -49,13 +49,13 @@ impl Checker {
             let (gpu, compiler, newest) = (self.gpu.clone(), self.compiler.clone(), self.newest.clone());
             let (sender, requests) = unbounded::<Request>();
             let run = move |sender: &MessageSender| {
-                let mut lab = Lab::new(&gpu, &compiler);
+                let mut meter = GoalMeter::new(&gpu, &compiler);
                 for Request { number, exercise, source } in requests {
                     let is_old = || newest.load(Ordering::Relaxed) != number;
                     if is_old() {
                         continue;
                     }
-                    let result = match lab.check(exercise, &source, is_old) {
+                    let result = match meter.check(exercise, &source, is_old) {
                         Err(LearnError::Superseded) => continue,
                         result => result.map_err(|error| error.to_string()),
                     };

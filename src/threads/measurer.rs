@@ -10,7 +10,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::{Message, MessageSender, TaskKind};
 use crate::gpu::Gpu;
-use crate::measure::{Bench, Curves, Material, prepare};
+use crate::measure::{BrdfMeter, Curves, Material, prepare};
 use crate::settings::Settings;
 use crate::shader::{Compiler, ShaderSet, Source};
 
@@ -57,9 +57,9 @@ impl Measurer {
         let is_over = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
         if self.jobs.is_none() || is_over {
             let (sender, inbox) = unbounded();
-            let benches = Benches { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
+            let meters = BrdfMeters { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
             let newest = self.newest.clone();
-            self.thread = Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(benches, &inbox, &newest, sender)));
+            self.thread = Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(meters, &inbox, &newest, sender)));
             self.jobs = Some(sender);
         }
         if let Some(jobs) = &self.jobs {
@@ -85,7 +85,7 @@ impl Drop for Measurer {
     }
 }
 
-fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &AtomicU64, sender: &MessageSender) {
+fn run(mut meters: BrdfMeters, inbox: &Receiver<(u64, CurvesRequest)>, newest: &AtomicU64, sender: &MessageSender) {
     while let Ok(first) = inbox.recv() {
         let (number, request) = inbox.try_iter().last().unwrap_or(first);
         let is_canceled = || newest.load(Ordering::SeqCst) != number;
@@ -94,10 +94,10 @@ fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &At
         }
         let start = Instant::now();
         let [now, before] = &request.shaders;
-        benches.made.retain(|(of, _)| request.shaders.iter().flatten().any(|kept| Arc::ptr_eq(kept, of)));
+        meters.made.retain(|(of, _)| request.shaders.iter().flatten().any(|kept| Arc::ptr_eq(kept, of)));
         let Some(now) = now else { continue };
-        let now = benches.curves(now, &request);
-        let before = before.as_ref().filter(|_| !is_canceled()).map(|before| benches.curves(before, &request));
+        let now = meters.curves(now, &request);
+        let before = before.as_ref().filter(|_| !is_canceled()).map(|before| meters.curves(before, &request));
         if is_canceled() {
             continue;
         }
@@ -108,34 +108,34 @@ fn run(mut benches: Benches, inbox: &Receiver<(u64, CurvesRequest)>, newest: &At
 }
 
 /// The compiled measuring stages of the newest shaders and of those before.
-struct Benches {
+struct BrdfMeters {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
     /// By shaders, with the settings that their tables were baked for.
-    made: Vec<(Arc<ShaderSet>, (Settings, Bench))>,
+    made: Vec<(Arc<ShaderSet>, (Settings, BrdfMeter))>,
 }
 
-impl Benches {
+impl BrdfMeters {
     fn curves(&mut self, shaders: &Arc<ShaderSet>, request: &CurvesRequest) -> Result<Curves, String> {
         // Only the author's constants and parameters count.
         let settings = Settings { shader: request.settings.shader.clone(), ..Settings::default() };
         let made = self.made.iter_mut().find(|(of, _)| Arc::ptr_eq(of, shaders)).map(|(_, made)| made);
-        let bench = match made {
-            Some((of, bench)) if *of == settings => bench,
+        let meter = match made {
+            Some((of, meter)) if *of == settings => meter,
             Some(made) => {
-                let bench = made.1.with(&settings).map_err(|error| error.to_string())?;
-                *made = (settings, bench);
+                let meter = made.1.with(&settings).map_err(|error| error.to_string())?;
+                *made = (settings, meter);
                 &mut made.1
             }
             None => {
-                let bench = prepare(&self.gpu, &self.compiler, &request.tree, &shaders.texts, &settings)?;
-                self.made.push((shaders.clone(), (settings, bench)));
+                let meter = prepare(&self.gpu, &self.compiler, &request.tree, &shaders.texts, &settings)?;
+                self.made.push((shaders.clone(), (settings, meter)));
                 match self.made.last_mut() {
-                    Some((_, (_, bench))) => bench,
+                    Some((_, (_, meter))) => meter,
                     None => return Err("nothing was compiled".into()),
                 }
             }
         };
-        Curves::measure(bench, &request.material).map_err(|error| error.to_string())
+        Curves::measure(meter, &request.material).map_err(|error| error.to_string())
     }
 }

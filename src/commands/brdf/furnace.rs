@@ -30,7 +30,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let opened = Opened::new(&args.options)?;
     let surface = Surface { base_color: args.surface.base_color, metallic: args.surface.metallic.unwrap_or(1.0) };
-    let albedo: Vec<[f64; 3]> = opened.bench.furnace(surface, GRID)?.into_iter().map(|a| a.map(f64::from)).collect();
+    let albedo: Vec<[f64; 3]> = opened.meter.furnace(surface, GRID)?.into_iter().map(|a| a.map(f64::from)).collect();
     let mut without = Vec::new();
     for (constant, chosen) in opened.unclaimed(Claim::Conserves) {
         if has_part(&opened, constant, surface)? {
@@ -71,8 +71,8 @@ fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bo
     let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
     let mut settings = opened.settings.clone();
     settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
-    let chosen = opened.bench.furnace(surface, COARSE)?;
-    let claiming = opened.bench.with(&settings)?.furnace(surface, COARSE)?;
+    let chosen = opened.meter.furnace(surface, COARSE)?;
+    let claiming = opened.meter.with(&settings)?.furnace(surface, COARSE)?;
     // Drivers may reorder sums when other code changes. 1e-4 is far above the rounding errors of that.
     let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
     Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use clap::Subcommand;
 use specula::frame::stages::all_stages;
 use specula::gpu::Gpu;
-use specula::measure::{Bench, Claim, Surface, unclaimed};
+use specula::measure::{BrdfMeter, Claim, Surface, unclaimed};
 use specula::settings::Settings;
 use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};
@@ -116,7 +116,7 @@ struct Opened {
     gpu: Arc<Gpu>,
     shaders: Arc<ShaderSet>,
     settings: Settings,
-    bench: Bench,
+    meter: BrdfMeter,
 }
 
 impl Opened {
@@ -133,8 +133,8 @@ impl Opened {
             return Err(Failure::Usage(message));
         }
         let gpu = open_gpu(options.device.as_deref(), options.validate, TIMEOUT_S, None)?;
-        let bench = Bench::new(&gpu, &shaders, &settings)?;
-        Ok(Self { gpu, shaders, settings, bench })
+        let meter = BrdfMeter::new(&gpu, &shaders, &settings)?;
+        Ok(Self { gpu, shaders, settings, meter })
     }
 
     fn unclaimed(&self, claim: Claim) -> Vec<(&Constant, String)> {

@@ -22,7 +22,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let opened = Opened::new(&args.options)?;
-    let integrals: Vec<f64> = opened.bench.normalization(GRID)?.into_iter().map(f64::from).collect();
+    let integrals: Vec<f64> = opened.meter.normalization(GRID)?.into_iter().map(f64::from).collect();
     let rows: Vec<(f64, f64)> = (0..).map(|row| GRID.roughness_of(row)).zip(integrals).collect();
     let off = |(_, integral): &(f64, f64)| if integral.is_nan() { f64::INFINITY } else { (integral - 1.0).abs() };
     let worst = rows.iter().copied().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_default();

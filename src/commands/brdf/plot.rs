@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use specula::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
+use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 use super::furnace::extremes;
@@ -69,19 +69,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let opened = Opened::new(&args.options)?;
     let surfaces = args.surface.surfaces(&[0.0, 1.0]);
-    let measured = surfaces.into_iter().map(|s| measure(&opened.bench, s, args)).collect::<Result<Vec<_>, _>>()?;
+    let measured = surfaces.into_iter().map(|s| measure(&opened.meter, s, args)).collect::<Result<Vec<_>, _>>()?;
     draw(&opened, args, &measured).and_then(|canvas| canvas.save(&args.out)).map_err(Failure::Input)?;
     opened.close()
 }
 
-fn measure(bench: &Bench, surface: Surface, args: &Args) -> Result<Measured, Failure> {
+fn measure(meter: &BrdfMeter, surface: Surface, args: &Args) -> Result<Measured, Failure> {
     let mut measured = Measured { surface, lobes: Vec::new(), albedo: Vec::new() };
     for roughness in &args.roughness {
         let roughness = (*roughness, *roughness);
         let lobes = Grid { rows: 1, roughness, columns: LOBE_COLUMNS, theta: (args.angle, 0.0), samples: 1 };
-        measured.lobes.push(bench.lobes(surface, lobes)?);
+        measured.lobes.push(meter.lobes(surface, lobes)?);
         let albedo = Grid { columns: ALBEDO_COLUMNS, theta: (0.0, 89.0), samples: ALBEDO_SAMPLES, ..lobes };
-        measured.albedo.push(bench.furnace(surface, albedo)?.into_iter().map(largest).collect());
+        measured.albedo.push(meter.furnace(surface, albedo)?.into_iter().map(largest).collect());
     }
     Ok(measured)
 }

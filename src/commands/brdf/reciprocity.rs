@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// The pair of directions with the largest difference, its row in the grid, and the metallic of the surface.
 fn worst_of(opened: &Opened, surface: Surface) -> Result<(Worst, u32, f32), Failure> {
-    let cells = opened.bench.reciprocity(surface, GRID)?;
+    let cells = opened.meter.reciprocity(surface, GRID)?;
     let rows = (0..).flat_map(|row: u32| std::iter::repeat_n(row, GRID.columns as usize));
     let worst = cells.into_iter().zip(rows).max_by(|(a, _), (b, _)| a.error.total_cmp(&b.error));
     let (worst, row) = worst.unwrap_or_default();

@@ -20,7 +20,7 @@ pub struct ComputePipeline {
     layouts: Arc<SetLayouts>,
     /// The layout of a declared pass.
     pub layout: Option<Arc<PassLayout>>,
-    /// The descriptors that its stage usage.
+    /// The descriptors that its stage uses.
     pub usage: ResourceUsage,
     /// Information about the compiled code.
     pub compile_info: CompileInfo,

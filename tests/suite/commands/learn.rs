@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::support::process::{Finished, finish, specula};
 use crate::support::{assert_validated, compiler, gpu};
-use specula::learn::{Finding, Lab, exercise_of, exercises, find, prepare};
+use specula::learn::{Finding, GoalMeter, exercise_of, exercises, find, prepare};
 use specula::settings::Settings;
 use specula::shader::{Source, TreePath};
 
@@ -18,9 +18,9 @@ fn three_times(name: &str) -> [Vec<Finding>; 3] {
     let parent = tempfile::tempdir().unwrap();
     let exercise = find(name).unwrap();
     let folder = prepare(parent.path(), exercise).unwrap();
-    let mut lab = Lab::new(gpu(), compiler());
+    let mut meter = GoalMeter::new(gpu(), compiler());
     let mut check = || {
-        let found = lab.check(exercise, &Source::Disk(folder.clone()), || false);
+        let found = meter.check(exercise, &Source::Disk(folder.clone()), || false);
         found.unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     let start = check();
@@ -120,19 +120,19 @@ fn trail() {
 #[test]
 fn an_equal_formula_passes() {
     let parent = tempfile::tempdir().unwrap();
-    let (exercise, mut lab) = (find("fresnel").unwrap(), Lab::new(gpu(), compiler()));
+    let (exercise, mut meter) = (find("fresnel").unwrap(), GoalMeter::new(gpu(), compiler()));
     let folder = prepare(parent.path(), exercise).unwrap();
     let text = std::fs::read_to_string(folder.join("brdf/fresnel.glsl")).unwrap();
     write(&folder, "brdf/fresnel.glsl", &text.replace("f0 + (f90 - f0) * pow5(c)", "mix(f0, f90, pow(1.0 - c, 5.0))"));
-    let findings = lab.check(exercise, &Source::Disk(folder), || false).unwrap();
+    let findings = meter.check(exercise, &Source::Disk(folder), || false).unwrap();
     assert!(findings.iter().all(|finding| finding.passed), "{findings:#?}");
 }
 
 #[test]
 fn a_newer_edit_ends_a_measurement() {
-    let mut lab = Lab::new(gpu(), compiler());
+    let mut meter = GoalMeter::new(gpu(), compiler());
     let exercise = find("roughness").unwrap();
-    let error = lab.check(exercise, &exercise.start_tree(), || true).unwrap_err();
+    let error = meter.check(exercise, &exercise.start_tree(), || true).unwrap_err();
     assert!(error.to_string().contains("newer edit"), "{error}");
 }
 

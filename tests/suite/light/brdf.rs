@@ -6,7 +6,7 @@ use crate::support::process::{Finished, run};
 use crate::support::{Tree, assert_validated, compiler, gpu, settings};
 use serde_json::Value;
 use specula::frame::stages::all_stages;
-use specula::measure::{Bench, Claim, Grid, Surface, choices, unclaimed};
+use specula::measure::{BrdfMeter, Claim, Grid, Surface, choices, unclaimed};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::{Change, Constant, Library, Source, Update};
 
@@ -56,7 +56,7 @@ fn a_white_metal_loses_nothing_at_grazing_angles() {
         for masking in ["HeightCorrelated", "Separable", "Schlick"] {
             let chosen = [format!("NDF={distribution}"), format!("MASKING_SHADOWING={masking}")];
             let settings = settings(&chosen.each_ref().map(String::as_str));
-            let bench = Bench::new(gpu(), &shaders, &settings).unwrap();
+            let bench = BrdfMeter::new(gpu(), &shaders, &settings).unwrap();
             // Smoother lobes need more samples at these angles than a loop has rounds.
             let grid = Grid { rows: 9, roughness: (0.2, 1.0), columns: 6, theta: (85.0, 89.9), samples: 16384 };
             let albedo = bench.furnace(Surface { base_color: [1.0; 3], metallic: 1.0 }, grid).unwrap();
@@ -211,7 +211,7 @@ fn combinations(constants: &[&Constant], kept: impl Fn(&Constant, &str) -> bool)
 fn no_combination_that_claims_to_conserve_gains_energy() {
     let mut library = Library::new(Source::embedded(), compiler().clone(), &all_stages());
     let Update::Ready(shaders, _) = library.update(&Change::All) else { panic!("the embedded tree compiles") };
-    let bench = Bench::new(gpu(), &shaders, &Settings::default()).unwrap();
+    let bench = BrdfMeter::new(gpu(), &shaders, &Settings::default()).unwrap();
     let steep = Grid { rows: 11, roughness: (0.0, 1.0), columns: 8, theta: (0.0, 85.0), samples: 1024 };
     let grazing = Grid { columns: 6, theta: (86.0, 89.9), ..steep };
     // The largest albedo of a grid, with its roughness and angle. NaN counts as more than any albedo.

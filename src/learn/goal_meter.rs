@@ -8,7 +8,7 @@ use super::measured::{self, Verdict};
 use super::{Exercise, Finding, Goal, shown};
 use crate::gpu::{Gpu, GpuError};
 use crate::headless::{Headless, HeadlessError, Sequence};
-use crate::measure::Bench;
+use crate::measure::BrdfMeter;
 use crate::pipeline::Outcome;
 use crate::render::Capture;
 use crate::scene;
@@ -46,11 +46,11 @@ impl From<HeadlessError> for LearnError {
     }
 }
 
-/// A bench, with the shaders and the settings that it is of.
-type Measuring = (Arc<ShaderSet>, Settings, Bench);
+/// A meter, with the shaders and the settings that it is of.
+type Measuring = (Arc<ShaderSet>, Settings, BrdfMeter);
 
 /// A device that measures. It keeps what it has compiled, so the next measurement of the same exercise is faster.
-pub struct Lab {
+pub struct GoalMeter {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
     /// Name of the exercise that the other fields are of.
@@ -63,8 +63,8 @@ pub struct Lab {
     pictures: BTreeMap<usize, Capture>,
 }
 
-impl Lab {
-    /// A lab on this device.
+impl GoalMeter {
+    /// A meter on this device.
     pub fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Self {
         let (gpu, compiler) = (gpu.clone(), compiler.clone());
         let (exercise, pictures) = (String::new(), BTreeMap::new());
@@ -179,8 +179,8 @@ impl Lab {
         let (own, solved) = self.both(exercise)?;
         let (own, solved) = (own.shaders(), solved.shaders());
         let Self { gpu, own_bench, solved_bench, .. } = self;
-        let own = bench(own_bench, gpu, &own, settings).map_err(HeadlessError::from)?;
-        let of_solution = |surface, grid| bench(solved_bench, gpu, &solved, settings)?.furnace(surface, grid);
+        let own = meter(own_bench, gpu, &own, settings).map_err(HeadlessError::from)?;
+        let of_solution = |surface, grid| meter(solved_bench, gpu, &solved, settings)?.furnace(surface, grid);
         let verdict = measured::verdict(check, own, of_solution);
         let verdict = verdict.unwrap_or_else(|| Ok((false, "nothing was measured".to_owned())));
         verdict.map_err(|error| HeadlessError::from(error).into())
@@ -236,17 +236,17 @@ impl Lab {
     }
 }
 
-/// The bench of shaders, which is made again for others.
-fn bench<'a>(
+/// The meter of shaders, which is made again for others.
+fn meter<'a>(
     made: &'a mut Option<Measuring>,
     gpu: &Arc<Gpu>,
     shaders: &Arc<ShaderSet>,
     settings: &Settings,
-) -> Result<&'a Bench, GpuError> {
+) -> Result<&'a BrdfMeter, GpuError> {
     let is_same = |(known, of, _): &Measuring| Arc::ptr_eq(known, shaders) && of == settings;
     let made = match made.take().filter(is_same) {
         Some(known) => made.insert(known),
-        None => made.insert((shaders.clone(), settings.clone(), Bench::new(gpu, shaders, settings)?)),
+        None => made.insert((shaders.clone(), settings.clone(), BrdfMeter::new(gpu, shaders, settings)?)),
     };
     Ok(&made.2)
 }
