@@ -194,7 +194,7 @@ impl App {
             validation: options.validation,
             display: Some(display.as_raw()),
             // After a loss, the stored pipelines are suspected, too.
-            pipelines: (!options.recorder.is_careful()).then_some(&disk_cache::Pipelines as &dyn PipelineStore),
+            pipelines: (!options.recorder.is_safe_mode()).then_some(&disk_cache::Pipelines as &dyn PipelineStore),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
         let mut screen = Screen::new(&gpu, &layouts, &window)?;

@@ -147,8 +147,8 @@ impl PipelineSet {
             requests: AtomicU64::default(),
         };
         if let Some(before) = before {
-            set.take_over(before);
-            set.take_over_same(before, request);
+            set.inherit(before);
+            set.inherit_equivalent(before, request);
         }
         let built = set.build(request)?;
         Ok((Arc::new(set), built))
@@ -168,7 +168,7 @@ impl PipelineSet {
     }
 
     /// Takes over the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
-    fn take_over(&self, before: &Self) {
+    fn inherit(&self, before: &Self) {
         let is_same = |path: &str| match (before.shaders.stages.get(path), self.shaders.stages.get(path)) {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
             _ => false,
@@ -188,7 +188,7 @@ impl PipelineSet {
 
     /// Takes over the pipelines of `request` whose stages are new, but do the same with the constants of the pipeline: an edit
     /// of a clear coat changes only materials that have one, and an edit of a model that is not selected changes none.
-    fn take_over_same(&self, before: &Self, request: &PipelineRequest) {
+    fn inherit_equivalent(&self, before: &Self, request: &PipelineRequest) {
         let is_same = |path: &str, constants: &[(u32, u32)]| {
             let stages = (before.shaders.stages.get(path), self.shaders.stages.get(path));
             let (Some(old), Some(new)) = stages else { return false };

@@ -41,7 +41,7 @@ impl Recorder {
 
     /// Whether the process before was lost and no new text has been drawn since. Then nothing is done ahead of time, because no
     /// text would be suspected.
-    pub fn is_careful(&self) -> bool {
+    pub fn is_safe_mode(&self) -> bool {
         self.lock().state.losses > 0
     }
 

@@ -157,7 +157,7 @@ impl Worker {
             panics: 0,
             thumbnails: None,
             inspected: None,
-            aside: None,
+            low_priority: None,
             questions: None,
             unfinished: false,
             is_shown: false,

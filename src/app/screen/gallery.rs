@@ -85,7 +85,7 @@ impl Gallery {
         (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
     ) -> Result<Option<Duration>, GpuError> {
         self.collect(viewer);
-        if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_careful() {
+        if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_safe_mode() {
             return Ok(None);
         }
         let scale = scale(&viewer.gpu) * pixels_per_point;

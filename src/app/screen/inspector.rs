@@ -92,7 +92,7 @@ impl PixelReader {
         (size, mouse): ((u32, u32), Option<(u32, u32)>),
     ) -> Result<Option<Duration>, GpuError> {
         let inspector = &viewer.panels.inspector;
-        if !inspector.is_visible || viewer.recorder.is_careful() {
+        if !inspector.is_visible || viewer.recorder.is_safe_mode() {
             // The device memory is free for other things while the panel is closed.
             (self.renderer, self.shown) = (None, None);
             return Ok(None);

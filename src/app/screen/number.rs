@@ -105,7 +105,7 @@ impl NumberReader {
         layouts: &Arc<SetLayouts>,
         pointed: Option<Pointed>,
     ) -> Result<Option<Duration>, GpuError> {
-        let Some(pointed) = pointed.filter(|_| !viewer.recorder.is_careful()) else {
+        let Some(pointed) = pointed.filter(|_| !viewer.recorder.is_safe_mode()) else {
             *self = Self { progress: Progress::Failed, ..Self::default() };
             return Ok(None);
         };

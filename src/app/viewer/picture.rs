@@ -46,7 +46,7 @@ impl Viewer {
         size: (u32, u32),
         prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
-        let preview = self.panels.gallery.preview().filter(|_| !self.recorder.is_careful());
+        let preview = self.panels.gallery.preview().filter(|_| !self.recorder.is_safe_mode());
         let Some(preview) = preview.map(str::to_owned) else {
             return self.frame_of_settings(size, prepare);
         };

@@ -54,7 +54,7 @@ pub(super) struct Thread {
     /// The same for the inspector.
     pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
     /// The build of a thumbnail's pipelines that runs, or was the last to run.
-    pub(super) aside: Option<JoinHandle<()>>,
+    pub(super) low_priority: Option<JoinHandle<()>>,
     /// The picture about whose pipelines the driver is asked.
     pub(super) questions: Option<Build>,
     /// Whether the last reload has left stages to [`Thread::finish`].
@@ -295,7 +295,7 @@ impl Thread {
         if !self.has_thumbnails() {
             return;
         }
-        if self.aside.as_ref().is_some_and(|build| !build.is_finished()) {
+        if self.low_priority.as_ref().is_some_and(|build| !build.is_finished()) {
             // An edit may come in the meantime.
             std::thread::sleep(Duration::from_millis(1));
             return;
@@ -307,7 +307,7 @@ impl Thread {
         self.join_aside();
         let sender = self.sender.clone();
         let (done, ended) = bounded::<()>(0);
-        self.aside = Some(std::thread::spawn(move || {
+        self.low_priority = Some(std::thread::spawn(move || {
             if let Err(error) = set.build_aside(&request) {
                 tracing::debug!("no thumbnails: {error}");
             }
@@ -324,7 +324,7 @@ impl Thread {
 
     /// Waits for the build of a thumbnail's pipelines that runs. After a panic of that thread the thumbnail is missing.
     fn join_aside(&mut self) {
-        if let Some(Err(panic)) = self.aside.take().map(JoinHandle::join) {
+        if let Some(Err(panic)) = self.low_priority.take().map(JoinHandle::join) {
             tracing::debug!("no thumbnails: {}", panic_text(&*panic));
         }
     }
@@ -334,7 +334,7 @@ impl Thread {
         let snapshot = self.snapshot();
         // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
         let Some(scene) = &snapshot.scene else { return };
-        if !set.shaders.is_complete() || self.recorder.is_careful() {
+        if !set.shaders.is_complete() || self.recorder.is_safe_mode() {
             return;
         }
         let features = Some(scene.features(&snapshot.settings) | set.shaders.hook_features());
