@@ -28,7 +28,7 @@ use images::Images;
 pub use memory::beyond_memory;
 pub(super) use reads::Given;
 use reads::Reads;
-use reuse::DrawnFrom;
+use reuse::PassCacheKey;
 pub(super) use sets::PassSets;
 use sets::Sets;
 
@@ -54,7 +54,7 @@ pub(super) struct DeclaredPasses {
 }
 
 /// The arguments of a frame's passes.
-pub(super) struct Drawn<'a> {
+pub(super) struct PassContext<'a> {
     pub(super) frame: &'a BoundFrame,
     pub(super) frame_set: &'a Arc<DescriptorSet>,
     pub(super) blocks: &'a Blocks,
@@ -116,11 +116,11 @@ impl DeclaredPasses {
     }
 
     /// Draws the passes whose images the model reads.
-    pub(super) fn before_model(&mut self, encoder: &mut Encoder, drawn: &Drawn<'_>) -> Result<(), GpuError> {
+    pub(super) fn before_model(&mut self, encoder: &mut Encoder, context: &PassContext<'_>) -> Result<(), GpuError> {
         self.images.begin_frame(encoder);
         let nothing = self.blank.clone();
-        self.run(encoder, drawn, &nothing, Part::BeforeModel)?;
-        finish_buffers(encoder, drawn);
+        self.run(encoder, context, &nothing, Part::BeforeModel)?;
+        finish_buffers(encoder, context);
         Ok(())
     }
 
@@ -128,13 +128,13 @@ impl DeclaredPasses {
     pub(super) fn before_tonemap(
         &mut self,
         encoder: &mut Encoder,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         picture: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let last = self.run(encoder, drawn, picture, Part::Light)?;
-        finish_buffers(encoder, drawn);
+        let last = self.run(encoder, context, picture, Part::Light)?;
+        finish_buffers(encoder, context);
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
-        let shown = shown_image(drawn.frame).filter(|(_, pass)| pass.part != Part::Display);
+        let shown = shown_image(context.frame).filter(|(_, pass)| pass.part != Part::Display);
         // The tone map reads an image of the picture's size.
         if let Some((name, _)) = shown
             && let (Some(from), Some(to)) = (self.images.current(name), self.images.shown())
@@ -155,7 +155,7 @@ impl DeclaredPasses {
     pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         redrawn: bool,
         tone_map: impl FnOnce(&mut Encoder, &Arc<Image>),
     ) -> Result<Option<Arc<Image>>, GpuError> {
@@ -166,8 +166,8 @@ impl DeclaredPasses {
         encoder.transition(&first, Use::Undefined, Use::Color);
         encoder.pass("tone map", |encoder| tone_map(encoder, &first));
         encoder.transition(&first, Use::Color, Use::Sampled);
-        let mut last = self.run(encoder, drawn, &first, Part::Display)?;
-        let shown = shown_image(drawn.frame).filter(|(_, pass)| pass.part == Part::Display);
+        let mut last = self.run(encoder, context, &first, Part::Display)?;
+        let shown = shown_image(context.frame).filter(|(_, pass)| pass.part == Part::Display);
         if let Some((name, _)) = shown
             && let Some(from) = self.images.current(name)
             && let Some(to) = self.images.other_picture(Part::Display, &last)
@@ -194,18 +194,18 @@ impl DeclaredPasses {
     /// The sets of the pipelines of `keys`, which draw to the picture. Images of passes are read as they are now.
     pub(super) fn sets_of(
         &mut self,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         given: &Given<'_>,
         keys: impl Iterator<Item = PipelineKey>,
     ) -> Result<PassSets, GpuError> {
-        let passes = &drawn.frame.state.pipelines.passes;
+        let passes = &context.frame.state.pipelines.passes;
         let mut sets = PassSets::default();
         for key in keys {
-            let Some(pipeline) = drawn.frame.pipelines.get(&key) else { continue };
+            let Some(pipeline) = context.frame.pipelines.get(&key) else { continue };
             let pass = &key.pass.0;
             let index = passes.iter().position(|other| Arc::ptr_eq(other, pass));
             let reads = Reads { name: pass.name(), inputs: &pass.inputs, given, index };
-            sets.insert(pipeline, self.set(&pipeline.layout, drawn, &reads)?);
+            sets.insert(pipeline, self.set(&pipeline.layout, context, &reads)?);
         }
         Ok(sets)
     }
@@ -214,12 +214,12 @@ impl DeclaredPasses {
     fn run(
         &mut self,
         encoder: &mut Encoder,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         picture: &Arc<Image>,
         part: Part,
     ) -> Result<Arc<Image>, GpuError> {
         let mut picture = picture.clone();
-        let request = &drawn.frame.state.pipelines;
+        let request = &context.frame.state.pipelines;
         for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.part == part) {
             let target = match pass.note.to_picture() {
                 true => self.images.other_picture(part, &picture).cloned(),
@@ -227,45 +227,45 @@ impl DeclaredPasses {
             };
             let Some(target) = target else { continue };
             let given =
-                Given { picture: Some(&picture), depth: drawn.depth, target: Some(&target), ..Given::default() };
+                Given { picture: Some(&picture), depth: context.depth, target: Some(&target), ..Given::default() };
             let reads = Reads { name: pass.name(), inputs: &pass.inputs, given: &given, index: Some(index) };
-            let from = self.sources(drawn, pass, index);
-            if from.as_ref().is_some_and(|from| self.images.holds(pass.name(), from)) {
+            let cache_key = self.cache_key(context, pass, index);
+            if cache_key.as_ref().is_some_and(|key| self.images.holds(pass.name(), key)) {
                 encoder.kept_pass(pass.name());
                 continue;
             }
             encoder.pass(pass.name(), |encoder| match pass.is_compute {
-                true => self.dispatch(encoder, drawn, pass, &reads, &target),
-                false => self.draw(encoder, drawn, pass, &reads, &target),
+                true => self.dispatch(encoder, context, pass, &reads, &target),
+                false => self.draw(encoder, context, pass, &reads, &target),
             })?;
             match pass.note.to_picture() {
                 true => picture = target,
-                false => pass.note.images().for_each(|(name, _)| self.images.finished(name, from.clone())),
+                false => pass.note.images().for_each(|(name, _)| self.images.finished(name, cache_key.clone())),
             }
         }
         Ok(picture)
     }
 
     /// The sources of a pass in this frame.
-    fn sources(&self, drawn: &Drawn<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<DrawnFrom> {
-        let keys = drawn.frame.state.pipelines.pass_keys(pass);
-        let pipelines: Vec<_> = keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)).collect();
-        DrawnFrom::new(pass, index, &pipelines, instances(drawn.frame, pass), drawn, &self.images)
+    fn cache_key(&self, context: &PassContext<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<PassCacheKey> {
+        let keys = context.frame.state.pipelines.pass_keys(pass);
+        let pipelines: Vec<_> = keys.iter().filter_map(|key| context.frame.pipelines.get(key)).collect();
+        PassCacheKey::new(pass, index, &pipelines, instances(context.frame, pass), context, &self.images)
     }
 
     fn draw(
         &mut self,
         encoder: &mut Encoder,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         pass: &Arc<GraphPass>,
         reads: &Reads<'_>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let request = &drawn.frame.state.pipelines;
+        let request = &context.frame.state.pipelines;
         let mut sets = PassSets::default();
         let keys = request.pass_keys(pass);
-        for pipeline in keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)) {
-            sets.insert(pipeline, self.set(&pipeline.layout, drawn, reads)?);
+        for pipeline in keys.iter().filter_map(|key| context.frame.pipelines.get(key)) {
+            sets.insert(pipeline, self.set(&pipeline.layout, context, reads)?);
         }
         if uses_buffers(pass) {
             encoder.buffers_done();
@@ -284,15 +284,15 @@ impl DeclaredPasses {
                 let Some(depth) = self.images.depth(pass.name()) else { return Ok(()) };
                 encoder.transition(depth, Use::Undefined, Use::Depth);
                 encoder.begin_rendering(&Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..attachments });
-                encoder.bind_set(&self.layouts, drawn.frame_set);
-                let instances = instances(drawn.frame, pass);
-                let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances, pass };
+                encoder.bind_set(&self.layouts, context.frame_set);
+                let instances = instances(context.frame, pass);
+                let model = ModelDraws { layouts: &self.layouts, frame: context.frame, sets: &sets, instances, pass };
                 model.draw_pass(encoder);
             }
             None => {
                 encoder.begin_rendering(&attachments);
-                if let Some(pipeline) = keys.first().and_then(|key| drawn.frame.pipelines.get(key)) {
-                    encoder.bind_set(&self.layouts, drawn.frame_set);
+                if let Some(pipeline) = keys.first().and_then(|key| context.frame.pipelines.get(key)) {
+                    encoder.bind_set(&self.layouts, context.frame_set);
                     sets.bind(encoder, pipeline);
                     encoder.draw(3);
                 }
@@ -315,14 +315,14 @@ impl DeclaredPasses {
     fn dispatch(
         &mut self,
         encoder: &mut Encoder,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         pass: &Arc<GraphPass>,
         reads: &Reads<'_>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let Some(pipeline) = drawn.frame.pipelines.compute(&pass.note.stage) else { return Ok(()) };
+        let Some(pipeline) = context.frame.pipelines.compute(&pass.note.stage) else { return Ok(()) };
         let Some(layout) = &pipeline.layout else { return Ok(()) };
-        let set = self.set(layout, drawn, reads)?;
+        let set = self.set(layout, context, reads)?;
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
@@ -337,7 +337,7 @@ impl DeclaredPasses {
         if writes_image {
             encoder.transition(target, Use::Sampled, Use::Storage);
         }
-        let sets: Vec<_> = [Some(drawn.frame_set), set.as_ref(), Some(&self.task_set)].into_iter().flatten().collect();
+        let sets: Vec<_> = [Some(context.frame_set), set.as_ref(), Some(&self.task_set)].into_iter().flatten().collect();
         encoder.dispatch(pipeline, &sets, groups);
         if writes_image {
             encoder.transition(target, Use::Storage, Use::Sampled);
@@ -349,17 +349,17 @@ impl DeclaredPasses {
     fn set(
         &mut self,
         layout: &Arc<PassLayout>,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         reads: &Reads<'_>,
     ) -> Result<Option<Arc<DescriptorSet>>, GpuError> {
         if layout.is_empty() {
             return Ok(None);
         }
         let mut sets = std::mem::take(&mut self.sets);
-        let set = self.resources(layout, drawn, reads).and_then(|resources| {
+        let set = self.resources(layout, context, reads).and_then(|resources| {
             let ids = resources.iter().map(PassResource::id);
             let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(ids).collect();
-            let most = SETS_KEPT * drawn.frame.state.pipelines.passes.len();
+            let most = SETS_KEPT * context.frame.state.pipelines.passes.len();
             sets.get(key, most, || layout.set(reads.name, &resources))
         });
         self.sets = sets;
@@ -389,10 +389,10 @@ fn uses_buffers(pass: &GraphPass) -> bool {
 }
 
 /// SYNC: makes what passes wrote to buffers visible to the passes that make up the picture, if one of them reads a buffer.
-fn finish_buffers(encoder: &mut Encoder, drawn: &Drawn<'_>) {
+fn finish_buffers(encoder: &mut Encoder, context: &PassContext<'_>) {
     let makes_picture =
         |pass: &&Arc<GraphPass>| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean | Part::Tonemap);
-    if drawn.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
+    if context.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
         encoder.buffers_done();
     }
 }

@@ -28,7 +28,7 @@ pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use range_sample::RangeSampleReadback;
 
-use declared::{Blocks, DeclaredPasses, Drawn, Given};
+use declared::{Blocks, DeclaredPasses, PassContext, Given};
 
 use super::bound_frame::BoundFrame;
 use crate::frame::{Display, Limits, TargetFormat};
@@ -230,19 +230,19 @@ impl View {
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let drawn = Drawn { frame, frame_set: &set, blocks, constants: &constants, depth };
+        let context = PassContext { frame, frame_set: &set, blocks, constants: &constants, depth };
         if redrawn {
-            self.declared.before_model(encoder, &drawn)?;
+            self.declared.before_model(encoder, &context)?;
         }
         let (samples, behind) = (targets.multisampled.as_ref(), targets.behind.as_ref());
         let given = Given { picture: Some(&targets.color), samples, behind, ..Given::default() };
-        let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.model_keys())?;
+        let sets = self.declared.sets_of(&context, &given, frame.state.pipelines.model_keys())?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
-            self.declared.before_tonemap(encoder, &drawn, targets.picture())?;
+            self.declared.before_tonemap(encoder, &context, targets.picture())?;
         }
         self.drawn = Some((frame.clone(), only));
 
@@ -259,7 +259,7 @@ impl View {
 
         // The HDR picture to the display: exposure, tone map, sRGB.
         let given = Given { picture: Some(&picture), ..Given::default() };
-        let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.tonemap_key().into_iter())?;
+        let sets = self.declared.sets_of(&context, &given, frame.state.pipelines.tonemap_key().into_iter())?;
         if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &sets, output.image, rect));
@@ -268,7 +268,7 @@ impl View {
 
         // The display to the output, through the declared passes after the tone map.
         let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
-        let display = self.declared.on_display(encoder, &drawn, redrawn || is_shown_anew, tone_map)?;
+        let display = self.declared.on_display(encoder, &context, redrawn || is_shown_anew, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(display) = display {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::capture::PixelReadback;
-use super::declared::{Drawn, Given};
+use super::declared::{PassContext, Given};
 use super::passes::{ColorTarget, Passes, Sorted, sort};
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -64,15 +64,15 @@ impl PixelModes {
             view.in_flight[slot].uniforms.write(constants, &frame.lights(), state.params());
         }
 
-        let drawn = |slot: usize| {
+        let context = |slot: usize| {
             let (frame_set, constants) = (&sets[slot % 2], if slot == of_pixel { &at_pixel } else { &constants });
-            Drawn { frame, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }
+            PassContext { frame, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }
         };
         encoder.bind_set(&view.layouts, &sets[0]);
-        view.declared.before_model(encoder, &drawn(of_passes))?;
+        view.declared.before_model(encoder, &context(of_passes))?;
         encoder.bind_set(&view.layouts, &sets[1]);
         let given = Given { picture: Some(&targets.color), ..Given::default() };
-        let pass_sets = view.declared.sets_of(&drawn(of_pixel), &given, state.pipelines.model_keys())?;
+        let pass_sets = view.declared.sets_of(&context(of_pixel), &given, state.pipelines.model_keys())?;
         let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
         let passes = Passes { layouts: &view.layouts, targets, frame, sets: &pass_sets, only: None, more };
         let all: Vec<&Arc<Image>> =

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::declared::{Drawn, Given};
+use super::declared::{PassContext, Given};
 use super::passes::{ColorTarget, Passes};
 use super::{BoundFrame, View};
 use crate::frame::{Display, Limits};
@@ -99,12 +99,12 @@ impl Thumbnails {
 
         let depth = targets.read_depth();
         let blocks = in_flight.blocks.clone();
-        let drawn = Drawn { frame, frame_set: &set, blocks: &blocks, constants: &constants, depth };
-        view.declared.before_model(encoder, &drawn)?;
+        let context = PassContext { frame, frame_set: &set, blocks: &blocks, constants: &constants, depth };
+        view.declared.before_model(encoder, &context)?;
         let request = &frame.state.pipelines;
         let behind = targets.behind.as_ref().filter(|_| request.modes.is_empty());
         let given = Given { picture: Some(&targets.color), behind, ..Given::default() };
-        let sets = view.declared.sets_of(&drawn, &given, request.model_keys())?;
+        let sets = view.declared.sets_of(&context, &given, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
         let passes = Passes { layouts: &view.layouts, targets, frame, sets: &sets, only: None, more };
         match &*request.modes {
@@ -121,7 +121,7 @@ impl Thumbnails {
             }
             encoder.bind_set(&view.layouts, &tonemap_sets[index]);
             let given = Given { picture: Some(picture), ..Given::default() };
-            let sets = view.declared.sets_of(&drawn, &given, std::iter::once(key.clone()))?;
+            let sets = view.declared.sets_of(&context, &given, std::iter::once(key.clone()))?;
             encoder.transition(output, Use::Undefined, Use::Color);
             passes.tone_map_with(encoder, Some(&key), &sets, output, rect);
             encoder.transition(output, Use::Color, Use::CopyFrom);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::desc::{PassDesc, ScratchDesc};
-use super::reuse::DrawnFrom;
+use super::reuse::PassCacheKey;
 use super::{beyond_memory, lifetimes};
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
@@ -31,7 +31,7 @@ struct PassImages {
     /// The number of the drawing that the newest image holds; 0: it was cleared.
     drawing: u64,
     /// The sources of that drawing, if the next frame may keep it.
-    from: Option<DrawnFrom>,
+    cache_key: Option<PassCacheKey>,
 }
 
 /// The needs of a frame. If they are unchanged, all images and buffers are kept.
@@ -211,7 +211,7 @@ impl Images {
             newest: 0,
             is_drawn: false,
             drawing: 0,
-            from: None,
+            cache_key: None,
         })
     }
 
@@ -250,7 +250,7 @@ impl Images {
 
     /// Makes the next frame clear what depends on earlier frames to 0.
     pub(super) fn restart(&mut self) {
-        self.clear(|pass| pass.from.is_none());
+        self.clear(|pass| pass.cache_key.is_none());
     }
 
     /// Makes the next frame clear everything to 0: the images may be undefined.
@@ -261,7 +261,7 @@ impl Images {
     fn clear(&mut self, which: impl Fn(&PassImages) -> bool) {
         let passes = self.passes.values_mut().filter(|pass| which(pass));
         let images = passes.flat_map(|pass| {
-            (pass.drawing, pass.from) = (0, None);
+            (pass.drawing, pass.cache_key) = (0, None);
             pass.images.clone()
         });
         self.fresh = (images.collect(), self.buffers.values().cloned().collect());
@@ -305,18 +305,18 @@ impl Images {
     }
 
     /// Records that the pass has drawn its image, and what it was drawn from if a later frame may keep it.
-    pub(super) fn finished(&mut self, name: &str, from: Option<DrawnFrom>) {
+    pub(super) fn finished(&mut self, name: &str, cache_key: Option<PassCacheKey>) {
         self.drawings += 1;
         if let Some(pass) = self.passes.get_mut(name) {
             pass.newest = (pass.newest + 1) % pass.images.len();
             pass.is_drawn = true;
-            (pass.drawing, pass.from) = (self.drawings, from);
+            (pass.drawing, pass.cache_key) = (self.drawings, cache_key);
         }
     }
 
     /// Whether the image of the pass holds what would be drawn from these sources.
-    pub(super) fn holds(&self, name: &str, from: &DrawnFrom) -> bool {
-        self.passes.get(name).and_then(|pass| pass.from.as_ref()).is_some_and(|of| of == from)
+    pub(super) fn holds(&self, name: &str, cache_key: &PassCacheKey) -> bool {
+        self.passes.get(name).and_then(|pass| pass.cache_key.as_ref()).is_some_and(|of| of == cache_key)
     }
 
     /// Whether another pass of the frame may draw to the image of this one.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{DeclaredPasses, Drawn};
+use super::{DeclaredPasses, PassContext};
 use crate::gpu::{GpuError, Image, PassLayout, PassResource};
 use crate::shader::graph::{Input, Inputs};
 
@@ -36,10 +36,10 @@ impl DeclaredPasses {
     pub(super) fn resources<'a>(
         &'a self,
         layout: &PassLayout,
-        drawn: &'a Drawn<'_>,
+        context: &'a PassContext<'_>,
         reads: &'a Reads<'_>,
     ) -> Result<Vec<PassResource<'a>>, GpuError> {
-        let textures = drawn.frame.pipelines.textures();
+        let textures = context.frame.pipelines.textures();
         let given = reads.given;
         // The graph has a buffer and a block for each of these inputs.
         let missing = || GpuError::NoStage(reads.name.to_owned());
@@ -58,7 +58,7 @@ impl DeclaredPasses {
                 Input::Output => PassResource::Storage(given.target.ok_or_else(missing)?),
                 Input::Buffer(name, ..) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
                 Input::Parameters(..) | Input::Pass(..) => {
-                    let block = reads.index.and_then(|index| drawn.blocks.get(index, binding));
+                    let block = reads.index.and_then(|index| context.blocks.get(index, binding));
                     PassResource::Buffer(block.ok_or_else(missing)?)
                 }
             })

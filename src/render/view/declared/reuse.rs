@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::sync::{Arc, Weak};
 
-use super::Drawn;
+use super::PassContext;
 use super::images::Images;
 use crate::gpu::{Pipeline, ResourceUsage};
 use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
@@ -13,7 +13,7 @@ use crate::shader::graph::Input;
 
 /// Everything that an image of a pass was drawn from.
 #[derive(Clone, Default)]
-pub(super) struct DrawnFrom {
+pub(super) struct PassCacheKey {
     /// The device objects. A weak reference keeps the address, so that no other object gets it.
     objects: Vec<Weak<dyn Any + Send + Sync>>,
     /// When the images of other passes were drawn; `None`: not at all.
@@ -22,7 +22,7 @@ pub(super) struct DrawnFrom {
     bytes: Vec<u8>,
 }
 
-impl DrawnFrom {
+impl PassCacheKey {
     /// The sources of a pass in this frame. `None` if it has some that change with every picture, or that cannot be compared.
     ///
     /// `pipelines`: those that draw it. `instances`: how often each draws the model; 0: not at all. `index`: its place in
@@ -32,7 +32,7 @@ impl DrawnFrom {
         index: usize,
         pipelines: &[&Arc<Pipeline>],
         instances: u32,
-        drawn: &Drawn<'_>,
+        context: &PassContext<'_>,
         images: &Images,
     ) -> Option<Self> {
         if pass.is_compute || pass.note.to != Target::Image || pass.note.keep {
@@ -46,7 +46,7 @@ impl DrawnFrom {
             return None;
         }
         let usage = pipelines.iter().fold(ResourceUsage::default(), |all, pipeline| all.union(&pipeline.usage));
-        let (frame, state) = (drawn.frame, &drawn.frame.state);
+        let (frame, state) = (context.frame, &context.frame.state);
         let mut from = Self::default();
         pipelines.iter().for_each(|pipeline| from.object(pipeline));
         for (binding, input) in pass.inputs.iter().filter(|(binding, _)| usage.pass_bindings.contains(binding)) {
@@ -61,7 +61,7 @@ impl DrawnFrom {
                 }
             }
         }
-        let constants = bytemuck::bytes_of(drawn.constants);
+        let constants = bytemuck::bytes_of(context.constants);
         for bytes in &usage.frame_bytes {
             from.bytes.extend(constants.get(bytes.start..bytes.end.min(constants.len())).into_iter().flatten());
         }
@@ -91,7 +91,7 @@ impl DrawnFrom {
     }
 }
 
-impl PartialEq for DrawnFrom {
+impl PartialEq for PassCacheKey {
     fn eq(&self, other: &Self) -> bool {
         let addresses = |from: &Self| -> Vec<*const ()> { from.objects.iter().map(|o| o.as_ptr().cast()).collect() };
         self.images == other.images && self.bytes == other.bytes && addresses(self) == addresses(other)
