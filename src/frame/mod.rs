@@ -38,7 +38,7 @@ use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
 use crate::scene::{Bounds, CameraView, Model, Sun, frame, has_exact_sun, lights, separates_suns, view_of_light};
 use crate::settings::Settings;
-use crate::shader::graph::{Input, Part};
+use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{Mode, ShaderSet, values};
 
 /// Largest half float.
@@ -291,7 +291,7 @@ impl FrameState {
         };
         let blocks = |state: &Self| -> PassBlocks {
             let passes = &state.pipelines.passes;
-            let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.part <= Part::Mean);
+            let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.phase <= RenderPhase::Mean);
             state.pass_blocks.clone().into_iter().filter(|((index, _), _)| is_read(*index)).collect()
         };
         self.is_same_with(other, &timeless(&self.constants), &timeless(&other.constants))

@@ -3,7 +3,7 @@
 use super::pipelines::PipelineRequest;
 use super::{Scene, TargetFormat};
 use crate::settings::Settings;
-use crate::shader::graph::Part;
+use crate::shader::graph::RenderPhase;
 use crate::shader::{DrawAs, Mode, ShaderSet};
 
 /// A mode that is drawn together with others.
@@ -57,7 +57,7 @@ impl PipelineRequest {
     ) -> Self {
         let mode = modes.first().map(|mode| mode.slug.clone()).unwrap_or_default();
         let mut request = Self::new(&Settings { mode, ..settings.clone() }, shaders, scene, target);
-        request.passes.retain(|pass| matches!(pass.part, Part::BeforeModel | Part::Model | Part::Tonemap));
+        request.passes.retain(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
         (request.edges, request.edges_stage) = (None, String::new());
         if modes.len() > 1 {
             request.modes = modes.iter().map(|mode| SharedMode { id: mode.id, encode: mode.encode.id() }).collect();

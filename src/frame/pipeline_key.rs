@@ -27,8 +27,8 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, front, part, inputs, .. } = &*self.0;
-        (&note.stage, front, part, inputs, (note.model.is_some(), note.quads), &note.also)
+        let GraphPass { note, front, phase, inputs, .. } = &*self.0;
+        (&note.stage, front, phase, inputs, (note.model.is_some(), note.quads), &note.also)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
 use crate::scene::light_count;
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::MODEL;
-use crate::shader::graph::{Input, Part};
+use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -104,17 +104,17 @@ impl Selection<'_> {
     fn is_base(&self, pass: &GraphPass, draws_model: bool) -> bool {
         let graph = &self.shaders.graph;
         let wanted = |name: &str| graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
-        match pass.part {
-            Part::Tonemap => true,
-            Part::Resolve => draws_model && self.weighs_samples,
-            Part::Mean => self.accumulates,
-            Part::Model if pass.note.background => {
+        match pass.phase {
+            RenderPhase::Tonemap => true,
+            RenderPhase::Resolve => draws_model && self.weighs_samples,
+            RenderPhase::Mean => self.accumulates,
+            RenderPhase::Model if pass.note.background => {
                 let is_on = is_switched_on(pass, self.shaders, self.constants) && pass.is_wanted(&self.settings.passes);
                 // Blended passes are drawn over any background, including a plain color.
                 let is_seen = self.shows_light && (self.shows_environment || pass.note.blend);
                 draws_model && is_seen && is_on
             }
-            Part::Model if pass.note.is_built_in() => {
+            RenderPhase::Model if pass.note.is_built_in() => {
                 let draws = pass.note.stage == self.stage || (self.through && pass.name() == MODEL);
                 draws_model && draws && wanted(MODEL)
             }
@@ -202,7 +202,7 @@ impl PipelineRequest {
 
     /// The pass that draws the model in this mode. `None` if the model is not drawn, or its stage is still to be compiled.
     pub(crate) fn model_pass(&self) -> Option<&Arc<GraphPass>> {
-        let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.is_built_in();
+        let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.is_built_in();
         self.passes.iter().filter(draws).find(|pass| pass.note.stage == self.stage)
     }
 
@@ -214,7 +214,7 @@ impl PipelineRequest {
     /// Whether a pass after the tone map is shown, so that the pixels are those of the display.
     pub(crate) fn shows_display(&self) -> bool {
         let is_shown = |pass: &&Arc<GraphPass>| self.shown_pass.as_deref().is_some_and(|name| pass.is_called(name));
-        self.passes.iter().find(is_shown).is_some_and(|pass| pass.part == Part::Display)
+        self.passes.iter().find(is_shown).is_some_and(|pass| pass.phase == RenderPhase::Display)
     }
 
     fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {
@@ -291,7 +291,7 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
 /// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
 fn edges(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
     let stage = edges_stage(settings, shaders)?;
-    let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.stage == stage;
+    let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.stage == stage;
     shaders.graph.passes.iter().find(draws).cloned()
 }
 

@@ -17,7 +17,7 @@ use crate::gpu::{
 use crate::interface::StageRole;
 use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
-use crate::shader::graph::{Input, Inputs, Part};
+use crate::shader::graph::{Input, Inputs, RenderPhase};
 use crate::shader::{GraphPass, ShaderSet, Stage, StageKind};
 pub use report::{InPipeline, StageReport};
 
@@ -337,7 +337,7 @@ impl PipelineSet {
         then: impl FnOnce(&PipelineDesc<'_>) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         let pass = &key.pass.0;
-        let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
+        let is_on_display = matches!(pass.phase, RenderPhase::Tonemap | RenderPhase::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
         let front = pass.front.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
         let front = front.collect::<Result<Vec<_>, GpuError>>()?;
@@ -360,7 +360,7 @@ impl PipelineSet {
             front: &front,
             fragment: &fragment,
             colors: &colors,
-            depth: pass.note.model.is_some() || pass.part == Part::Model,
+            depth: pass.note.model.is_some() || pass.phase == RenderPhase::Model,
             raster: key.raster,
             samples: key.samples,
             class: key.class,

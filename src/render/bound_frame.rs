@@ -12,7 +12,7 @@ use crate::frame::FrameState;
 use crate::gpu::{Buffer, Rect};
 use crate::interface::{CLOCK, Frame, KEYS, Light, MOTION};
 use crate::pipeline::BoundPipelines;
-use crate::shader::graph::Part;
+use crate::shader::graph::RenderPhase;
 
 /// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]
@@ -71,8 +71,8 @@ impl BoundFrame {
     /// Whether the model, or a pass that it reads, changes while the time runs.
     fn has_animated_model(&self) -> bool {
         let request = &self.state.pipelines;
-        let passes = || request.passes.iter().filter(|pass| pass.part <= Part::Mean);
-        let before = || passes().filter(|pass| pass.part == Part::BeforeModel);
+        let passes = || request.passes.iter().filter(|pass| pass.phase <= RenderPhase::Mean);
+        let before = || passes().filter(|pass| pass.phase == RenderPhase::BeforeModel);
         let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
         let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.usage.reads_frame(&CLOCK));
         keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.usage.reads_frame(&CLOCK)))

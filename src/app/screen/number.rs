@@ -12,7 +12,7 @@ use crate::frame::{FrameState, TargetFormat, mode_sets};
 use crate::gpu::{GpuError, SetLayouts};
 use crate::interface::MODE_FINAL;
 use crate::render::{PixelModes, Thumbnails};
-use crate::shader::graph::Part;
+use crate::shader::graph::RenderPhase;
 use crate::shader::{DrawAs, Mode, PixelValue};
 
 /// A pixel of a mode whose value can be read in 32 bits.
@@ -37,7 +37,7 @@ impl Pointed {
         let is_of_model = mode.pass.is_none() && mode.id != MODE_FINAL && !mode.is_displayed;
         let is_opaque = mode.draw == DrawAs::Surfaces && !mode.through && !mode.follows_paths();
         let mut passes = state.pipelines.passes.iter();
-        let has_no_others = passes.all(|pass| matches!(pass.part, Part::BeforeModel | Part::Model | Part::Tonemap));
+        let has_no_others = passes.all(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
         let is_same = is_number || is_of_model && is_opaque && has_no_others;
         is_same.then(|| Self { mode: mode.slug.clone(), at: [at.0, at.1], size: state.size, is_number })
     }

@@ -11,7 +11,7 @@ use crate::interface::{
     SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
 };
 use crate::shader::annotation::pass::{MODEL, Target};
-use crate::shader::graph::Part;
+use crate::shader::graph::RenderPhase;
 use crate::shader::{DrawAs, GraphPass};
 
 impl PipelineRequest {
@@ -113,7 +113,7 @@ impl PipelineRequest {
     }
 
     fn tonemap_key_of(&self, encode: u32) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.part == Part::Tonemap)?;
+        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Tonemap)?;
         // Modes that are drawn at once have displays of their own.
         let maps_values = u32::from(self.maps_values || !self.modes.is_empty());
         let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode), (SPEC_MAPS_VALUES, maps_values)];
@@ -124,7 +124,7 @@ impl PipelineRequest {
     /// The pipelines of what lies behind the model, in the order in which it is drawn: what blends lies over the rest.
     pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
         let passes = |blend| {
-            let is_drawn = move |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.background;
+            let is_drawn = move |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.background;
             self.passes.iter().filter(is_drawn).filter(move |pass| pass.note.blend == blend)
         };
         passes(false).chain(passes(true)).map(|pass| {
@@ -136,14 +136,14 @@ impl PipelineRequest {
 
     /// The pipeline that makes one color from a pixel's samples, if their mean is not a plain one.
     pub(crate) fn resolve_key(&self) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.part == Part::Resolve)?;
+        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Resolve)?;
         let specialization = [&[(SPEC_SAMPLES, self.target.samples)], &*self.constants].concat();
         Some(self.triangle_key(pass, Raster::Solid, self.target.color, specialization))
     }
 
     /// The pipeline that adds a frame to the mean, in an accumulating mode.
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.part == Part::Mean)?;
+        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Mean)?;
         Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, self.constants.clone()))
     }
 
@@ -162,7 +162,7 @@ impl PipelineRequest {
         }
         let format = match pass.note.to {
             Target::Image => pass_format(pass.note.format),
-            _ if pass.part == Part::Display => Swapchain::FORMAT,
+            _ if pass.phase == RenderPhase::Display => Swapchain::FORMAT,
             _ => self.picture_format(),
         };
         vec![self.triangle_key(pass, Raster::Solid, format, self.pass_constants())]
@@ -194,7 +194,7 @@ impl PipelineRequest {
     }
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
+        let others = self.passes.iter().filter(|pass| pass.phase != RenderPhase::Model);
         self.model_keys().chain(self.tonemap_keys()).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
 }

@@ -22,7 +22,7 @@ use crate::interface::{Frame, SET_TASK};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Dispatch;
-use crate::shader::graph::{Input, Part, TextureKind};
+use crate::shader::graph::{Input, RenderPhase, TextureKind};
 pub(super) use blocks::Blocks;
 use images::Images;
 pub use memory::beyond_memory;
@@ -119,7 +119,7 @@ impl DeclaredPasses {
     pub(super) fn before_model(&mut self, encoder: &mut Encoder, context: &PassContext<'_>) -> Result<(), GpuError> {
         self.images.begin_frame(encoder);
         let nothing = self.blank.clone();
-        self.run(encoder, context, &nothing, Part::BeforeModel)?;
+        self.run(encoder, context, &nothing, RenderPhase::BeforeModel)?;
         finish_buffers(encoder, context);
         Ok(())
     }
@@ -131,10 +131,10 @@ impl DeclaredPasses {
         context: &PassContext<'_>,
         picture: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let last = self.run(encoder, context, picture, Part::Light)?;
+        let last = self.run(encoder, context, picture, RenderPhase::Light)?;
         finish_buffers(encoder, context);
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
-        let shown = shown_image(context.frame).filter(|(_, pass)| pass.part != Part::Display);
+        let shown = shown_image(context.frame).filter(|(_, pass)| pass.phase != RenderPhase::Display);
         // The tone map reads an image of the picture's size.
         if let Some((name, _)) = shown
             && let (Some(from), Some(to)) = (self.images.current(name), self.images.shown())
@@ -147,7 +147,7 @@ impl DeclaredPasses {
 
     /// Whether passes come after the tone map.
     pub(super) fn has_display_passes(frame: &BoundFrame) -> bool {
-        frame.state.pipelines.passes.iter().any(|pass| pass.part == Part::Display)
+        frame.state.pipelines.passes.iter().any(|pass| pass.phase == RenderPhase::Display)
     }
 
     /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
@@ -166,11 +166,11 @@ impl DeclaredPasses {
         encoder.transition(&first, Use::Undefined, Use::Color);
         encoder.pass("tone map", |encoder| tone_map(encoder, &first));
         encoder.transition(&first, Use::Color, Use::Sampled);
-        let mut last = self.run(encoder, context, &first, Part::Display)?;
-        let shown = shown_image(context.frame).filter(|(_, pass)| pass.part == Part::Display);
+        let mut last = self.run(encoder, context, &first, RenderPhase::Display)?;
+        let shown = shown_image(context.frame).filter(|(_, pass)| pass.phase == RenderPhase::Display);
         if let Some((name, _)) = shown
             && let Some(from) = self.images.current(name)
-            && let Some(to) = self.images.other_picture(Part::Display, &last)
+            && let Some(to) = self.images.other_picture(RenderPhase::Display, &last)
         {
             scale(encoder, from, to);
             last = to.clone();
@@ -216,13 +216,13 @@ impl DeclaredPasses {
         encoder: &mut Encoder,
         context: &PassContext<'_>,
         picture: &Arc<Image>,
-        part: Part,
+        phase: RenderPhase,
     ) -> Result<Arc<Image>, GpuError> {
         let mut picture = picture.clone();
         let request = &context.frame.state.pipelines;
-        for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.part == part) {
+        for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.phase == phase) {
             let target = match pass.note.to_picture() {
-                true => self.images.other_picture(part, &picture).cloned(),
+                true => self.images.other_picture(phase, &picture).cloned(),
                 false => self.images.target(pass.name()).cloned(),
             };
             let Some(target) = target else { continue };
@@ -391,7 +391,7 @@ fn uses_buffers(pass: &GraphPass) -> bool {
 /// SYNC: makes what passes wrote to buffers visible to the passes that make up the picture, if one of them reads a buffer.
 fn finish_buffers(encoder: &mut Encoder, context: &PassContext<'_>) {
     let makes_picture =
-        |pass: &&Arc<GraphPass>| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean | Part::Tonemap);
+        |pass: &&Arc<GraphPass>| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap);
     if context.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
         encoder.buffers_done();
     }

@@ -75,7 +75,7 @@ pub type Inputs = BTreeMap<u32, Input>;
 /// The part of a frame in which a pass is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Part {
+pub enum RenderPhase {
     /// Before the model, which reads its image.
     BeforeModel,
     /// The model and the background.
@@ -103,7 +103,7 @@ pub struct GraphPass {
     /// The stages before the rasterizer, of a pass that is no compute pass.
     pub front: PreRasterization,
     /// When it is drawn.
-    pub part: Part,
+    pub phase: RenderPhase,
     /// The images, textures and buffers that it reads and writes.
     pub inputs: Inputs,
     /// Invocations of a workgroup, of a compute pass.
@@ -148,7 +148,7 @@ impl GraphPass {
 
     /// Whether it draws the model to the picture besides the model's own pass.
     pub fn adds_to_model(&self) -> bool {
-        self.part == Part::Model && self.note.model.is_some() && !self.note.is_built_in()
+        self.phase == RenderPhase::Model && self.note.model.is_some() && !self.note.is_built_in()
     }
 
     /// Whether its own uniform block has a member of this name.
@@ -162,7 +162,7 @@ impl GraphPass {
     /// Whether it makes a displayed picture without reading the one before.
     pub fn covers(&self) -> bool {
         let reads_picture = || self.inputs.values().any(|input| *input == Input::Picture);
-        self.note.to_picture() && self.part == Part::Display && !reads_picture()
+        self.note.to_picture() && self.phase == RenderPhase::Display && !reads_picture()
     }
 
     /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
@@ -262,7 +262,7 @@ impl Graph {
                     note: note.clone(),
                     is_compute,
                     front,
-                    part: roles::part(note),
+                    phase: roles::phase(note),
                     inputs,
                     local_size: stage.reflection.local_size,
                 }),

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{GraphPass, Input, Inputs, Part};
+use super::{GraphPass, Input, Inputs, RenderPhase};
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::TONEMAP;
 use crate::shader::diagnostic::Diagnostic;
@@ -27,10 +27,10 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
         return Err(too_early);
     }
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
-    for part in [Part::BeforeModel, Part::Model, Part::Resolve, Part::Mean, Part::Light, Part::Tonemap, Part::Display] {
-        let in_part = |at: &usize| passes[*at].part == part;
+    for phase in [RenderPhase::BeforeModel, RenderPhase::Model, RenderPhase::Resolve, RenderPhase::Mean, RenderPhase::Light, RenderPhase::Tonemap, RenderPhase::Display] {
+        let in_phase = |at: &usize| passes[*at].phase == phase;
         let (makers, others): (Vec<usize>, Vec<usize>) =
-            (0..passes.len()).filter(in_part).partition(|at| passes[*at].note.to_picture());
+            (0..passes.len()).filter(in_phase).partition(|at| passes[*at].note.to_picture());
         for at in makers.into_iter().chain(others) {
             order.emit(at, &mut Vec::new()).map_err(|error| vec![*error])?;
         }
@@ -51,11 +51,11 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     while std::mem::take(&mut changed) {
         for at in 0..passes.len() {
             let follows =
-                |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].part == Part::Display);
+                |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].phase == RenderPhase::Display);
             let reads = images(&passes[at].inputs).any(follows);
             let after = passes[at].note.after.as_deref().is_some_and(follows);
-            if (reads || after) && passes[at].part == Part::Light {
-                passes[at].part = Part::Display;
+            if (reads || after) && passes[at].phase == RenderPhase::Light {
+                passes[at].phase = RenderPhase::Display;
                 changed = true;
             }
         }
@@ -65,15 +65,15 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
 /// The passes whose images the model or the background reads are drawn before the model, and so are those that they read in turn.
 fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
-    let is_reader = |pass: &&GraphPass| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean | Part::Tonemap);
+    let is_reader = |pass: &&GraphPass| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap);
     let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
     for reader in readers {
-        let is_model = reader.part <= Part::Mean;
+        let is_model = reader.phase <= RenderPhase::Mean;
         let path = &reader.note.stage;
         let mut open: Vec<usize> = images(&reader.inputs).filter_map(|name| index.get(name).copied()).collect();
         while let Some(at) = open.pop() {
             let pass = &mut passes[at];
-            let refusal = if pass.part == Part::Display {
+            let refusal = if pass.phase == RenderPhase::Display {
                 Some("it comes after the tone map")
             } else if is_model && pass.note.to_picture() {
                 Some("the model is drawn after it, so it cannot change the picture")
@@ -88,8 +88,8 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
                 errors.push(error.with_help("a pass with draw=model can draw depth and normals before the model"));
                 continue;
             }
-            if is_model && pass.part != Part::BeforeModel {
-                pass.part = Part::BeforeModel;
+            if is_model && pass.phase != RenderPhase::BeforeModel {
+                pass.phase = RenderPhase::BeforeModel;
                 open.extend(needs(pass, index));
             }
         }
@@ -101,7 +101,7 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
 /// unless one of them reads the picture of this frame: then the model reads what they wrote in the frame before.
 fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let is_read = |at: &usize| {
-        let mut readers = passes.iter().filter(|pass| matches!(pass.part, Part::Model | Part::Resolve | Part::Mean));
+        let mut readers = passes.iter().filter(|pass| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean));
         readers.any(|reader| writes_buffer_of(&passes[*at], reader))
     };
     let writers: Vec<usize> = (0..passes.len()).filter(is_read).collect();
@@ -118,10 +118,10 @@ fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, u
         let can_be_first = |at: &usize| {
             let pass = &passes[*at];
             let reads_picture = pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth));
-            pass.part == Part::BeforeModel || (pass.part == Part::Light && !pass.note.to_picture() && !reads_picture)
+            pass.phase == RenderPhase::BeforeModel || (pass.phase == RenderPhase::Light && !pass.note.to_picture() && !reads_picture)
         };
         if needed.iter().all(can_be_first) {
-            needed.into_iter().for_each(|at| passes[at].part = Part::BeforeModel);
+            needed.into_iter().for_each(|at| passes[at].phase = RenderPhase::BeforeModel);
         }
     }
 }
@@ -183,12 +183,12 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
 /// An error if a pass is drawn in an earlier part of the frame than the pass that its `after=` names.
 fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
     let other = &passes[*index.get(pass.note.after.as_deref()?)?];
-    if other.part <= pass.part {
+    if other.phase <= pass.phase {
         return None;
     }
-    let when = match pass.part {
-        Part::BeforeModel => "before the model, which reads its image",
-        Part::Model => "with the model",
+    let when = match pass.phase {
+        RenderPhase::BeforeModel => "before the model, which reads its image",
+        RenderPhase::Model => "with the model",
         _ => "before the tone map",
     };
     let message = format!("`{}` is drawn {when}, so it cannot come after `{}`", pass.name(), other.name());
@@ -223,7 +223,7 @@ impl Order<'_> {
             self.emit(need, path)?;
         }
         // Before a pass that reads a buffer come the compute passes that write it, except those that wait for the reader.
-        let writers = (0..self.passes.len()).filter(|other| self.passes[*other].part == pass.part);
+        let writers = (0..self.passes.len()).filter(|other| self.passes[*other].phase == pass.phase);
         for writer in writers.filter(|writer| *writer != at && writes_buffer_of(&self.passes[*writer], pass)) {
             let waits = reached(writer, |at| needs(&self.passes[at], self.index));
             if waits.iter().all(|need| self.state[*need] != State::Open) {

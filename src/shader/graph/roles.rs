@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Part, PassStage};
+use super::{RenderPhase, PassStage};
 use crate::message::did_you_mean;
 use crate::shader::annotation::Annotations;
 use crate::shader::annotation::pass::{MODEL, PassNote, TONEMAP, Target};
@@ -12,13 +12,13 @@ use crate::shader::contract::check_fragment_outputs;
 use crate::shader::diagnostic::Diagnostic;
 
 /// The part of the frame that an annotation itself determines.
-pub(super) fn part(note: &PassNote) -> Part {
+pub(super) fn phase(note: &PassNote) -> RenderPhase {
     match note.to {
-        Target::Resolve => Part::Resolve,
-        Target::Mean => Part::Mean,
-        Target::Display => Part::Tonemap,
-        Target::Picture if note.is_drawn_with_model() => Part::Model,
-        Target::Picture | Target::Image => Part::Light,
+        Target::Resolve => RenderPhase::Resolve,
+        Target::Mean => RenderPhase::Mean,
+        Target::Display => RenderPhase::Tonemap,
+        Target::Picture if note.is_drawn_with_model() => RenderPhase::Model,
+        Target::Picture | Target::Image => RenderPhase::Light,
     }
 }
 

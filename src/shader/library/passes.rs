@@ -12,7 +12,7 @@ use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes, read_later};
+use crate::shader::graph::{FULL_SCREEN, Graph, RenderPhase, missing_passes, read_later};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::{find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
@@ -233,8 +233,8 @@ pub(super) fn modes_of(graph: &Graph, snapshot: &Snapshot<'_>) -> impl Iterator<
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
-        is_displayed: pass.part == Part::Display,
-        tonemap: pass.note.to_picture() || pass.part == Part::Display,
+        is_displayed: pass.phase == RenderPhase::Display,
+        tonemap: pass.note.to_picture() || pass.phase == RenderPhase::Display,
         stage: graph.pass(MODEL).map(|model| model.note.stage.clone()).unwrap_or_default(),
         pass: Some(name.to_owned()),
         doc: if name == pass.name() { pass.note.doc.clone() } else { doc_of_output(&pass.note.stage, name, snapshot) },

@@ -10,7 +10,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapc
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{PassFormat, Target};
-use crate::shader::graph::{Graph, Input, Part, TextureKind};
+use crate::shader::graph::{Graph, Input, RenderPhase, TextureKind};
 
 /// An image of a pass, with the one before.
 #[derive(Clone)]
@@ -133,7 +133,7 @@ impl Images {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
-        let makers = request.passes.iter().filter(|pass| pass.note.to_picture() && pass.part == Part::Light).count();
+        let makers = request.passes.iter().filter(|pass| pass.note.to_picture() && pass.phase == RenderPhase::Light).count();
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let (width, height) = frame.state.size;
@@ -151,7 +151,7 @@ impl Images {
         };
         next.pictures = take("picture of a pass", next.key.picture, makers.min(2), &self.pictures)?;
         // The tone map draws to the first.
-        let displays = if request.passes.iter().any(|pass| pass.part == Part::Display) { 2 } else { 0 };
+        let displays = if request.passes.iter().any(|pass| pass.phase == RenderPhase::Display) { 2 } else { 0 };
         next.displays = take("display of a pass", Swapchain::FORMAT, displays, &self.displays)?;
         if request.shown_pass.is_some() {
             let known: Vec<_> = self.shown.iter().cloned().collect();
@@ -354,8 +354,8 @@ impl Images {
     }
 
     /// The image that a pass gives a new picture in, which is not the one that it reads.
-    pub(super) fn other_picture(&self, part: Part, read: &Arc<Image>) -> Option<&Arc<Image>> {
-        let images = if part == Part::Display { &self.displays } else { &self.pictures };
+    pub(super) fn other_picture(&self, phase: RenderPhase, read: &Arc<Image>) -> Option<&Arc<Image>> {
+        let images = if phase == RenderPhase::Display { &self.displays } else { &self.pictures };
         images.iter().find(|image| !Arc::ptr_eq(image, read))
     }
 
