@@ -11,7 +11,7 @@ use crate::shader::spirv::primitive::Primitive;
 impl MaterialVariant {
     /// Whether a pass draws the kind of primitive that the material is on.
     pub(crate) fn is_taken_by(self, pass: &GraphPass) -> bool {
-        match pass.front.takes {
+        match pass.pre_rasterization.takes {
             None => true,
             Some(Primitive::Points) => self.class == PrimitiveClass::Points,
             Some(Primitive::Lines) => self.class == PrimitiveClass::Lines,
@@ -27,8 +27,8 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, front, phase, inputs, .. } = &*self.0;
-        (&note.stage, front, phase, inputs, (note.model.is_some(), note.quads), &note.also)
+        let GraphPass { note, pre_rasterization, phase, inputs, .. } = &*self.0;
+        (&note.stage, pre_rasterization, phase, inputs, (note.model.is_some(), note.quads), &note.also)
     }
 }
 

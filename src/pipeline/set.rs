@@ -339,8 +339,8 @@ impl PipelineSet {
         let pass = &key.pass.0;
         let is_on_display = matches!(pass.phase, RenderPhase::Tonemap | RenderPhase::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
-        let front = pass.front.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
-        let front = front.collect::<Result<Vec<_>, GpuError>>()?;
+        let pre_rasterization = pass.pre_rasterization.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
+        let pre_rasterization = pre_rasterization.collect::<Result<Vec<_>, GpuError>>()?;
         let fragment = match &*key.modes {
             [] => module(&pass.note.stage)?,
             modes => {
@@ -348,8 +348,8 @@ impl PipelineSet {
                 several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.note.stage)))??
             }
         };
-        let front: Vec<_> = front.iter().map(|(flag, module)| (*flag, &**module)).collect();
-        let modules: Vec<&ShaderModule> = front.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
+        let pre_rasterization: Vec<_> = pre_rasterization.iter().map(|(flag, module)| (*flag, &**module)).collect();
+        let modules: Vec<&ShaderModule> = pre_rasterization.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
         modules.iter().try_for_each(|module| check_bound(module, pass.role()))?;
         let layout = self.layout(&pass.inputs, &modules, pass.note.draws_model());
         let layout = layout.map_err(|error| of_pass(pass, error))?;
@@ -357,7 +357,7 @@ impl PipelineSet {
         let modes = key.modes.iter().skip(1).map(|_| key.format);
         let colors: Vec<_> = std::iter::once(key.format).chain(more).chain(modes).collect();
         let desc = PipelineDesc {
-            front: &front,
+            pre_rasterization: &pre_rasterization,
             fragment: &fragment,
             colors: &colors,
             depth: pass.note.model.is_some() || pass.phase == RenderPhase::Model,

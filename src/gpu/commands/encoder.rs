@@ -243,19 +243,19 @@ impl Encoder {
     }
 
     /// Sets the dynamic state of a pipeline with a depth target and a vertex stage.
-    pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front: vk::FrontFace) {
+    pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front_face: vk::FrontFace) {
         self.counter.set_topology(topology);
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_set_primitive_topology(self.raw, topology) };
-        self.set_facing(cull, front);
+        self.set_facing(cull, front_face);
     }
 
     /// Sets the dynamic state of a pipeline with a depth target and a mesh stage.
-    pub fn set_facing(&mut self, cull: vk::CullModeFlags, front: vk::FrontFace) {
+    pub fn set_facing(&mut self, cull: vk::CullModeFlags, front_face: vk::FrontFace) {
         // SAFETY: this encoder records the command buffer.
         unsafe {
             self.gpu.device.cmd_set_cull_mode(self.raw, cull);
-            self.gpu.device.cmd_set_front_face(self.raw, front);
+            self.gpu.device.cmd_set_front_face(self.raw, front_face);
         }
     }
 

@@ -128,7 +128,7 @@ pub enum Raster {
 pub struct PipelineDesc<'a> {
     /// The stages before the rasterizer, in the order in which they run. With tessellation, the primitives are patches of three
     /// vertices. With a mesh stage, there is no vertex stage.
-    pub front: &'a [(vk::ShaderStageFlags, &'a ShaderModule)],
+    pub pre_rasterization: &'a [(vk::ShaderStageFlags, &'a ShaderModule)],
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
     /// Formats of the color targets, by location.
@@ -155,11 +155,11 @@ impl PipelineDesc<'_> {
 
     /// The modules, in the order in which the stages run.
     fn modules(&self) -> impl Iterator<Item = (vk::ShaderStageFlags, &ShaderModule)> {
-        self.front.iter().copied().chain([(vk::ShaderStageFlags::FRAGMENT, self.fragment)])
+        self.pre_rasterization.iter().copied().chain([(vk::ShaderStageFlags::FRAGMENT, self.fragment)])
     }
 
     fn has(&self, stage: vk::ShaderStageFlags) -> bool {
-        self.front.iter().any(|(kind, _)| *kind == stage)
+        self.pre_rasterization.iter().any(|(kind, _)| *kind == stage)
     }
 }
 

@@ -70,7 +70,7 @@ impl Tools {
                     gpu,
                     layouts,
                     &PipelineDesc {
-                        front: &[(vk::ShaderStageFlags::VERTEX, vertex)],
+                        pre_rasterization: &[(vk::ShaderStageFlags::VERTEX, vertex)],
                         fragment,
                         colors: &[format],
                         depth: false,

@@ -60,7 +60,7 @@ impl ModelDraws<'_> {
         let world_from_object = [x, y, z, [0.0; 3]];
         encoder.push(self.layouts, &Draw { world_from_object, normal_ws_from_object: identity, ..Draw::default() });
         self.sets.bind(encoder, pipeline);
-        let topology = match self.pass.front.tessellation {
+        let topology = match self.pass.pre_rasterization.tessellation {
             Some(_) => vk::PrimitiveTopology::PATCH_LIST,
             None => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
@@ -74,7 +74,7 @@ impl ModelDraws<'_> {
     }
 
     fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
-        if self.pass.front.mesh.is_none() {
+        if self.pass.pre_rasterization.mesh.is_none() {
             encoder.push(self.layouts, &draw.push);
         }
         // A blended double-sided surface is drawn back faces first, since they lie behind.
@@ -85,16 +85,16 @@ impl ModelDraws<'_> {
             (None, true, _) => &[vk::CullModeFlags::NONE],
             (Some(Cull::Back), ..) | (None, false, _) => &[vk::CullModeFlags::BACK],
         };
-        let topology = match self.pass.front.tessellation {
+        let topology = match self.pass.pre_rasterization.tessellation {
             Some(_) => vk::PrimitiveTopology::PATCH_LIST,
             None => draw.topology,
         };
         for cull in passes {
-            if let Some(mesh) = &self.pass.front.mesh {
-                encoder.set_facing(*cull, draw.front);
+            if let Some(mesh) = &self.pass.pre_rasterization.mesh {
+                encoder.set_facing(*cull, draw.front_face);
                 self.draw_mesh(encoder, draw, mesh);
             } else {
-                encoder.set_raster(topology, *cull, draw.front);
+                encoder.set_raster(topology, *cull, draw.front_face);
                 encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
             }
         }

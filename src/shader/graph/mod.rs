@@ -101,7 +101,7 @@ pub struct GraphPass {
     /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
     /// The stages before the rasterizer, of a pass that is no compute pass.
-    pub front: PreRasterization,
+    pub pre_rasterization: PreRasterization,
     /// When it is drawn.
     pub phase: RenderPhase,
     /// The images, textures and buffers that it reads and writes.
@@ -121,8 +121,8 @@ impl GraphPass {
 
     /// The paths of its stages, in the order in which they run.
     pub fn stages(&self) -> impl Iterator<Item = &str> {
-        let front = (!self.is_compute).then(|| self.front.stages());
-        front.into_iter().flatten().chain([self.note.stage.as_str()])
+        let pre_rasterization = (!self.is_compute).then(|| self.pre_rasterization.stages());
+        pre_rasterization.into_iter().flatten().chain([self.note.stage.as_str()])
     }
 
     /// The purpose that its stages are run for.
@@ -219,16 +219,16 @@ impl Graph {
         for note in notes {
             let stage = &stages[&note.stage];
             let is_compute = stage.kind == StageKind::Compute;
-            let mut front = match PreRasterization::find(note, model, snapshot) {
-                Ok(front) => front,
+            let mut pre_rasterization = match PreRasterization::find(note, model, snapshot) {
+                Ok(pre_rasterization) => pre_rasterization,
                 Err(error) => {
                     errors.push(*error);
                     continue;
                 }
             };
-            if !is_compute && !front.stages().all(|path| stages.contains_key(path)) {
+            if !is_compute && !pre_rasterization.stages().all(|path| stages.contains_key(path)) {
                 // If it is there, it is still to be compiled.
-                let vertex = &front.vertex;
+                let vertex = &pre_rasterization.vertex;
                 if snapshot.read(&TreePath::from(vertex.as_str())) == Err(SourceError::Missing) {
                     let message =
                         format!("the pass `{}` needs the vertex stage {vertex}, which does not exist", note.name);
@@ -243,8 +243,8 @@ impl Graph {
                 errors.push(note.place.error_at(word, message));
                 continue;
             }
-            errors.extend(front.connect(stages).err().map(|error| *error));
-            if note.quads && !matches!(front.takes, None | Some(Primitive::Triangles)) {
+            errors.extend(pre_rasterization.connect(stages).err().map(|error| *error));
+            if note.quads && !matches!(pre_rasterization.takes, None | Some(Primitive::Triangles)) {
                 let message = format!("the pass `{}` draws quads of two triangles each", note.name);
                 errors.push(
                     note.place
@@ -254,14 +254,14 @@ impl Graph {
                 continue;
             }
             errors.extend(roles::wrong_outputs(note, stage));
-            let front_stages = front.stages().filter(|_| !is_compute).map(|path| &stages[path]);
-            let inputs = inputs::inputs_of(note, front_stages.chain([stage]), &names);
+            let pre_rasterization_stages = pre_rasterization.stages().filter(|_| !is_compute).map(|path| &stages[path]);
+            let inputs = inputs::inputs_of(note, pre_rasterization_stages.chain([stage]), &names);
             match inputs.map(|inputs| inputs::without_dead(inputs, note, stage)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
                     note: note.clone(),
                     is_compute,
-                    front,
+                    pre_rasterization,
                     phase: roles::phase(note),
                     inputs,
                     local_size: stage.reflection.local_size,

@@ -96,14 +96,14 @@ impl PreRasterization {
             (Some(task), None) => return Err(half(&task, StageKind::Mesh, snapshot)),
             (None, None) => None,
         };
-        let front = Self { vertex, tessellation, geometry, mesh, takes: None };
-        let unused = front.tessellation.iter().flatten().chain(&front.geometry).next();
-        match front.mesh.as_ref().zip(unused) {
+        let found = Self { vertex, tessellation, geometry, mesh, takes: None };
+        let unused = found.tessellation.iter().flatten().chain(&found.geometry).next();
+        match found.mesh.as_ref().zip(unused) {
             Some((MeshStages { mesh, .. }, path)) => {
                 let message = format!("{mesh} replaces this {} stage", stage_name(path));
                 Err(Box::new(at_main(path, message, snapshot).with_help("delete one of the two files")))
             }
-            None => Ok(front),
+            None => Ok(found),
         }
     }
 

@@ -228,7 +228,7 @@ const COVERING: &str = "pass.glsl";
 fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
     let message = format!(
         "{COVERING} is for passes that cover their image: it reads `uv`, which {} does not write",
-        pass.front.stages().last().unwrap_or_default()
+        pass.pre_rasterization.stages().last().unwrap_or_default()
     );
     let help = "this pass draws the model (draw=model), so include what the vertex stage of the model writes:\n\
         #include \"interface.glsl\"\n#include \"common/fragment.glsl\"\n\
