@@ -160,7 +160,7 @@ fn beyond_memory_when_on(
     request: impl Fn(&Settings) -> PipelineRequest,
 ) -> Vec<Diagnostic> {
     let passes = &shaders.graph.passes;
-    let constants: BTreeSet<&String> = passes.iter().filter_map(|pass| pass.note.when.as_ref()).collect();
+    let constants: BTreeSet<&String> = passes.iter().filter_map(|pass| pass.desc.when.as_ref()).collect();
     let switched = constants.into_iter().map(|name| {
         let constant = shaders.constants.iter().find(|constant| constant.name == *name);
         let last = constant.and_then(|constant| constant.choices.last());
@@ -168,7 +168,7 @@ fn beyond_memory_when_on(
         chosen.shader.insert(name.clone(), last.map_or(ShaderValue::Bool(true), |(_, value)| ShaderValue::Int(*value)));
         chosen
     });
-    let off = passes.iter().filter(|pass| !pass.note.on).map(|pass| {
+    let off = passes.iter().filter(|pass| !pass.desc.on).map(|pass| {
         let mut chosen = settings.clone();
         chosen.passes.insert(pass.name().to_owned(), true);
         chosen

@@ -184,9 +184,9 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
         setting(&parameter.name, takes, chosen.unwrap_or(numbers.join(",")), range(parameter.range), doc)
     });
     let passes = shaders.graph.passes.iter().filter(|pass| pass.has_switch()).map(|pass| {
-        let doc = if pass.note.doc.is_empty() { &pass.note.label } else { &pass.note.doc };
+        let doc = if pass.desc.doc.is_empty() { &pass.desc.label } else { &pass.desc.doc };
         let path = format!("passes.{}", pass.name());
-        setting(&path, "true or false", pass.note.on.to_string(), String::new(), doc.clone())
+        setting(&path, "true or false", pass.desc.on.to_string(), String::new(), doc.clone())
     });
     constants.chain(parameters).chain(passes).collect()
 }

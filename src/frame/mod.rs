@@ -378,7 +378,7 @@ fn pass_blocks(
                 Input::Parameters(bytes, members) => {
                     values::block(&settings.shader, &shaders.parameters, members, *bytes)
                 }
-                Input::Pass(bytes, members) => properties(pass.note.size.pixels(size), clock, *bytes, members),
+                Input::Pass(bytes, members) => properties(pass.desc.size.pixels(size), clock, *bytes, members),
                 _ => continue,
             };
             blocks.insert((index, *binding), block);

@@ -27,8 +27,8 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, pre_rasterization, phase, inputs, .. } = &*self.0;
-        (&note.stage, pre_rasterization, phase, inputs, (note.model.is_some(), note.quads), &note.also)
+        let GraphPass { desc, pre_rasterization, phase, inputs, .. } = &*self.0;
+        (&desc.stage, pre_rasterization, phase, inputs, (desc.model.is_some(), desc.quads), &desc.also)
     }
 }
 

@@ -108,14 +108,14 @@ impl Selection<'_> {
             RenderPhase::Tonemap => true,
             RenderPhase::Resolve => draws_model && self.weighs_samples,
             RenderPhase::Mean => self.accumulates,
-            RenderPhase::Model if pass.note.background => {
+            RenderPhase::Model if pass.desc.background => {
                 let is_on = is_switched_on(pass, self.shaders, self.constants) && pass.is_wanted(&self.settings.passes);
                 // Blended passes are drawn over any background, including a plain color.
-                let is_seen = self.shows_light && (self.shows_environment || pass.note.blend);
+                let is_seen = self.shows_light && (self.shows_environment || pass.desc.blend);
                 draws_model && is_seen && is_on
             }
-            RenderPhase::Model if pass.note.is_built_in() => {
-                let draws = pass.note.stage == self.stage || (self.through && pass.name() == MODEL);
+            RenderPhase::Model if pass.desc.is_built_in() => {
+                let draws = pass.desc.stage == self.stage || (self.through && pass.name() == MODEL);
                 draws_model && draws && wanted(MODEL)
             }
             _ => false,
@@ -155,7 +155,7 @@ impl PipelineRequest {
             graph.active(is_base, selection.shows_light, is_on, shown_pass.as_deref())
         };
         let mut passes = active(true);
-        let own = || passes.iter().filter(|pass| !pass.note.is_built_in());
+        let own = || passes.iter().filter(|pass| !pass.desc.is_built_in());
         let reads = |input: &Input| own().any(|pass| pass.inputs.values().any(|other| other == input));
         let draws_model = !own().any(|pass| pass.covers()) || reads(&Input::Picture) || reads(&Input::Depth);
         if !draws_model {
@@ -202,13 +202,13 @@ impl PipelineRequest {
 
     /// The pass that draws the model in this mode. `None` if the model is not drawn, or its stage is still to be compiled.
     pub(crate) fn model_pass(&self) -> Option<&Arc<GraphPass>> {
-        let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.is_built_in();
-        self.passes.iter().filter(draws).find(|pass| pass.note.stage == self.stage)
+        let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.is_built_in();
+        self.passes.iter().filter(draws).find(|pass| pass.desc.stage == self.stage)
     }
 
     /// Whether a pixel depends on what is drawn at that pixel alone. Other passes than the built-in ones may read any pixel.
     pub(crate) fn is_local(&self) -> bool {
-        self.passes.iter().all(|pass| pass.note.is_built_in() || pass.note.background)
+        self.passes.iter().all(|pass| pass.desc.is_built_in() || pass.desc.background)
     }
 
     /// Whether a pass after the tone map is shown, so that the pixels are those of the display.
@@ -291,7 +291,7 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
 /// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
 fn edges(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
     let stage = edges_stage(settings, shaders)?;
-    let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.stage == stage;
+    let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.stage == stage;
     shaders.graph.passes.iter().find(draws).cloned()
 }
 
@@ -302,7 +302,7 @@ fn edges_stage(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
 
 /// Whether the constant is set that the annotation of the pass names.
 fn is_switched_on(pass: &GraphPass, shaders: &ShaderSet, constants: &Specialization) -> bool {
-    let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == pass.note.when.as_ref());
+    let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == pass.desc.when.as_ref());
     switch.is_none_or(|switch| constants.iter().any(|(id, value)| *id == switch.id && *value != 0))
 }
 

@@ -15,10 +15,10 @@ impl Headless {
         let passes = self.frame_state()?.pipelines.passes;
         let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
         let continues = |pass: &&Arc<GraphPass>| {
-            inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.note.draws(name)))
+            inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.desc.draws(name)))
                 || pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
         };
-        let own = passes.iter().filter(|pass| !pass.note.is_built_in());
+        let own = passes.iter().filter(|pass| !pass.desc.is_built_in());
         Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
     }
 
@@ -27,8 +27,8 @@ impl Headless {
     pub fn hidden_background(&self) -> Option<String> {
         let (settings, shaders) = (&self.session.settings, self.session.shaders.as_ref()?);
         let is_hidden = settings.environment.is_lit() && !settings.environment.is_shown(&settings.view);
-        let pass = shaders.graph.passes.iter().find(|pass| pass.note.background).filter(|_| is_hidden)?;
-        let stage = shaders.stages.get(&pass.note.stage)?;
+        let pass = shaders.graph.passes.iter().find(|pass| pass.desc.background).filter(|_| is_hidden)?;
+        let stage = shaders.stages.get(&pass.desc.stage)?;
         let is_wanted = pass.is_wanted(&settings.passes) && self.frame_state().ok()?.pipelines.draws_model;
         let others = shaders.stages.values().filter(|other| other.path != stage.path);
         let shared: Vec<_> = others.flat_map(|other| &other.dependencies).collect();

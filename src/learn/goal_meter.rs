@@ -161,7 +161,7 @@ impl GoalMeter {
             Check::Parameter { name, range, default } => self.parameter(exercise, name, *range, *default)?,
             Check::Light { pass, at, factor, within } => {
                 let (own, _) = self.both(exercise)?;
-                let Some(note) = own.shaders().graph.pass(pass).map(|pass| pass.note.on) else {
+                let Some(note) = own.shaders().graph.pass(pass).map(|pass| pass.desc.on) else {
                     return Ok((false, format!("the tree has no pass `{pass}`")));
                 };
                 if !note {

@@ -18,11 +18,11 @@ pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Dia
     let mut out = unwritable_buffers(gpu.graphics_stores(), shaders, source);
     out.extend(missing_stages(gpu.optional_stages(), shaders, source));
     for pass in &graph.passes {
-        if let PassSize::Pixels(width, height) = pass.note.size {
+        if let PassSize::Pixels(width, height) = pass.desc.size {
             let message = too_large((width, height));
             out.extend(
                 message
-                    .map(|message| pass.note.place.error_at("size=", format!("the pass `{}` {message}", pass.name()))),
+                    .map(|message| pass.desc.place.error_at("size=", format!("the pass `{}` {message}", pass.name()))),
             );
         }
     }

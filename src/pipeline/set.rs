@@ -236,7 +236,7 @@ impl PipelineSet {
             lock(&self.graphics).insert(key.clone(), pipeline, number);
             Ok::<_, GpuError>(())
         })?;
-        for pass in request.passes.iter().filter(|pass| pass.is_compute && !self.is_pending_stage(&pass.note.stage)) {
+        for pass in request.passes.iter().filter(|pass| pass.is_compute && !self.is_pending_stage(&pass.desc.stage)) {
             self.compute_pass(pass, &request.pass_constants())?;
         }
         lock(&self.graphics).trim(number);
@@ -261,7 +261,7 @@ impl PipelineSet {
         let graphics = lock(&self.graphics);
         let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
-        let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.note.stage);
+        let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.desc.stage);
         let known = lock(&self.computes);
         let constants = request.pass_constants();
         let compute = |stage: &String| {
@@ -285,7 +285,7 @@ impl PipelineSet {
     /// The pipeline of a compute pass, created at its first use.
     fn compute_pass(&self, pass: &GraphPass, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
         let layout = |module: &ShaderModule| self.layout(&pass.inputs, &[module], false).map(Some);
-        self.compute_with(&pass.note.stage, constants, pass.role(), layout).map_err(|error| of_pass(pass, error))
+        self.compute_with(&pass.desc.stage, constants, pass.role(), layout).map_err(|error| of_pass(pass, error))
     }
 
     /// The layout for these inputs, as far as the modules read them.
@@ -342,25 +342,25 @@ impl PipelineSet {
         let pre_rasterization = pass.pre_rasterization.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
         let pre_rasterization = pre_rasterization.collect::<Result<Vec<_>, GpuError>>()?;
         let fragment = match &*key.modes {
-            [] => module(&pass.note.stage)?,
+            [] => module(&pass.desc.stage)?,
             modes => {
-                let several = module_of_modes(&self.gpu, self.stage(&pass.note.stage)?, &key.specialization, modes);
-                several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.note.stage)))??
+                let several = module_of_modes(&self.gpu, self.stage(&pass.desc.stage)?, &key.specialization, modes);
+                several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.desc.stage)))??
             }
         };
         let pre_rasterization: Vec<_> = pre_rasterization.iter().map(|(flag, module)| (*flag, &**module)).collect();
         let modules: Vec<&ShaderModule> = pre_rasterization.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
         modules.iter().try_for_each(|module| check_bound(module, pass.role()))?;
-        let layout = self.layout(&pass.inputs, &modules, pass.note.draws_model());
+        let layout = self.layout(&pass.inputs, &modules, pass.desc.draws_model());
         let layout = layout.map_err(|error| of_pass(pass, error))?;
-        let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
+        let more = pass.desc.also.iter().map(|(_, format)| pass_format(*format));
         let modes = key.modes.iter().skip(1).map(|_| key.format);
         let colors: Vec<_> = std::iter::once(key.format).chain(more).chain(modes).collect();
         let desc = PipelineDesc {
             pre_rasterization: &pre_rasterization,
             fragment: &fragment,
             colors: &colors,
-            depth: pass.note.model.is_some() || pass.phase == RenderPhase::Model,
+            depth: pass.desc.model.is_some() || pass.phase == RenderPhase::Model,
             raster: key.raster,
             samples: key.samples,
             class: key.class,

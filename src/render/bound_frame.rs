@@ -77,7 +77,7 @@ impl BoundFrame {
         let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.usage.reads_frame(&CLOCK));
         keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.usage.reads_frame(&CLOCK)))
             || passes().any(|pass| pass.moves)
-            || before().any(|pass| compute(&pass.note.stage))
+            || before().any(|pass| compute(&pass.desc.stage))
     }
 
     /// Whether a stage asks how the camera has moved since the frame before.

@@ -335,9 +335,9 @@ fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings
 
 fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
     let internal = internal(shaders);
-    for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.note.when.is_none()) {
+    for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.desc.when.is_none()) {
         let action = |on| Action::Pass(pass.name().to_owned(), on);
-        let entry = switch("Pass", &pass.note.label, pass.name(), pass.is_wanted(&settings.passes), action);
+        let entry = switch("Pass", &pass.desc.label, pass.name(), pass.is_wanted(&settings.passes), action);
         entries.push(Entry { is_minor: internal.contains(pass.name()), ..entry });
     }
 }

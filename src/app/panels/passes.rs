@@ -35,7 +35,7 @@ pub(super) fn show(
     let mut shown = BTreeSet::new();
     let show_effect = |ui: &mut Ui, pass: &GraphPass, settings: &mut Settings, shown: &mut BTreeSet<_>| {
         if show_switch(ui, pass, settings) {
-            show_parameters(ui, of_effect(shaders, pass, &names), &pass.note.label, settings, shown);
+            show_parameters(ui, of_effect(shaders, pass, &names), &pass.desc.label, settings, shown);
         }
     };
     // A shader without a model covers what the others draw.
@@ -90,8 +90,8 @@ impl<'a> Found<'a> {
             own.chain(below).any(|text| words.are_in(&text))
         };
         let is_found = |pass: &&GraphPass| {
-            let note = &pass.note;
-            with([&note.label, pass.name(), &note.stage, &note.doc], of_effect(shaders, pass, names))
+            let desc = &pass.desc;
+            with([&desc.label, pass.name(), &desc.stage, &desc.doc], of_effect(shaders, pass, names))
         };
         let is_switch = |switch: &&Constant| {
             let Constant { label, name, doc, group, .. } = *switch;
@@ -106,12 +106,12 @@ impl<'a> Found<'a> {
 
 /// Whether the pass is one of the tree that Specula comes with.
 fn is_shipped(pass: &GraphPass) -> bool {
-    embedded::read(None, &TreePath::from(pass.note.stage.as_str())).is_some()
+    embedded::read(None, &TreePath::from(pass.desc.stage.as_str())).is_some()
 }
 
 /// The passes with a switch of their own.
 fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
-    let has_own = |pass: &&GraphPass| pass.note.when.is_none() && pass.has_switch();
+    let has_own = |pass: &&GraphPass| pass.desc.when.is_none() && pass.has_switch();
     shaders.graph.passes.iter().map(|pass| &**pass).filter(has_own)
 }
 
@@ -119,9 +119,9 @@ fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
 pub(in crate::app) fn internal(shaders: &ShaderSet) -> BTreeSet<&str> {
     let passes = || shaders.graph.passes.iter().map(|pass| &**pass);
     let needed = passes().flat_map(|pass| needs(shaders, pass).filter(|needed| needed.name() != pass.name()));
-    let needed: BTreeSet<&str> = needed.filter(|needed| !needed.note.to_picture()).map(GraphPass::name).collect();
+    let needed: BTreeSet<&str> = needed.filter(|needed| !needed.desc.to_picture()).map(GraphPass::name).collect();
     // The surface's images are there for passes that the user may write.
-    let is_offer = |pass: &GraphPass| pass.note.to == Target::Image && is_shipped(pass);
+    let is_offer = |pass: &GraphPass| pass.desc.to == Target::Image && is_shipped(pass);
     let is_internal = |pass: &&GraphPass| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
     passes().filter(is_internal).map(GraphPass::name).collect()
 }
@@ -138,7 +138,7 @@ pub(super) fn switches(shaders: &ShaderSet) -> impl Iterator<Item = &Constant> {
 
 /// Whether the constant with this name switches passes.
 pub(in crate::app) fn is_switch(shaders: &ShaderSet, constant: &str) -> bool {
-    shaders.graph.passes.iter().any(|pass| pass.note.when.as_deref() == Some(constant))
+    shaders.graph.passes.iter().any(|pass| pass.desc.when.as_deref() == Some(constant))
 }
 
 /// Whether a parameter belongs to a pass: it is in the pass's own block, or depends on the pass's switch.
@@ -149,7 +149,7 @@ pub(in crate::app) fn is_of_pass(shaders: &ShaderSet, parameter: &Parameter) -> 
 /// The parameters that a constant switches on with its passes.
 fn of_switch<'a>(shaders: &'a ShaderSet, switch: &Constant) -> Vec<&'a Parameter> {
     let name = Some(&switch.name);
-    let passes: Vec<_> = shaders.graph.passes.iter().filter(|pass| pass.note.when.as_ref() == name).collect();
+    let passes: Vec<_> = shaders.graph.passes.iter().filter(|pass| pass.desc.when.as_ref() == name).collect();
     let is_own = |parameter: &&Parameter| {
         let in_block = || passes.iter().any(|pass| parameter.offset.is_none() && pass.has_parameter(&parameter.name));
         parameter.when.as_ref() == name || in_block()
@@ -160,7 +160,7 @@ fn of_switch<'a>(shaders: &'a ShaderSet, switch: &Constant) -> Vec<&'a Parameter
 /// The parameters in the uniform blocks of an effect and of the internal passes that it needs.
 fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass, internal: &BTreeSet<&str>) -> Vec<&'a Parameter> {
     let is_its = |pass: &&GraphPass| pass.name() == effect.name() || internal.contains(pass.name());
-    let passes: Vec<_> = needs(shaders, effect).filter(|pass| pass.note.when.is_none()).filter(is_its).collect();
+    let passes: Vec<_> = needs(shaders, effect).filter(|pass| pass.desc.when.is_none()).filter(is_its).collect();
     let in_block = |parameter: &&Parameter| {
         parameter.offset.is_none() && passes.iter().any(|pass| pass.has_parameter(&parameter.name))
     };
@@ -172,16 +172,16 @@ fn show_switch(ui: &mut Ui, pass: &GraphPass, settings: &mut Settings) -> bool {
     let name = pass.name();
     let before = pass.is_wanted(&settings.passes);
     let mut on = before;
-    let default = Settings::of_window().passes.get(name).copied().unwrap_or(pass.note.on);
-    let doc = format!("{}\n{}", pass.note.doc, pass.note.stage);
+    let default = Settings::of_window().passes.get(name).copied().unwrap_or(pass.desc.on);
+    let doc = format!("{}\n{}", pass.desc.doc, pass.desc.stage);
     let option = set_option(&format!("passes.{name}"), &on.to_string());
     let row =
-        Row { name: &pass.note.label, doc: doc.trim_start(), option, is_changed: on != default, is_indented: false };
+        Row { name: &pass.desc.label, doc: doc.trim_start(), option, is_changed: on != default, is_indented: false };
     if row.show(ui, |ui| check(ui, &mut on)) {
         on = default;
     }
     if on != before {
-        match on == pass.note.on {
+        match on == pass.desc.on {
             true => settings.passes.remove(name),
             false => settings.passes.insert(name.to_owned(), on),
         };

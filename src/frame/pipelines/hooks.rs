@@ -31,7 +31,7 @@ impl PipelineRequest {
 
 /// Whether the stages before the fragment stage `stage` move the vertices of the model.
 pub(super) fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
-    let pass = shaders.graph.passes.iter().find(|pass| pass.note.stage == stage && pass.note.draws_model());
+    let pass = shaders.graph.passes.iter().find(|pass| pass.desc.stage == stage && pass.desc.draws_model());
     let stages = pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages()).filter_map(|path| shaders.stages.get(path));
     let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
     stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))

@@ -124,11 +124,11 @@ impl PipelineRequest {
     /// The pipelines of what lies behind the model, in the order in which it is drawn: what blends lies over the rest.
     pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
         let passes = |blend| {
-            let is_drawn = move |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.note.background;
-            self.passes.iter().filter(is_drawn).filter(move |pass| pass.note.blend == blend)
+            let is_drawn = move |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.background;
+            self.passes.iter().filter(is_drawn).filter(move |pass| pass.desc.blend == blend)
         };
         passes(false).chain(passes(true)).map(|pass| {
-            let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
+            let raster = if pass.desc.blend { Raster::Blended } else { Raster::Solid };
             let key = self.triangle_key(pass, raster, self.target.color, self.pass_constants());
             PipelineKey { samples: self.target.samples, ..key }
         })
@@ -150,18 +150,18 @@ impl PipelineRequest {
     /// The pipelines of a pass that is none of the built-in steps: one for each material if it draws the model, none for a
     /// compute pass.
     pub(crate) fn pass_keys(&self, pass: &Arc<GraphPass>) -> Vec<PipelineKey> {
-        if pass.is_compute || pass.note.is_built_in() || pass.note.background {
+        if pass.is_compute || pass.desc.is_built_in() || pass.desc.background {
             return Vec::new();
         }
-        if pass.note.quads {
+        if pass.desc.quads {
             return vec![self.model_pass_key(pass, QUADS)];
         }
-        if pass.note.model.is_some() {
+        if pass.desc.model.is_some() {
             let materials = self.materials.iter().filter(|material| material.is_taken_by(pass));
             return materials.map(|material| self.model_pass_key(pass, *material)).collect();
         }
-        let format = match pass.note.to {
-            Target::Image => pass_format(pass.note.format),
+        let format = match pass.desc.to {
+            Target::Image => pass_format(pass.desc.format),
             _ if pass.phase == RenderPhase::Display => Swapchain::FORMAT,
             _ => self.picture_format(),
         };
@@ -177,10 +177,10 @@ impl PipelineRequest {
 
     /// The pipeline with which a pass that is not the model's own draws a material of the model, or [`QUADS`].
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
-        let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
+        let raster = if pass.desc.blend { Raster::Blended } else { Raster::Solid };
         let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };
-        match pass.note.to {
-            Target::Image => PipelineKey { format: pass_format(pass.note.format), samples: 1, ..key },
+        match pass.desc.to {
+            Target::Image => PipelineKey { format: pass_format(pass.desc.format), samples: 1, ..key },
             _ => key,
         }
     }

@@ -128,7 +128,7 @@ impl PipelineSet {
     }
 
     fn ask_about(&self, pass: &GraphPass, constants: &Specialization) -> Result<Vec<Executable>, GpuError> {
-        let module = shader_module(&self.gpu, self.stage(&pass.note.stage)?, constants, false)?;
+        let module = shader_module(&self.gpu, self.stage(&pass.desc.stage)?, constants, false)?;
         let layout = self.layout(&pass.inputs, &[&module], false)?;
         ComputePipeline::statistics(&self.gpu, &self.layouts, &module, Some(&layout))
     }
@@ -147,7 +147,7 @@ impl PipelineSet {
         let computes = lock(&self.computes);
         let constants = request.pass_constants();
         found.extend(request.passes.iter().filter(|pass| pass.is_compute).filter_map(|pass| {
-            let pipeline = computes.get(&(pass.note.stage.clone(), constants.clone()))?.clone();
+            let pipeline = computes.get(&(pass.desc.stage.clone(), constants.clone()))?.clone();
             Some(Found::Compute(pass.clone(), pipeline))
         }));
         found

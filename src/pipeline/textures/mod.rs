@@ -57,7 +57,7 @@ impl PassTextures {
             };
             match uploaded {
                 Ok(uploaded) => drop(textures.insert(key.clone(), uploaded)),
-                Err(message) => errors.push(of.note.place.error_at(&of.note.image, message)),
+                Err(message) => errors.push(of.desc.place.error_at(&of.desc.image, message)),
             }
         }
         if errors.is_empty() { Ok(Arc::new(Self(textures))) } else { Err(errors) }
@@ -94,7 +94,7 @@ fn upload(gpu: &Arc<Gpu>, of: &Arc<Texture>) -> Result<Uploaded, String> {
         None => of.files.par_iter().map(decode).collect::<Result<_, _>>()?,
     };
     let content = Content::of(layers(pictures, &shape, of), &shape, of);
-    make(gpu, of, &shape, &content).map_err(|error| format!("the texture `{}` cannot be made: {error}", of.note.name))
+    make(gpu, of, &shape, &content).map_err(|error| format!("the texture `{}` cannot be made: {error}", of.desc.name))
 }
 
 /// Width and height of a file's picture, pixels.
@@ -113,7 +113,7 @@ fn readable<T>(file: &TextureFile, result: ImageResult<T>) -> Result<T, String> 
 
 /// Cuts the layers of a texture out of its pictures.
 fn layers(pictures: Vec<DynamicImage>, shape: &Shape, of: &Texture) -> Vec<DynamicImage> {
-    let flipped = |picture: DynamicImage| if of.note.flip { picture.flipv() } else { picture };
+    let flipped = |picture: DynamicImage| if of.desc.flip { picture.flipv() } else { picture };
     let tile = |[column, row]: &[u32; 2]| {
         let (width, height) = (shape.width, shape.height);
         pictures[0].crop_imm(column * width, row * height, width, height)
@@ -130,7 +130,7 @@ fn layers(pictures: Vec<DynamicImage>, shape: &Shape, of: &Texture) -> Vec<Dynam
         }
         Cut::Panorama => {
             let pictures: Vec<DynamicImage> = pictures.into_iter().map(flipped).collect();
-            panorama::faces(&pictures[0], shape.width, of.note.srgb)
+            panorama::faces(&pictures[0], shape.width, of.desc.srgb)
         }
     }
 }
@@ -148,13 +148,13 @@ impl Content {
     fn of(layers: Vec<DynamicImage>, shape: &Shape, of: &Texture) -> Self {
         let is_volume = of.kind == TextureKind::Volume;
         let depth = if is_volume { shape.layers } else { 1 };
-        let levels = if of.note.mips { mips::count(shape.width.max(depth), shape.height) } else { 1 };
+        let levels = if of.desc.mips { mips::count(shape.width.max(depth), shape.height) } else { 1 };
         let size = [shape.width, shape.height, depth];
         if layers.iter().any(is_float) {
             let all: Vec<Vec<[f32; 4]>> = layers.into_iter().map(floats).collect();
             let all = if is_volume { vec![all.concat()] } else { all };
             let with_levels = all.into_par_iter().map(|mut texels| {
-                if of.note.mips {
+                if of.desc.mips {
                     texels.extend(mips::below_floats(&texels, size));
                 }
                 texels
@@ -163,10 +163,10 @@ impl Content {
             let bytes = bytes.into_iter().flatten().flat_map(half_float).collect();
             return Self { format: vk::Format::R16G16B16A16_SFLOAT, levels, bytes };
         }
-        let srgb = of.note.srgb;
+        let srgb = of.desc.srgb;
         let format = if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
         let all: Vec<Vec<u8>> = layers.into_iter().map(|layer| layer.to_rgba8().into_raw()).collect();
-        if !of.note.mips {
+        if !of.desc.mips {
             return Self { format, levels, bytes: all.concat() };
         }
         if is_volume {
@@ -230,9 +230,9 @@ fn make(gpu: &Arc<Gpu>, of: &Arc<Texture>, shape: &Shape, content: &Content) -> 
         TextureKind::Volume => one.volume(shape.layers),
         TextureKind::Array => one.array(shape.layers),
     };
-    let image = Image::new(gpu, &of.note.name, desc)?;
+    let image = Image::new(gpu, &of.desc.name, desc)?;
     upload_images(gpu, &[(&image, &content.bytes)])?;
-    let wrap = match of.note.wrap {
+    let wrap = match of.desc.wrap {
         Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
         Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };

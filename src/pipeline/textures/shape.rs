@@ -63,13 +63,13 @@ impl Shape {
             TextureKind::Cube => {
                 faces_of(width, height).ok_or_else(|| format!("{} has {found} pixels; expected {FACES}", file(0)))
             }
-            TextureKind::Volume | TextureKind::Array if sizes.len() > 1 || texture.note.image.contains('*') => {
+            TextureKind::Volume | TextureKind::Array if sizes.len() > 1 || texture.desc.image.contains('*') => {
                 Ok(whole)
             }
             // Without a number, a table's slices are as many as they are wide.
             TextureKind::Volume | TextureKind::Array => {
-                let layers = texture.note.layers.unwrap_or(width.min(height));
-                if texture.note.layers.is_none() && width.max(height) != layers.saturating_mul(layers) {
+                let layers = texture.desc.layers.unwrap_or(width.min(height));
+                if texture.desc.layers.is_none() && width.max(height) != layers.saturating_mul(layers) {
                     return Err(format!(
                         "{} has {found} pixels, from which the number of slices does not follow; add layers=8, or name a file \
                          each with a `*`",

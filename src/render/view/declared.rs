@@ -221,7 +221,7 @@ impl DeclaredPasses {
         let mut picture = picture.clone();
         let request = &context.frame.state.pipelines;
         for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.phase == phase) {
-            let target = match pass.note.to_picture() {
+            let target = match pass.desc.to_picture() {
                 true => self.images.other_picture(phase, &picture).cloned(),
                 false => self.images.target(pass.name()).cloned(),
             };
@@ -238,9 +238,9 @@ impl DeclaredPasses {
                 true => self.dispatch(encoder, context, pass, &reads, &target),
                 false => self.draw(encoder, context, pass, &reads, &target),
             })?;
-            match pass.note.to_picture() {
+            match pass.desc.to_picture() {
                 true => picture = target,
-                false => pass.note.images().for_each(|(name, _)| self.images.finished(name, cache_key.clone())),
+                false => pass.desc.images().for_each(|(name, _)| self.images.finished(name, cache_key.clone())),
             }
         }
         Ok(picture)
@@ -271,7 +271,7 @@ impl DeclaredPasses {
             encoder.buffers_done();
         }
         // Every image with the one that the pass draws to: an attachment has one level, so levels are made of an image of its own.
-        let images: Vec<(Arc<Image>, Arc<Image>)> = match pass.note.to_picture() {
+        let images: Vec<(Arc<Image>, Arc<Image>)> = match pass.desc.to_picture() {
             true => vec![(target.clone(), target.clone())],
             false => self.images.targets(pass),
         };
@@ -279,7 +279,7 @@ impl DeclaredPasses {
         let [color, more @ ..] = &*colors else { return Ok(()) };
         colors.iter().for_each(|color| encoder.transition(color, Use::Undefined, Use::Color));
         let attachments = Attachments { more, ..Attachments::of(color) };
-        match pass.note.model {
+        match pass.desc.model {
             Some(_) => {
                 let Some(depth) = self.images.depth(pass.name()) else { return Ok(()) };
                 encoder.transition(depth, Use::Undefined, Use::Depth);
@@ -320,13 +320,13 @@ impl DeclaredPasses {
         reads: &Reads<'_>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let Some(pipeline) = context.frame.pipelines.compute(&pass.note.stage) else { return Ok(()) };
+        let Some(pipeline) = context.frame.pipelines.compute(&pass.desc.stage) else { return Ok(()) };
         let Some(layout) = &pipeline.layout else { return Ok(()) };
         let set = self.set(layout, context, reads)?;
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
-        let groups = match pass.note.dispatch {
+        let groups = match pass.desc.dispatch {
             Dispatch::Groups(groups) => groups,
             Dispatch::Size => {
                 let [x, y, _] = pass.local_size.map(|size| size.max(1));
@@ -371,7 +371,7 @@ impl DeclaredPasses {
 fn shown_image(frame: &BoundFrame) -> Option<(&str, &Arc<GraphPass>)> {
     let request = &frame.state.pipelines;
     let shown = request.shown_pass.as_deref()?;
-    let pass = request.passes.iter().find(|pass| pass.note.draws(shown))?;
+    let pass = request.passes.iter().find(|pass| pass.desc.draws(shown))?;
     Some((shown, pass))
 }
 

@@ -49,7 +49,7 @@ impl ModelDraws<'_> {
     /// Draws what a declared pass draws: the model, or its quads.
     pub(super) fn draw_pass(&self, encoder: &mut Encoder) {
         let request = &self.frame.state.pipelines;
-        if !self.pass.note.quads {
+        if !self.pass.desc.quads {
             let draws = self.frame.scene.iter().flat_map(|scene| &scene.draws);
             return self.draw(encoder, draws, |material| Some(request.model_pass_key(self.pass, material)));
         }
@@ -64,7 +64,7 @@ impl ModelDraws<'_> {
             Some(_) => vk::PrimitiveTopology::PATCH_LIST,
             None => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
-        let cull = match self.pass.note.cull {
+        let cull = match self.pass.desc.cull {
             Some(Cull::Front) => vk::CullModeFlags::FRONT,
             Some(Cull::Back) => vk::CullModeFlags::BACK,
             Some(Cull::None) | None => vk::CullModeFlags::NONE,
@@ -78,7 +78,7 @@ impl ModelDraws<'_> {
             encoder.push(self.layouts, &draw.push);
         }
         // A blended double-sided surface is drawn back faces first, since they lie behind.
-        let passes: &[vk::CullModeFlags] = match (self.pass.note.cull, draw.double_sided, draw.variant.alpha) {
+        let passes: &[vk::CullModeFlags] = match (self.pass.desc.cull, draw.double_sided, draw.variant.alpha) {
             (Some(Cull::None), ..) => &[vk::CullModeFlags::NONE],
             (Some(Cull::Front), ..) => &[vk::CullModeFlags::FRONT],
             (None, true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
@@ -117,7 +117,7 @@ impl ModelDraws<'_> {
 
 /// How often a pass draws the model, or how many quads; 0 if it does not.
 pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
-    match pass.note.model {
+    match pass.desc.model {
         Some(Instances::Count(count)) => count,
         Some(Instances::Lights) => frame.lights().len().min(MAX_LIGHT_VIEWS) as u32,
         None => 0,

@@ -162,7 +162,7 @@ impl Passes<'_> {
 
     /// Draws the passes that add to the model: those that blend, or the others.
     pub(super) fn added(&self, encoder: &mut Encoder, blend: bool) {
-        for pass in self.request().added_passes().filter(|pass| pass.note.blend == blend) {
+        for pass in self.request().added_passes().filter(|pass| pass.desc.blend == blend) {
             let instances = instances(self.frame, pass);
             let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
             model.draw_pass(encoder);

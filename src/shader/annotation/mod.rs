@@ -37,10 +37,10 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{TreePath, embedded};
 use crate::shader::spirv::reflect::Reflection;
 use parse::{Found, parse_file};
-use pass::PassNote;
+use pass::PassDesc;
 use place::Place;
 use resolve::resolve;
-use texture::TextureNote;
+use texture::TextureDesc;
 use ui::Ui;
 
 pub use mode::{DrawAs, Encode, Mode, Numbers, PATHS_STAGE};
@@ -57,9 +57,9 @@ pub struct Annotations {
     /// Ordered by offset in `Params`, then those of passes by file and line.
     pub parameters: Vec<Parameter>,
     /// Ordered by name.
-    pub passes: Vec<PassNote>,
+    pub passes: Vec<PassDesc>,
     /// Ordered by name.
-    pub textures: Vec<TextureNote>,
+    pub textures: Vec<TextureDesc>,
 }
 
 impl Annotations {
@@ -101,20 +101,20 @@ pub fn read<'p>(
                     places.insert((ui.place.file.clone(), ui.place.line), ui.place.clone());
                     seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out))
                 }
-                Found::Pass(note) => {
-                    let note = PassNote { stage: path.to_string(), ..note };
+                Found::Pass(desc) => {
+                    let desc = PassDesc { stage: path.to_string(), ..desc };
                     match StageKind::of(path) {
                         Some(StageKind::Fragment | StageKind::Compute) => {
-                            seen.pass(&note).map(|()| out.passes.push(note))
+                            seen.pass(&desc).map(|()| out.passes.push(desc))
                         }
                         _ => {
                             let message = "a pass is a file with main() that ends in .frag or .comp";
-                            Err(Box::new(note.place.error(message)))
+                            Err(Box::new(desc.place.error(message)))
                         }
                     }
                 }
-                Found::Texture(note) => seen.texture(&note).map(|()| {
-                    out.textures.push(TextureNote { declared_in: path.to_string(), ..note });
+                Found::Texture(desc) => seen.texture(&desc).map(|()| {
+                    out.textures.push(TextureDesc { declared_in: path.to_string(), ..desc });
                 }),
             };
             errors.extend(added.err().map(|error| *error));
@@ -143,10 +143,10 @@ pub fn read<'p>(
 }
 
 /// The passes that a stage declares, without its errors.
-pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Item = PassNote> {
+pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Item = PassDesc> {
     let found = snapshot.read(stage).map(|text| parse_file("", &text).0).unwrap_or_default();
     found.into_iter().filter_map(|found| match found {
-        Found::Pass(note) => Some(PassNote { stage: stage.to_string(), ..note }),
+        Found::Pass(desc) => Some(PassDesc { stage: stage.to_string(), ..desc }),
         _ => None,
     })
 }
@@ -176,14 +176,14 @@ impl Seen {
         self.first("//@ui name", &ui.name, &ui.place)
     }
 
-    fn pass(&mut self, note: &PassNote) -> Result<(), Box<Diagnostic>> {
-        self.first("//@pass of", &note.stage, &note.place)?;
-        let names = std::iter::once(&note.name).chain(note.also.iter().map(|(name, _)| name));
-        names.into_iter().try_for_each(|name| self.first("pass or texture", name, &note.place))
+    fn pass(&mut self, desc: &PassDesc) -> Result<(), Box<Diagnostic>> {
+        self.first("//@pass of", &desc.stage, &desc.place)?;
+        let names = std::iter::once(&desc.name).chain(desc.also.iter().map(|(name, _)| name));
+        names.into_iter().try_for_each(|name| self.first("pass or texture", name, &desc.place))
     }
 
-    fn texture(&mut self, note: &TextureNote) -> Result<(), Box<Diagnostic>> {
-        self.first("pass or texture", &note.name, &note.place)
+    fn texture(&mut self, desc: &TextureDesc) -> Result<(), Box<Diagnostic>> {
+        self.first("pass or texture", &desc.name, &desc.place)
     }
 
     fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {

@@ -2,9 +2,9 @@
 
 use super::cursor::Cursor;
 use super::mode::{Mode, mode};
-use super::pass::{self, PassNote};
+use super::pass::{self, PassDesc};
 use super::place::Place;
-use super::texture::{self, TextureNote};
+use super::texture::{self, TextureDesc};
 use super::ui::{Ui, ui};
 use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
@@ -18,9 +18,9 @@ pub enum Found {
     /// `//@ui`
     Ui(Ui),
     /// `//@pass`
-    Pass(PassNote),
+    Pass(PassDesc),
     /// `//@texture`
-    Texture(TextureNote),
+    Texture(TextureDesc),
 }
 
 /// Reads all annotations of a file.

@@ -163,7 +163,7 @@ pub enum Instances {
 
 /// A declared pass.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
-pub struct PassNote {
+pub struct PassDesc {
     /// Name of the pass and of its image.
     pub name: String,
     /// Name for people.
@@ -209,7 +209,7 @@ pub struct PassNote {
     pub place: Place,
 }
 
-impl PassNote {
+impl PassDesc {
     /// Whether it gives what it draws to the picture, so that it has no image of its own.
     pub fn to_picture(&self) -> bool {
         self.to == Target::Picture
@@ -246,10 +246,10 @@ impl PassNote {
 }
 
 /// Parses the rest of a `//@pass`.
-pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
+pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
     let name = name(cursor, "pass")?;
     let label = cursor.string()?.filter(|label| !label.trim().is_empty()).unwrap_or_else(|| name.clone());
-    let mut note = PassNote {
+    let mut desc = PassDesc {
         name,
         label,
         size: PassSize::Divided(1),
@@ -275,34 +275,34 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     while !cursor.at_end() {
         let (bytes, key) = cursor.key();
         match key {
-            "mips" => note.mips = true,
-            "keep" => note.keep = true,
-            "off" => note.on = false,
-            "blend" => note.blend = true,
-            "instead" => note.instead = Some(cursor.value(key)?.1),
+            "mips" => desc.mips = true,
+            "keep" => desc.keep = true,
+            "off" => desc.on = false,
+            "blend" => desc.blend = true,
+            "instead" => desc.instead = Some(cursor.value(key)?.1),
             "cull" => {
                 let all = [("none", Cull::None), ("front", Cull::Front), ("back", Cull::Back)];
-                note.cull = Some(cursor.one_of(key, &all)?);
+                desc.cull = Some(cursor.one_of(key, &all)?);
             }
-            "size" => note.size = size(cursor)?,
-            "format" => note.format = format(cursor)?,
-            "also" => note.also = also(cursor)?,
-            "after" => note.after = Some(cursor.value(key)?.1),
-            "dispatch" => note.dispatch = dispatch(cursor)?,
-            "when" => note.when = Some(cursor.value(key)?.1),
-            "instances" => note.model = Some(instances(cursor)?),
+            "size" => desc.size = size(cursor)?,
+            "format" => desc.format = format(cursor)?,
+            "also" => desc.also = also(cursor)?,
+            "after" => desc.after = Some(cursor.value(key)?.1),
+            "dispatch" => desc.dispatch = dispatch(cursor)?,
+            "when" => desc.when = Some(cursor.value(key)?.1),
+            "instances" => desc.model = Some(instances(cursor)?),
             "draw" => match cursor.value(key)? {
-                (_, what) if what == "model" => note.model = note.model.or(Some(Instances::Count(1))),
+                (_, what) if what == "model" => desc.model = desc.model.or(Some(Instances::Count(1))),
                 (_, what) if what == "quads" => {
-                    (note.model, note.quads) = (note.model.or(Some(Instances::Count(1))), true);
+                    (desc.model, desc.quads) = (desc.model.or(Some(Instances::Count(1))), true);
                 }
-                (_, what) if what == "background" => note.background = true,
+                (_, what) if what == "background" => desc.background = true,
                 (bytes, other) => {
                     let message = format!("expected draw=model, draw=quads or draw=background, found `{other}`");
                     return Err(cursor.error(bytes, message));
                 }
             },
-            "doc" => note.doc = cursor.value(key)?.1,
+            "doc" => desc.doc = cursor.value(key)?.1,
             "to" => {
                 let all = [
                     ("picture", Target::Picture),
@@ -310,7 +310,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
                     ("mean", Target::Mean),
                     ("display", Target::Display),
                 ];
-                note.to = cursor.one_of(key, &all)?;
+                desc.to = cursor.one_of(key, &all)?;
             }
             other => {
                 let known = "to=picture|resolve|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
@@ -327,7 +327,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             }
         }
     }
-    Ok(note)
+    Ok(desc)
 }
 
 fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {

@@ -20,7 +20,7 @@ pub enum Wrap {
 
 /// A declared texture: one or more image files of the tree.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
-pub struct TextureNote {
+pub struct TextureDesc {
     /// Name in GLSL.
     pub name: String,
     /// Path of the image, relative to the file with the annotation or to the tree's root. A `*` in the file's name stands for
@@ -49,7 +49,7 @@ pub fn is_image_extension(extension: &str) -> bool {
 }
 
 /// Parses the rest of a `//@texture`.
-pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
+pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureDesc, Box<Diagnostic>> {
     let name = name(cursor, "texture")?;
     cursor.at_end();
     let start = cursor.position();
@@ -60,7 +60,7 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
         return Err(cursor.error(start..cursor.position(), "expected the name of the image's file in the quotes"));
     }
     let place = cursor.place().clone();
-    let mut note = TextureNote {
+    let mut desc = TextureDesc {
         name,
         image,
         declared_in: String::new(),
@@ -74,20 +74,20 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
     while !cursor.at_end() {
         let (bytes, word) = cursor.key();
         match word {
-            "srgb" => note.srgb = true,
-            "linear" => note.srgb = false,
-            "repeat" => note.wrap = Wrap::Repeat,
-            "clamp" => note.wrap = Wrap::Clamp,
-            "mips" => note.mips = true,
-            "flip" => note.flip = true,
-            "layers" => note.layers = Some(layers(cursor)?),
+            "srgb" => desc.srgb = true,
+            "linear" => desc.srgb = false,
+            "repeat" => desc.wrap = Wrap::Repeat,
+            "clamp" => desc.wrap = Wrap::Clamp,
+            "mips" => desc.mips = true,
+            "flip" => desc.flip = true,
+            "layers" => desc.layers = Some(layers(cursor)?),
             other => {
                 let message = format!("expected srgb, linear, repeat, clamp, mips, flip or layers=, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }
     }
-    Ok(note)
+    Ok(desc)
 }
 
 fn layers(cursor: &mut Cursor<'_>) -> Result<u32, Box<Diagnostic>> {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
 use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::message::did_you_mean;
-use crate::shader::annotation::pass::{PassFormat, PassNote, Target};
-use crate::shader::annotation::texture::TextureNote;
+use crate::shader::annotation::pass::{PassFormat, PassDesc, Target};
+use crate::shader::annotation::texture::TextureDesc;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Descriptor;
@@ -50,9 +50,9 @@ impl Input {
 /// The names that a pass can read.
 pub struct Names<'a> {
     /// All declared passes.
-    pub passes: &'a [PassNote],
+    pub passes: &'a [PassDesc],
     /// All declared textures.
-    pub textures: &'a [TextureNote],
+    pub textures: &'a [TextureDesc],
 }
 
 /// The inputs of all stages of a declared pass.
@@ -60,13 +60,13 @@ pub struct Names<'a> {
 /// # Errors
 /// Those of the first stage that has errors.
 pub fn inputs_of<'s, 't: 's>(
-    note: &PassNote,
+    desc: &PassDesc,
     stages: impl Iterator<Item = &'s PassStage<'t>>,
     names: &Names<'_>,
 ) -> Result<Inputs, Vec<Diagnostic>> {
     let mut all = Inputs::new();
     for stage in stages {
-        all.extend(inputs(note, stage, names)?);
+        all.extend(inputs(desc, stage, names)?);
     }
     Ok(all)
 }
@@ -74,11 +74,11 @@ pub fn inputs_of<'s, 't: 's>(
 /// Leaves out the images that no output of a pass depends on. A pass that draws the model calls the author's hooks, but may use a part of
 /// what they change: a shadow map takes the holes alone. So an image that only a color comes from is no input of the shadow map.
 /// Otherwise no hook could read the occlusion, which is made of the model's distance.
-pub fn without_dead(mut inputs: Inputs, note: &PassNote, stage: &PassStage<'_>) -> Inputs {
+pub fn without_dead(mut inputs: Inputs, desc: &PassDesc, stage: &PassStage<'_>) -> Inputs {
     let is_dead = |binding: u32, input: &Input| {
         matches!(input, Input::Image(_)) && binding < VERTEX_BINDINGS && !(stage.live)().contains(&binding)
     };
-    if note.draws_model() && !note.is_built_in() {
+    if desc.draws_model() && !desc.is_built_in() {
         inputs.retain(|binding, input| !is_dead(*binding, input));
     }
     inputs
@@ -88,8 +88,8 @@ pub fn without_dead(mut inputs: Inputs, note: &PassNote, stage: &PassStage<'_>) 
 ///
 /// # Errors
 /// A name that nothing has, or a declaration that does not fit what has the name.
-fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
-    inputs_by(stage, |found| input(note, stage.kind, found, names))
+fn inputs(desc: &PassDesc, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
+    inputs_by(stage, |found| input(desc, stage.kind, found, names))
 }
 
 fn inputs_by(
@@ -127,16 +127,16 @@ fn is_doubled(stage: &PassStage<'_>, found: &Descriptor) -> bool {
 /// A message, and a help text that may be empty.
 type Refusal = (String, String);
 
-fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>) -> Result<Input, Refusal> {
+fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>) -> Result<Input, Refusal> {
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
-        "sampler2D" => sampled(note, name, names),
-        "sampler2DMS" if note.to == Target::Resolve && name == "samples" => Ok(Input::Samples),
-        "sampler2DMS" if note.to == Target::Resolve => {
-            let message = format!("the pass `{}` has no `{name}`", note.name);
+        "sampler2D" => sampled(desc, name, names),
+        "sampler2DMS" if desc.to == Target::Resolve && name == "samples" => Ok(Input::Samples),
+        "sampler2DMS" if desc.to == Target::Resolve => {
+            let message = format!("the pass `{}` has no `{name}`", desc.name);
             Err((message, "it reads the samples of the picture: uniform sampler2DMS samples;".into()))
         }
-        "uniform block" if note.is_built_in() && name != PASS_BLOCK => {
+        "uniform block" if desc.is_built_in() && name != PASS_BLOCK => {
             let message = format!("the uniform block `{name}` has no binding");
             Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
         }
@@ -170,9 +170,9 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
                 "a fragment shader draws to the image of its pass; a .comp file writes it by imageStore".into(),
             ))
         }
-        glsl if glsl.ends_with("image2D") && name == &note.name => written(note, found),
+        glsl if glsl.ends_with("image2D") && name == &desc.name => written(desc, found),
         glsl if glsl.ends_with("image2D") => {
-            let message = format!("`{name}` is not the image of this pass, which is `{}`", note.name);
+            let message = format!("`{name}` is not the image of this pass, which is `{}`", desc.name);
             Err((message, "a pass writes its own image; it reads those of others as `uniform sampler2D`".into()))
         }
         other => match TextureKind::of(other) {
@@ -186,26 +186,26 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
 }
 
 /// The images that Specula gives to a pass, by name.
-fn given(note: &PassNote) -> &'static [(&'static str, Input)] {
-    match note.to {
+fn given(desc: &PassDesc) -> &'static [(&'static str, Input)] {
+    match desc.to {
         Target::Resolve => &[],
         Target::Mean | Target::Display => &[("picture", Input::Picture)],
-        Target::Picture if note.is_drawn_with_model() => &[("behind", Input::Behind)],
+        Target::Picture if desc.is_drawn_with_model() => &[("behind", Input::Behind)],
         Target::Picture | Target::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],
     }
 }
 
-fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refusal> {
-    let given = given(note);
+fn sampled(desc: &PassDesc, name: &str, names: &Names<'_>) -> Result<Input, Refusal> {
+    let given = given(desc);
     if let Some((_, input)) = given.iter().find(|(known, _)| *known == name) {
         return Ok(input.clone());
     }
     match name {
-        "picture" | "depth" if note.is_drawn_with_model() => {
-            let message = format!("`{name}` is not there yet: `{}` is drawn together with the model", note.name);
+        "picture" | "depth" if desc.is_drawn_with_model() => {
+            let message = format!("`{name}` is not there yet: `{}` is drawn together with the model", desc.name);
             Err((message, "a pass with to=picture, without draw=, reads what is drawn so far".into()))
         }
-        name if name == note.name || note.draws(name) => {
+        name if name == desc.name || desc.draws(name) => {
             let message = format!("a pass cannot read the image that it draws, `{name}`");
             Err((message, format!("read `before_{name}`, the image one frame ago")))
         }
@@ -281,7 +281,7 @@ fn not_kept(name: &str) -> Refusal {
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
-    let images = |pass: &PassNote| -> Vec<String> { pass.images().map(|(name, _)| name.to_owned()).collect() };
+    let images = |pass: &PassDesc| -> Vec<String> { pass.images().map(|(name, _)| name.to_owned()).collect() };
     known.extend(names.passes.iter().filter(|pass| pass.to == Target::Image).flat_map(images));
     let kept = names.passes.iter().filter(|pass| pass.keep).flat_map(images);
     known.extend(kept.map(|name| format!("before_{name}")));
@@ -306,8 +306,8 @@ fn buffer(found: &Descriptor) -> Result<Input, Refusal> {
     Ok(Input::Buffer(name.clone(), block.size, found.is_written))
 }
 
-fn written(note: &PassNote, found: &Descriptor) -> Result<Input, Refusal> {
-    if note.mips {
+fn written(desc: &PassDesc, found: &Descriptor) -> Result<Input, Refusal> {
+    if desc.mips {
         let message = "a compute pass writes one level; leave out `mips`".to_owned();
         return Err((message, String::new()));
     }
@@ -321,11 +321,11 @@ fn written(note: &PassNote, found: &Descriptor) -> Result<Input, Refusal> {
         (9, PassFormat::R16f),
     ];
     let declared = formats.iter().find(|(format, _)| *format == found.image_format).map(|(_, format)| *format);
-    if declared == Some(note.format) {
+    if declared == Some(desc.format) {
         return Ok(Input::Output);
     }
-    let message = format!("the image of `{}` has the format {}", note.name, note.format.glsl());
-    Err((message, format!("write `layout({}) uniform image2D {};`", note.format.glsl(), note.name)))
+    let message = format!("the image of `{}` has the format {}", desc.name, desc.format.glsl());
+    Err((message, format!("write `layout({}) uniform image2D {};`", desc.format.glsl(), desc.name)))
 }
 
 /// Errors of passes whose buffer another pass declares with another size.
@@ -339,7 +339,7 @@ pub fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
             if *size != *bytes {
                 let message =
                     format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
-                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
+                errors.push(pass.desc.place.error(message).with_help("declare it once, in a file that both include"));
             }
         }
     }

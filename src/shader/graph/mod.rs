@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::annotation::pass::{MODEL, PassNote};
+use super::annotation::pass::{MODEL, PassDesc};
 use super::annotation::{Annotations, PATHS_STAGE};
 use super::compile::StageKind;
 use super::contract::Texts;
@@ -72,7 +72,7 @@ const DECLARE_A_CONSTANT: &str =
 /// Inputs by their binding in `interface::SET_PASS`.
 pub type Inputs = BTreeMap<u32, Input>;
 
-/// The part of a frame in which a pass is drawn.
+/// The phase of a frame in which a pass is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RenderPhase {
@@ -97,7 +97,7 @@ pub enum RenderPhase {
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct GraphPass {
     /// The parsed `//@pass`.
-    pub note: PassNote,
+    pub desc: PassDesc,
     /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
     /// The stages before the rasterizer, of a pass that is no compute pass.
@@ -116,39 +116,39 @@ pub struct GraphPass {
 impl GraphPass {
     /// The name of the pass and its image.
     pub fn name(&self) -> &str {
-        &self.note.name
+        &self.desc.name
     }
 
     /// The paths of its stages, in the order in which they run.
     pub fn stages(&self) -> impl Iterator<Item = &str> {
         let pre_rasterization = (!self.is_compute).then(|| self.pre_rasterization.stages());
-        pre_rasterization.into_iter().flatten().chain([self.note.stage.as_str()])
+        pre_rasterization.into_iter().flatten().chain([self.desc.stage.as_str()])
     }
 
     /// The purpose that its stages are run for.
     pub fn role(&self) -> StageRole {
         match () {
             () if self.is_compute => StageRole::Compute,
-            () if self.note.quads => StageRole::Quads,
-            () if self.note.stage == PATHS_STAGE => StageRole::Paths,
-            () if self.note.model.is_some() => StageRole::Model,
+            () if self.desc.quads => StageRole::Quads,
+            () if self.desc.stage == PATHS_STAGE => StageRole::Paths,
+            () if self.desc.model.is_some() => StageRole::Model,
             () => StageRole::Screen,
         }
     }
 
     /// Whether this is its name or that of one of its images.
     pub fn is_called(&self, name: &str) -> bool {
-        self.name() == name || self.note.draws(name)
+        self.name() == name || self.desc.draws(name)
     }
 
     /// Whether the user can switch it on and off.
     pub fn has_switch(&self) -> bool {
-        self.note.name == MODEL || !self.note.is_built_in()
+        self.desc.name == MODEL || !self.desc.is_built_in()
     }
 
     /// Whether it draws the model to the picture besides the model's own pass.
     pub fn adds_to_model(&self) -> bool {
-        self.phase == RenderPhase::Model && self.note.model.is_some() && !self.note.is_built_in()
+        self.phase == RenderPhase::Model && self.desc.model.is_some() && !self.desc.is_built_in()
     }
 
     /// Whether its own uniform block has a member of this name.
@@ -162,12 +162,12 @@ impl GraphPass {
     /// Whether it makes a displayed picture without reading the one before.
     pub fn covers(&self) -> bool {
         let reads_picture = || self.inputs.values().any(|input| *input == Input::Picture);
-        self.note.to_picture() && self.phase == RenderPhase::Display && !reads_picture()
+        self.desc.to_picture() && self.phase == RenderPhase::Display && !reads_picture()
     }
 
     /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
     pub fn is_wanted(&self, switched: &BTreeMap<String, bool>) -> bool {
-        switched.get(self.name()).copied().unwrap_or(self.note.on)
+        switched.get(self.name()).copied().unwrap_or(self.desc.on)
     }
 }
 
@@ -205,7 +205,7 @@ impl Graph {
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let kept = with_kept_images(&annotations.passes, stages);
-        let notes: Vec<&PassNote> = kept.iter().filter(|note| stages.contains_key(&note.stage)).collect();
+        let descs: Vec<&PassDesc> = kept.iter().filter(|desc| stages.contains_key(&desc.stage)).collect();
         let names = inputs::Names { passes: &kept, textures: &annotations.textures };
         errors.extend(roles::misplaced(annotations));
         // Without it, the stages are not those of a picture.
@@ -214,12 +214,12 @@ impl Graph {
             errors.extend(roles::undrawn_modes(annotations));
             errors.extend(roles::no_mean(annotations));
         }
-        let model = annotations.passes.iter().find(|note| note.name == MODEL).map(|note| note.stage.as_str());
+        let model = annotations.passes.iter().find(|desc| desc.name == MODEL).map(|desc| desc.stage.as_str());
         let mut passes = Vec::new();
-        for note in notes {
-            let stage = &stages[&note.stage];
+        for desc in descs {
+            let stage = &stages[&desc.stage];
             let is_compute = stage.kind == StageKind::Compute;
-            let mut pre_rasterization = match PreRasterization::find(note, model, snapshot) {
+            let mut pre_rasterization = match PreRasterization::find(desc, model, snapshot) {
                 Ok(pre_rasterization) => pre_rasterization,
                 Err(error) => {
                     errors.push(*error);
@@ -231,38 +231,38 @@ impl Graph {
                 let vertex = &pre_rasterization.vertex;
                 if snapshot.read(&TreePath::from(vertex.as_str())) == Err(SourceError::Missing) {
                     let message =
-                        format!("the pass `{}` needs the vertex stage {vertex}, which does not exist", note.name);
-                    errors.push(note.place.error(message));
+                        format!("the pass `{}` needs the vertex stage {vertex}, which does not exist", desc.name);
+                    errors.push(desc.place.error(message));
                 }
                 continue;
             }
-            if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
-                errors.push(note.place.error_at("when=", message).with_help(DECLARE_A_CONSTANT));
+            if let Some(message) = desc.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
+                errors.push(desc.place.error_at("when=", message).with_help(DECLARE_A_CONSTANT));
             }
-            if let Some((word, message)) = contradiction(note, stage.kind) {
-                errors.push(note.place.error_at(word, message));
+            if let Some((word, message)) = contradiction(desc, stage.kind) {
+                errors.push(desc.place.error_at(word, message));
                 continue;
             }
             errors.extend(pre_rasterization.connect(stages).err().map(|error| *error));
-            if note.quads && !matches!(pre_rasterization.takes, None | Some(Primitive::Triangles)) {
-                let message = format!("the pass `{}` draws quads of two triangles each", note.name);
+            if desc.quads && !matches!(pre_rasterization.takes, None | Some(Primitive::Triangles)) {
+                let message = format!("the pass `{}` draws quads of two triangles each", desc.name);
                 errors.push(
-                    note.place
+                    desc.place
                         .error_at("draw=", message)
                         .with_help("write `layout(triangles) in;` in its geometry stage"),
                 );
                 continue;
             }
-            errors.extend(roles::wrong_outputs(note, stage));
+            errors.extend(roles::wrong_outputs(desc, stage));
             let pre_rasterization_stages = pre_rasterization.stages().filter(|_| !is_compute).map(|path| &stages[path]);
-            let inputs = inputs::inputs_of(note, pre_rasterization_stages.chain([stage]), &names);
-            match inputs.map(|inputs| inputs::without_dead(inputs, note, stage)) {
+            let inputs = inputs::inputs_of(desc, pre_rasterization_stages.chain([stage]), &names);
+            match inputs.map(|inputs| inputs::without_dead(inputs, desc, stage)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
-                    note: note.clone(),
+                    desc: desc.clone(),
                     is_compute,
                     pre_rasterization,
-                    phase: roles::phase(note),
+                    phase: roles::phase(desc),
                     inputs,
                     local_size: stage.reflection.local_size,
                 }),
@@ -274,8 +274,8 @@ impl Graph {
         let used: BTreeSet<(&str, TextureKind)> = inputs.filter_map(texture_of).collect();
         let mut textures = BTreeMap::new();
         for (name, kind) in used {
-            let Some(note) = annotations.textures.iter().find(|note| note.name == name) else { continue };
-            match read_texture(note, kind, snapshot) {
+            let Some(desc) = annotations.textures.iter().find(|desc| desc.name == name) else { continue };
+            match read_texture(desc, kind, snapshot) {
                 Ok(texture) => {
                     textures.insert((name.to_owned(), kind), Arc::new(texture));
                 }
@@ -296,7 +296,7 @@ impl Graph {
 
     /// The pass that draws this image.
     pub fn maker(&self, image: &str) -> Option<&Arc<GraphPass>> {
-        self.passes.iter().find(|pass| pass.note.draws(image))
+        self.passes.iter().find(|pass| pass.desc.draws(image))
     }
 
     /// Whether another pass reads the image of the pass with this name.
@@ -355,9 +355,9 @@ impl Graph {
     /// The passes that write an input.
     fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
         // The built-in steps and the passes that add to the model are drawn for their own sake, not for a buffer that they declare.
-        let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.is_drawn_with_model();
+        let is_maker = |pass: &GraphPass| !pass.desc.is_built_in() && !pass.desc.is_drawn_with_model();
         let shares = move |pass: &GraphPass| match input {
-            Input::Image(name) | Input::Before(name) => pass.note.draws(name),
+            Input::Image(name) | Input::Before(name) => pass.desc.draws(name),
             // Stages before the rasterizer only read.
             Input::Buffer(name, ..) => {
                 let mut inputs = pass.inputs.range(..VERTEX_BINDINGS);
@@ -370,18 +370,18 @@ impl Graph {
 
     fn makes_picture(&self, index: usize, is_on: impl Fn(usize) -> bool) -> bool {
         let pass = &self.passes[index];
-        let is_own = !pass.note.is_drawn_with_model() || pass.adds_to_model();
-        pass.note.to_picture() && is_own && is_on(index)
+        let is_own = !pass.desc.is_drawn_with_model() || pass.adds_to_model();
+        pass.desc.to_picture() && is_own && is_on(index)
     }
 }
 
 /// The passes, of which those keep their images that a stage reads one frame later, whether they say so or not.
-fn with_kept_images(passes: &[PassNote], stages: &BTreeMap<String, PassStage<'_>>) -> Vec<PassNote> {
-    let is_read_later = |note: &PassNote| {
+fn with_kept_images(passes: &[PassDesc], stages: &BTreeMap<String, PassStage<'_>>) -> Vec<PassDesc> {
+    let is_read_later = |desc: &PassDesc| {
         let mut found = stages.values().flat_map(|stage| &stage.reflection.descriptors);
-        found.any(|found| read_later(&found.name).is_some_and(|image| note.draws(image)))
+        found.any(|found| read_later(&found.name).is_some_and(|image| desc.draws(image)))
     };
-    passes.iter().map(|note| PassNote { keep: note.keep || is_read_later(note), ..note.clone() }).collect()
+    passes.iter().map(|desc| PassDesc { keep: desc.keep || is_read_later(desc), ..desc.clone() }).collect()
 }
 
 /// The texture that an input reads.

@@ -30,7 +30,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     for phase in [RenderPhase::BeforeModel, RenderPhase::Model, RenderPhase::Resolve, RenderPhase::Mean, RenderPhase::Light, RenderPhase::Tonemap, RenderPhase::Display] {
         let in_phase = |at: &usize| passes[*at].phase == phase;
         let (makers, others): (Vec<usize>, Vec<usize>) =
-            (0..passes.len()).filter(in_phase).partition(|at| passes[*at].note.to_picture());
+            (0..passes.len()).filter(in_phase).partition(|at| passes[*at].desc.to_picture());
         for at in makers.into_iter().chain(others) {
             order.emit(at, &mut Vec::new()).map_err(|error| vec![*error])?;
         }
@@ -42,7 +42,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
 
 /// The names of a pass and of its images.
 fn names(pass: &GraphPass) -> impl Iterator<Item = String> {
-    std::iter::once(pass.name().to_owned()).chain(pass.note.also.iter().map(|(name, _)| name.clone()))
+    std::iter::once(pass.name().to_owned()).chain(pass.desc.also.iter().map(|(name, _)| name.clone()))
 }
 
 /// A pass that follows the tone map, or reads the image of a pass that does, is drawn after the tone map itself.
@@ -53,7 +53,7 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
             let follows =
                 |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].phase == RenderPhase::Display);
             let reads = images(&passes[at].inputs).any(follows);
-            let after = passes[at].note.after.as_deref().is_some_and(follows);
+            let after = passes[at].desc.after.as_deref().is_some_and(follows);
             if (reads || after) && passes[at].phase == RenderPhase::Light {
                 passes[at].phase = RenderPhase::Display;
                 changed = true;
@@ -69,13 +69,13 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
     let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
     for reader in readers {
         let is_model = reader.phase <= RenderPhase::Mean;
-        let path = &reader.note.stage;
+        let path = &reader.desc.stage;
         let mut open: Vec<usize> = images(&reader.inputs).filter_map(|name| index.get(name).copied()).collect();
         while let Some(at) = open.pop() {
             let pass = &mut passes[at];
             let refusal = if pass.phase == RenderPhase::Display {
                 Some("it comes after the tone map")
-            } else if is_model && pass.note.to_picture() {
+            } else if is_model && pass.desc.to_picture() {
                 Some("the model is drawn after it, so it cannot change the picture")
             } else if is_model && pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth)) {
                 Some("the model is drawn after it, so there is no `picture` and no `depth` yet")
@@ -84,7 +84,7 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
             };
             if let Some(reason) = refusal {
                 let message = format!("{path} needs the image of the pass `{}`, but {reason}", pass.name());
-                let error = pass.note.place.error_at(pass.name(), message);
+                let error = pass.desc.place.error_at(pass.name(), message);
                 errors.push(error.with_help("a pass with draw=model can draw depth and normals before the model"));
                 continue;
             }
@@ -118,7 +118,7 @@ fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, u
         let can_be_first = |at: &usize| {
             let pass = &passes[*at];
             let reads_picture = pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth));
-            pass.phase == RenderPhase::BeforeModel || (pass.phase == RenderPhase::Light && !pass.note.to_picture() && !reads_picture)
+            pass.phase == RenderPhase::BeforeModel || (pass.phase == RenderPhase::Light && !pass.desc.to_picture() && !reads_picture)
         };
         if needed.iter().all(can_be_first) {
             needed.into_iter().for_each(|at| passes[at].phase = RenderPhase::BeforeModel);
@@ -153,7 +153,7 @@ fn reached(from: usize, next: impl Fn(usize) -> Vec<usize>) -> BTreeSet<usize> {
 
 /// The passes that a pass names: those of the images that it reads, and that of `after=`.
 fn needs(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Vec<usize> {
-    let names = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
+    let names = pass.desc.after.as_deref().into_iter().chain(images(&pass.inputs));
     names.filter_map(|name| index.get(name).copied()).collect()
 }
 
@@ -166,9 +166,9 @@ fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {
 }
 
 fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
-    let name = pass.note.after.as_deref()?;
+    let name = pass.desc.after.as_deref()?;
     if name == pass.name() {
-        let error = pass.note.place.error_at("after=", format!("the pass `{name}` cannot come after itself"));
+        let error = pass.desc.place.error_at("after=", format!("the pass `{name}` cannot come after itself"));
         return Some(error.with_help("leave out after=: the order follows from what a pass reads"));
     }
     if name == TONEMAP || index.contains_key(name) {
@@ -176,13 +176,13 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
     }
     let known: Vec<&str> = index.keys().map(String::as_str).filter(|known| *known != pass.name()).collect();
     let hint = did_you_mean(name, known.iter().copied());
-    let error = pass.note.place.error_at("after=", format!("no pass is named `{name}`.{hint}"));
+    let error = pass.desc.place.error_at("after=", format!("no pass is named `{name}`.{hint}"));
     Some(error.with_help(format!("there are {}", known.join(", "))))
 }
 
 /// An error if a pass is drawn in an earlier part of the frame than the pass that its `after=` names.
 fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
-    let other = &passes[*index.get(pass.note.after.as_deref()?)?];
+    let other = &passes[*index.get(pass.desc.after.as_deref()?)?];
     if other.phase <= pass.phase {
         return None;
     }
@@ -192,7 +192,7 @@ fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, 
         _ => "before the tone map",
     };
     let message = format!("`{}` is drawn {when}, so it cannot come after `{}`", pass.name(), other.name());
-    Some(pass.note.place.error_at("after=", message))
+    Some(pass.desc.place.error_at("after=", message))
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -241,7 +241,7 @@ impl Order<'_> {
         let names: Vec<&str> = path[start..].iter().chain([&at]).map(|at| self.passes[*at].name()).collect();
         let pass = &self.passes[at];
         let message = format!("each of these passes waits for the next: {}", names.join(" -> "));
-        let error = pass.note.place.error_at(pass.name(), message);
+        let error = pass.desc.place.error_at(pass.name(), message);
         let help = format!("let one of them read an image of the frame before, `before_{}`", pass.name());
         Box::new(error.with_help(help))
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::{FULL_SCREEN, PassStage};
-use crate::shader::annotation::pass::PassNote;
+use crate::shader::annotation::pass::PassDesc;
 use crate::shader::compile::StageKind;
 use crate::shader::contract::{Texts, check_pair};
 use crate::shader::diagnostic::Diagnostic;
@@ -63,25 +63,25 @@ impl PreRasterization {
     /// - A pass that draws quads has no vertex stage, or a stage that reads what only a model has.
     /// - One that draws neither has another stage than a vertex stage.
     /// - A stage lacks the one that it needs beside it, or has one beside it that a mesh pipeline does not have.
-    pub(super) fn find(note: &PassNote, model: Option<&str>, snapshot: &Snapshot<'_>) -> Result<Self, Box<Diagnostic>> {
+    pub(super) fn find(desc: &PassDesc, model: Option<&str>, snapshot: &Snapshot<'_>) -> Result<Self, Box<Diagnostic>> {
         let own = |stage: &str, kind| Some(stage_beside(stage, kind)).filter(|path| exists(path, snapshot));
-        let has_own = StageKind::PRE_RASTERIZATION.iter().any(|kind| own(&note.stage, *kind).is_some());
-        let (stage, model) = match (note.draws_model(), model) {
-            (true, Some(model)) => (if has_own { &note.stage } else { model }, Some(model)),
-            _ => (note.stage.as_str(), None),
+        let has_own = StageKind::PRE_RASTERIZATION.iter().any(|kind| own(&desc.stage, *kind).is_some());
+        let (stage, model) = match (desc.draws_model(), model) {
+            (true, Some(model)) => (if has_own { &desc.stage } else { model }, Some(model)),
+            _ => (desc.stage.as_str(), None),
         };
         let [vertex, control, evaluation, geometry, task, mesh] =
             StageKind::PRE_RASTERIZATION.map(|kind| own(stage, kind));
-        if note.model.is_none()
+        if desc.model.is_none()
             && let Some(path) = [&control, &evaluation, &geometry, &task, &mesh].into_iter().flatten().next()
         {
-            let (name, kind) = (&note.name, stage_name(path));
+            let (name, kind) = (&desc.name, stage_name(path));
             let message = format!("the pass `{name}` draws no model, so it has no {kind} stage");
-            let help = format!("write draw=model in the //@pass of {}, or delete this file", note.stage);
+            let help = format!("write draw=model in the //@pass of {}, or delete this file", desc.stage);
             return Err(Box::new(at_main(path, message, snapshot).with_help(help)));
         }
-        if note.quads {
-            check_quads(note, vertex.as_deref(), mesh.as_deref().or(task.as_deref()), snapshot)?;
+        if desc.quads {
+            check_quads(desc, vertex.as_deref(), mesh.as_deref().or(task.as_deref()), snapshot)?;
         }
         let vertex = vertex.or_else(|| model.map(|model| stage_beside(model, StageKind::Vertex)));
         let tessellation = match (control, evaluation) {
@@ -210,22 +210,22 @@ fn exists(path: &str, snapshot: &Snapshot<'_>) -> bool {
 
 /// Holds the stages of a pass with draw=quads against what it offers: `vertex` and `mesh` lie beside its stage.
 fn check_quads(
-    note: &PassNote,
+    desc: &PassDesc,
     vertex: Option<&str>,
     mesh: Option<&str>,
     snapshot: &Snapshot<'_>,
 ) -> Result<(), Box<Diagnostic>> {
-    let name = &note.name;
+    let name = &desc.name;
     if let Some(path) = mesh {
         let message = format!("the pass `{name}` draws quads, so it has no {} stage", stage_name(path));
         let help = "write draw=model in its //@pass: a mesh stage makes its own vertices";
         return Err(Box::new(at_main(path, message, snapshot).with_help(help)));
     }
     if vertex.is_none() {
-        let stage = stage_beside(&note.stage, StageKind::Vertex);
+        let stage = stage_beside(&desc.stage, StageKind::Vertex);
         let message = format!("the pass `{name}` draws quads, so it needs a vertex stage that places them, {stage}");
         let help = "gl_VertexIndex is 0 to 5, the corners of two triangles; gl_InstanceIndex is the number of the quad";
-        return Err(Box::new(note.place.error_at("draw=", message).with_help(help)));
+        return Err(Box::new(desc.place.error_at("draw=", message).with_help(help)));
     }
     Ok(())
 }

@@ -6,18 +6,18 @@ use std::collections::BTreeSet;
 use super::{RenderPhase, PassStage};
 use crate::message::did_you_mean;
 use crate::shader::annotation::Annotations;
-use crate::shader::annotation::pass::{MODEL, PassNote, TONEMAP, Target};
+use crate::shader::annotation::pass::{MODEL, PassDesc, TONEMAP, Target};
 use crate::shader::compile::StageKind;
 use crate::shader::contract::check_fragment_outputs;
 use crate::shader::diagnostic::Diagnostic;
 
 /// The part of the frame that an annotation itself determines.
-pub(super) fn phase(note: &PassNote) -> RenderPhase {
-    match note.to {
+pub(super) fn phase(desc: &PassDesc) -> RenderPhase {
+    match desc.to {
         Target::Resolve => RenderPhase::Resolve,
         Target::Mean => RenderPhase::Mean,
         Target::Display => RenderPhase::Tonemap,
-        Target::Picture if note.is_drawn_with_model() => RenderPhase::Model,
+        Target::Picture if desc.is_drawn_with_model() => RenderPhase::Model,
         Target::Picture | Target::Image => RenderPhase::Light,
     }
 }
@@ -25,15 +25,15 @@ pub(super) fn phase(note: &PassNote) -> RenderPhase {
 /// Errors of passes with a name or an option that belongs to another kind of pass.
 pub(super) fn misplaced(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
     let passes = &annotations.passes;
-    passes.iter().filter_map(|note| {
-        let (word, message) = misplacement(note, passes)?;
-        Some(note.place.error_at(word, message))
+    passes.iter().filter_map(|desc| {
+        let (word, message) = misplacement(desc, passes)?;
+        Some(desc.place.error_at(word, message))
     })
 }
 
 /// Errors about passes that a picture needs and no stage declares. `tree`: the name of the tree.
-pub fn missing_passes(passes: &[PassNote], tree: &str) -> Vec<Diagnostic> {
-    let is_missing = |name: &str| passes.iter().all(|note| note.name != name);
+pub fn missing_passes(passes: &[PassDesc], tree: &str) -> Vec<Diagnostic> {
+    let is_missing = |name: &str| passes.iter().all(|desc| desc.name != name);
     let needed = [(MODEL, "draw=model to=picture"), (TONEMAP, "to=display")];
     let missing = needed.into_iter().filter(|(name, _)| is_missing(name));
     let error = |(name, options): (&str, &str)| {
@@ -45,25 +45,25 @@ pub fn missing_passes(passes: &[PassNote], tree: &str) -> Vec<Diagnostic> {
 }
 
 /// Errors of a fragment stage whose outputs are not the images of its pass.
-pub(super) fn wrong_outputs(note: &PassNote, stage: &PassStage<'_>) -> Vec<Diagnostic> {
+pub(super) fn wrong_outputs(desc: &PassDesc, stage: &PassStage<'_>) -> Vec<Diagnostic> {
     if stage.kind != StageKind::Fragment {
         return Vec::new();
     }
-    if note.also.is_empty() {
+    if desc.also.is_empty() {
         return check_fragment_outputs(&stage.reflection.outputs, stage.texts);
     }
     let outputs = &stage.reflection.outputs;
     let mut errors = Vec::new();
-    for (location, (name, _)) in (0..).zip(note.images()) {
+    for (location, (name, _)) in (0..).zip(desc.images()) {
         let found = outputs.iter().find(|output| output.location == location);
         // The first output may have any name.
         if !found.is_some_and(|output| output.type_name == "vec4" && (location == 0 || output.name == name)) {
             let message = format!("the pass draws the image `{name}`, but its stage has no output for it");
             let help = format!("write `layout(location = {location}) out vec4 {name};`");
-            errors.push(note.place.error_at(name, message).with_help(help));
+            errors.push(desc.place.error_at(name, message).with_help(help));
         }
     }
-    for output in outputs.iter().filter(|output| output.location as usize > note.also.len()) {
+    for output in outputs.iter().filter(|output| output.location as usize > desc.also.len()) {
         let message = format!("the pass has no image for the output at location {}", output.location);
         let error = stage.texts.error(&[output.name.as_str(), "out"], message);
         errors.push(error.with_help(format!("add `{}` to its also=", output.name)));
@@ -74,7 +74,7 @@ pub(super) fn wrong_outputs(note: &PassNote, stage: &PassStage<'_>) -> Vec<Diagn
 /// An error about the first debug mode that accumulates, if no pass makes the mean.
 pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
     let mode = annotations.modes.iter().find(|mode| mode.accumulate)?;
-    if annotations.passes.iter().any(|note| note.to == Target::Mean) {
+    if annotations.passes.iter().any(|desc| desc.to == Target::Mean) {
         return None;
     }
     let message = format!("the mode `{}` accumulates, but no stage declares a pass with to=mean", mode.slug);
@@ -84,8 +84,8 @@ pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
 
 /// Errors about debug modes whose stage no pass draws the model with, one for each stage.
 pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
-    let draws = |note: &&PassNote| note.is_drawn_with_model() && note.is_built_in();
-    let known: Vec<&str> = annotations.passes.iter().filter(draws).map(|note| note.stage.as_str()).collect();
+    let draws = |desc: &&PassDesc| desc.is_drawn_with_model() && desc.is_built_in();
+    let known: Vec<&str> = annotations.passes.iter().filter(draws).map(|desc| desc.stage.as_str()).collect();
     let mut told = BTreeSet::new();
     annotations.modes.iter().filter_map(move |mode| {
         if known.contains(&mode.stage.as_str()) || !told.insert(&mode.stage) {
@@ -100,23 +100,23 @@ pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = D
 }
 
 /// The word of an annotation that is wrong, and a message.
-fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str, String)> {
-    let draws_model = note.draws_model() && note.to_picture();
-    let name = note.name.as_str();
+fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str, String)> {
+    let draws_model = desc.draws_model() && desc.to_picture();
+    let name = desc.name.as_str();
     match name {
         MODEL if !draws_model => {
             return Some((name, format!("the pass `{MODEL}` draws the model: draw=model to=picture")));
         }
-        TONEMAP if note.to != Target::Display => {
+        TONEMAP if desc.to != Target::Display => {
             return Some((name, format!("the pass `{TONEMAP}` brings the picture to the display: to=display")));
         }
         _ => {}
     }
-    if note.is_built_in() && (!note.on || note.when.is_some()) {
+    if desc.is_built_in() && (!desc.on || desc.when.is_some()) {
         let message = format!("the pass `{name}` is a step of every picture, so off and when= do not go with it");
-        return Some((if note.on { "when=" } else { "off" }, message));
+        return Some((if desc.on { "when=" } else { "off" }, message));
     }
-    if note.to == Target::Display && name != TONEMAP {
+    if desc.to == Target::Display && name != TONEMAP {
         let message =
             format!("only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}");
         return Some(("to=", message));
@@ -125,21 +125,21 @@ fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str,
         (Target::Mean, "there is another pass with to=mean; one pass makes the mean of all frames"),
         (Target::Resolve, "there is another pass with to=resolve; one pass makes a color from a pixel's samples"),
     ] {
-        let is_other = |other: &PassNote| other.to == to && other.name < note.name;
-        if note.to == to && passes.iter().any(is_other) {
+        let is_other = |other: &PassDesc| other.to == to && other.name < desc.name;
+        if desc.to == to && passes.iter().any(is_other) {
             return Some(("to=", message.into()));
         }
     }
-    let covers = matches!(note.to, Target::Resolve | Target::Mean | Target::Display);
-    if covers && note.model.is_some() {
+    let covers = matches!(desc.to, Target::Resolve | Target::Mean | Target::Display);
+    if covers && desc.model.is_some() {
         let message = format!("the pass `{name}` covers the picture, so draw= and instances= do not go with it");
         return Some(("to=", message));
     }
-    if note.background && !note.to_picture() {
+    if desc.background && !desc.to_picture() {
         let message = "the background lies behind the model in the picture: draw=background to=picture";
         return Some(("draw=", message.into()));
     }
-    match note.instead.as_deref() {
+    match desc.instead.as_deref() {
         Some(MODEL) if !draws_model || name == MODEL => {
             let message = format!("a pass with instead={MODEL} draws the model as well: draw=model to=picture");
             Some(("instead=", message))

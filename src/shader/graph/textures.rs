@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::shader::annotation::texture::TextureNote;
+use crate::shader::annotation::texture::TextureDesc;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::pattern::{FACES, Pattern};
 use crate::shader::source::snapshot::Snapshot;
@@ -62,24 +62,24 @@ pub struct Texture {
     /// Its files, at least one: with a `*` six faces in the order +X -X +Y -Y +Z -Z, or all layers or slices.
     pub files: Vec<TextureFile>,
     /// The parsed `//@texture`.
-    pub note: TextureNote,
+    pub desc: TextureDesc,
 }
 
 impl Texture {
     /// Whether its only file is a table of colors.
     pub fn is_table(&self) -> bool {
-        is_table(&self.note)
+        is_table(&self.desc)
     }
 }
 
 impl std::fmt::Debug for Texture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Texture").field("name", &self.note.name).field("kind", &self.kind).finish_non_exhaustive()
+        f.debug_struct("Texture").field("name", &self.desc.name).field("kind", &self.kind).finish_non_exhaustive()
     }
 }
 
-fn is_table(note: &TextureNote) -> bool {
-    note.image.rsplit_once('.').is_some_and(|(_, extension)| extension.eq_ignore_ascii_case("cube"))
+fn is_table(desc: &TextureDesc) -> bool {
+    desc.image.rsplit_once('.').is_some_and(|(_, extension)| extension.eq_ignore_ascii_case("cube"))
 }
 
 /// Finds and reads the files of a texture.
@@ -88,27 +88,27 @@ fn is_table(note: &TextureNote) -> bool {
 /// The annotation does not fit the kind, or a file does not exist, cannot be read, or lies outside of the tree: at the line of
 /// the annotation.
 pub(super) fn read_texture(
-    note: &TextureNote,
+    desc: &TextureDesc,
     kind: TextureKind,
     snapshot: &Snapshot<'_>,
 ) -> Result<Texture, Box<Diagnostic>> {
-    let refuse = |message: String| Box::new(note.place.error_at(&note.image, message));
-    if let Some((message, help)) = contradiction(note, kind) {
-        let word = if note.layers.is_some() { "layers=" } else { note.image.as_str() };
-        return Err(Box::new(note.place.error_at(word, message).with_help(help)));
+    let refuse = |message: String| Box::new(desc.place.error_at(&desc.image, message));
+    if let Some((message, help)) = contradiction(desc, kind) {
+        let word = if desc.layers.is_some() { "layers=" } else { desc.image.as_str() };
+        return Err(Box::new(desc.place.error_at(word, message).with_help(help)));
     }
-    let beside = TreePath::from(note.declared_in.as_str()).sibling(&note.image);
-    let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&note.image)).collect();
+    let beside = TreePath::from(desc.declared_in.as_str()).sibling(&desc.image);
+    let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&desc.image)).collect();
     candidates.dedup();
     if candidates.is_empty() {
-        return Err(refuse(format!("\"{}\" leaves the shader tree; images must stay inside its root", note.image)));
+        return Err(refuse(format!("\"{}\" leaves the shader tree; images must stay inside its root", desc.image)));
     }
-    let paths = match Pattern::of(&note.image) {
+    let paths = match Pattern::of(&desc.image) {
         None => candidates.clone(),
-        Some(pattern) if kind == TextureKind::Cube => faces(note, pattern, &candidates, snapshot).map_err(refuse)?,
-        Some(pattern) => parts(note, pattern, &candidates, snapshot).map_err(refuse)?,
+        Some(pattern) if kind == TextureKind::Cube => faces(desc, pattern, &candidates, snapshot).map_err(refuse)?,
+        Some(pattern) => parts(desc, pattern, &candidates, snapshot).map_err(refuse)?,
     };
-    let is_pattern = Pattern::of(&note.image).is_some();
+    let is_pattern = Pattern::of(&desc.image).is_some();
     let read = |path: &TreePath| {
         let shown = snapshot.display_path(path);
         match snapshot.source().read_bytes(path) {
@@ -121,9 +121,9 @@ pub(super) fn read_texture(
     let most = if is_pattern { paths.len() } else { 1 };
     let files: Vec<TextureFile> = paths.iter().filter_map(read).take(most).collect::<Result<_, _>>()?;
     if files.is_empty() {
-        return Err(refuse(format!("\"{}\" not found; looked for {}", note.image, shown(&candidates, snapshot))));
+        return Err(refuse(format!("\"{}\" not found; looked for {}", desc.image, shown(&candidates, snapshot))));
     }
-    Ok(Texture { kind, files, note: note.clone() })
+    Ok(Texture { kind, files, desc: desc.clone() })
 }
 
 fn shown(paths: &[TreePath], snapshot: &Snapshot<'_>) -> String {
@@ -132,22 +132,22 @@ fn shown(paths: &[TreePath], snapshot: &Snapshot<'_>) -> String {
 }
 
 /// A message and a help text if the options of an annotation do not fit the kind of the texture.
-fn contradiction(note: &TextureNote, kind: TextureKind) -> Option<(String, String)> {
-    let (name, glsl) = (&note.name, kind.glsl());
-    let stars = note.image.matches('*').count();
+fn contradiction(desc: &TextureDesc, kind: TextureKind) -> Option<(String, String)> {
+    let (name, glsl) = (&desc.name, kind.glsl());
+    let stars = desc.image.matches('*').count();
     let told = |message: String, help: &str| Some((message, help.to_owned()));
-    if stars > 1 || (stars == 1 && Pattern::of(&note.image).is_none()) {
-        let message = format!("\"{}\": expected one `*`, in the name of the file", note.image);
+    if stars > 1 || (stars == 1 && Pattern::of(&desc.image).is_none()) {
+        let message = format!("\"{}\": expected one `*`, in the name of the file", desc.image);
         return told(message, "the name of a folder is written out");
     }
-    let several = [note.layers.map(|count| format!("layers={count}")), (stars == 1).then(|| "a `*`".to_owned())];
+    let several = [desc.layers.map(|count| format!("layers={count}")), (stars == 1).then(|| "a `*`".to_owned())];
     let several: Vec<String> = several.into_iter().flatten().collect();
     match (kind, several.as_slice()) {
         (TextureKind::Flat, [what, ..]) => told(
             format!("`{name}` has {what}, but it is declared as sampler2D, which reads one picture"),
             "declare it as sampler2DArray, sampler3D or, for six faces, samplerCube",
         ),
-        (TextureKind::Cube, [what, ..]) if note.layers.is_some() => told(
+        (TextureKind::Cube, [what, ..]) if desc.layers.is_some() => told(
             format!("`{name}` has {what}, but it is declared as samplerCube, which has six faces"),
             "name six files with a `*`, or one file that holds all faces",
         ),
@@ -155,10 +155,10 @@ fn contradiction(note: &TextureNote, kind: TextureKind) -> Option<(String, Strin
             format!("`{name}` has layers= and a `*`"),
             "use layers= for one file that holds all of them, or a `*` for a file each",
         ),
-        (TextureKind::Volume, [what]) if is_table(note) => {
+        (TextureKind::Volume, [what]) if is_table(desc) => {
             told(format!("`{name}` has {what}, but a .cube file has a size of its own"), "leave that out")
         }
-        (TextureKind::Cube | TextureKind::Array, _) if is_table(note) => told(
+        (TextureKind::Cube | TextureKind::Array, _) if is_table(desc) => told(
             format!("`{name}` is declared as {glsl}, but a .cube file is a table of colors"),
             "declare it as sampler3D, or as sampler2D, which sees its slices side by side",
         ),
@@ -183,7 +183,7 @@ fn matching(pattern: Pattern<'_>, path: &TreePath, snapshot: &Snapshot<'_>) -> B
 
 /// The six faces of a cube map. The first complete set of names counts.
 fn faces(
-    note: &TextureNote,
+    desc: &TextureDesc,
     pattern: Pattern<'_>,
     candidates: &[TreePath],
     snapshot: &Snapshot<'_>,
@@ -209,25 +209,25 @@ fn faces(
         let sets = sets.join(", or ");
         return Err(format!(
             "no face of \"{}\" found; looked for {looked} with {sets} in place of the `*`",
-            note.image
+            desc.image
         ));
     }
     let is_there = |part: &str| folders.iter().any(|found| found.get(part).is_some_and(|path| paths.contains(path)));
     let missing: Vec<String> = set.iter().filter(|part| !is_there(part)).map(|part| pattern.with(part)).collect();
-    Err(format!("\"{}\" has no {}; expected the six faces {}", note.image, missing.join(", no "), set.join(" ")))
+    Err(format!("\"{}\" has no {}; expected the six faces {}", desc.image, missing.join(", no "), set.join(" ")))
 }
 
 /// The files of layers or slices, in the order of what is in place of the `*`: numbers by their value, then others by the
 /// alphabet.
 fn parts(
-    note: &TextureNote,
+    desc: &TextureDesc,
     pattern: Pattern<'_>,
     candidates: &[TreePath],
     snapshot: &Snapshot<'_>,
 ) -> Result<Vec<TreePath>, String> {
     let found = candidates.iter().map(|path| matching(pattern, path, snapshot)).find(|found| !found.is_empty());
     let Some(found) = found else {
-        return Err(format!("no file matches \"{}\"; looked for {}", note.image, shown(candidates, snapshot)));
+        return Err(format!("no file matches \"{}\"; looked for {}", desc.image, shown(candidates, snapshot)));
     };
     let mut found: Vec<(String, TreePath)> = found.into_iter().collect();
     found.sort_by_cached_key(|(part, _)| {

@@ -202,8 +202,8 @@ fn silent_members(
         let message =
             format!("`{name}` in a uniform block of the pass `{}` has no //@ui, so it reads as 0", pass.name());
         let help = format!("write it on a line of its own: `float {name}; //@ui \"Label\" 0..1 = 0.5`");
-        let at = stages.get(&pass.note.stage).map(|stage| stage.texts.error(&[name.as_str()], message.clone()));
-        let at = at.unwrap_or_else(|| pass.note.place.error(message));
+        let at = stages.get(&pass.desc.stage).map(|stage| stage.texts.error(&[name.as_str()], message.clone()));
+        let at = at.unwrap_or_else(|| pass.desc.place.error(message));
         Diagnostic { severity: Severity::Warning, ..at }.with_help(help)
     };
     silent.map(warning).collect()
@@ -212,9 +212,9 @@ fn silent_members(
 /// Errors of a pass with a stage that reads what the stage before it does not write.
 fn unlike_stages(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> Vec<Diagnostic> {
     let errors = unlike_neighbors(pass.stages(), stages);
-    let Some(fragment) = stages.get(&pass.note.stage) else { return errors };
+    let Some(fragment) = stages.get(&pass.desc.stage) else { return errors };
     let covering = fragment.texts.snapshot.display_path(&TreePath::from(COVERING));
-    let is_about = |error: &Diagnostic| pass.note.draws_model() && error.file == covering;
+    let is_about = |error: &Diagnostic| pass.desc.draws_model() && error.file == covering;
     match errors.iter().any(is_about).then(|| includes_covering(pass, fragment.texts)) {
         Some(error) => errors.into_iter().filter(|error| !is_about(error)).chain([error]).collect(),
         None => errors,
@@ -237,8 +237,8 @@ fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
     let found = lines(&text).into_iter().find_map(|line| {
         let is_include = line.code.trim_start().starts_with('#') && line.code.contains("include");
         let at = line.code.find(COVERING).filter(|_| is_include)?;
-        let error = Diagnostic::error(&pass.note.place.file, message.clone());
+        let error = Diagnostic::error(&pass.desc.place.file, message.clone());
         Some(error.on_line(line.number, Some(line.raw)).under(at..at + COVERING.len()))
     });
-    found.unwrap_or_else(|| pass.note.place.error_at("draw=", message)).with_help(help)
+    found.unwrap_or_else(|| pass.desc.place.error_at("draw=", message)).with_help(help)
 }

@@ -7,7 +7,7 @@ use super::beside::{fragment_of, may_be_beside};
 use super::slot::Slot;
 use super::{Change, Library};
 use crate::interface;
-use crate::shader::annotation::pass::{MODEL, PassNote, Target};
+use crate::shader::annotation::pass::{MODEL, PassDesc, Target};
 use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
@@ -70,7 +70,7 @@ impl Library {
         let stages = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
         let replaces = |path: &&TreePath| {
             snapshot.read(path).is_ok_and(|text| text.contains("instead"))
-                && annotation::passes_of(snapshot, path).any(|note| note.instead.is_some())
+                && annotation::passes_of(snapshot, path).any(|desc| desc.instead.is_some())
         };
         stages.filter(replaces).cloned().collect()
     }
@@ -80,9 +80,9 @@ impl Library {
         if self.slots.iter().take(self.fixed).all(|slot| slot.path.as_str() != FULL_SCREEN) {
             return Vec::new();
         }
-        let notes: Vec<PassNote> =
+        let descs: Vec<PassDesc> =
             self.slots.iter().flat_map(|slot| annotation::passes_of(snapshot, &slot.path)).collect();
-        missing_passes(&notes, &snapshot.source().name())
+        missing_passes(&descs, &snapshot.source().name())
     }
 
     /// The stages of passes that are off unless the user switches them on, and of passes that only these read.
@@ -100,12 +100,12 @@ impl Library {
             .collect();
         let (mut off, mut on) = (BTreeSet::new(), Vec::new());
         for path in stages.clone().map(fragment_of) {
-            for note in annotation::passes_of(snapshot, &path) {
+            for desc in annotation::passes_of(snapshot, &path) {
                 let is_switched_off = |name: &String| texts.iter().any(|(_, text)| is_zero(text, name));
-                match !note.on || note.when.as_ref().is_some_and(is_switched_off) {
+                match !desc.on || desc.when.as_ref().is_some_and(is_switched_off) {
                     true => drop(off.insert(path.clone())),
-                    false if note.to != Target::Image => {}
-                    false => on.push((path.clone(), note.images().map(|(name, _)| name.to_owned()).collect())),
+                    false if desc.to != Target::Image => {}
+                    false => on.push((path.clone(), desc.images().map(|(name, _)| name.to_owned()).collect())),
                 }
             }
         }
@@ -223,23 +223,23 @@ fn doc_of_output(stage: &str, name: &str, snapshot: &Snapshot<'_>) -> String {
 
 /// A debug mode for each image of a pass.
 pub(super) fn modes_of(graph: &Graph, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Mode> {
-    let shown = graph.passes.iter().filter(|pass| !pass.note.is_drawn_with_model() && !pass.note.is_built_in());
-    let images = shown.flat_map(|pass| pass.note.images().map(move |(name, _)| (pass, name)));
+    let shown = graph.passes.iter().filter(|pass| !pass.desc.is_drawn_with_model() && !pass.desc.is_built_in());
+    let images = shown.flat_map(|pass| pass.desc.images().map(move |(name, _)| (pass, name)));
     (interface::PASS_MODES..).zip(images).map(|(id, (pass, name))| Mode {
         id,
         slug: format!("pass:{name}"),
         // Further images have no label of their own.
-        name: if name == pass.name() { pass.note.label.clone() } else { format!("{}: {name}", pass.note.label) },
+        name: if name == pass.name() { pass.desc.label.clone() } else { format!("{}: {name}", pass.desc.label) },
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
         is_displayed: pass.phase == RenderPhase::Display,
-        tonemap: pass.note.to_picture() || pass.phase == RenderPhase::Display,
-        stage: graph.pass(MODEL).map(|model| model.note.stage.clone()).unwrap_or_default(),
+        tonemap: pass.desc.to_picture() || pass.phase == RenderPhase::Display,
+        stage: graph.pass(MODEL).map(|model| model.desc.stage.clone()).unwrap_or_default(),
         pass: Some(name.to_owned()),
-        doc: if name == pass.name() { pass.note.doc.clone() } else { doc_of_output(&pass.note.stage, name, snapshot) },
-        file: pass.note.place.file.clone(),
-        line: pass.note.place.line,
+        doc: if name == pass.name() { pass.desc.doc.clone() } else { doc_of_output(&pass.desc.stage, name, snapshot) },
+        file: pass.desc.place.file.clone(),
+        line: pass.desc.place.line,
         ..Mode::default()
     })
 }

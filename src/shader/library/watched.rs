@@ -102,7 +102,7 @@ impl Library {
         }
         let host = self.slots.iter().map(|slot| &slot.path).find(|path| {
             StageKind::of(path) == Some(StageKind::Fragment)
-                && annotation::passes_of(&snapshot, path).any(|note| note.name == MODEL)
+                && annotation::passes_of(&snapshot, path).any(|desc| desc.name == MODEL)
         });
         let host = host.cloned().unwrap_or_else(|| TreePath::from("pbr.frag"));
         let overlay = Overlay::new(&watched.expression, watched.line, &host, &snapshot);

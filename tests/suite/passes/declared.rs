@@ -506,9 +506,9 @@ fn what_ships_is_off_and_changes_what_it_says() {
     let mut session = Session::new(crate::support::model("shader-ball"), settings(&[]));
     let plain = session.render();
     let shipped: Vec<_> = session.headless.shaders().graph.passes.clone();
-    for pass in shipped.iter().filter(|pass| pass.note.to_picture() && !pass.note.is_drawn_with_model()) {
-        assert!(!pass.note.on || pass.note.when.is_some(), "{} is on", pass.name());
-        let switch = pass.note.when.clone().unwrap_or_else(|| format!("passes.{}", pass.name()));
+    for pass in shipped.iter().filter(|pass| pass.desc.to_picture() && !pass.desc.is_drawn_with_model()) {
+        assert!(!pass.desc.on || pass.desc.when.is_some(), "{} is on", pass.name());
+        let switch = pass.desc.when.clone().unwrap_or_else(|| format!("passes.{}", pass.name()));
         session.set(&format!("{switch}=true"));
         assert_differ(&plain, &session.render(), pass.name());
         session.set(&format!("{switch}=false"));

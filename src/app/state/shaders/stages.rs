@@ -109,7 +109,7 @@ impl StageTable {
 /// The stage that draws what is seen: that of the model, or of the last pass that covers it, such as a shader without a model.
 fn main_stage(request: &PipelineRequest) -> &str {
     let covering = request.passes.iter().rev().filter(|pass| !request.draws_model && pass.covers());
-    covering.map(|pass| pass.note.stage.as_str()).next().unwrap_or(&request.stage)
+    covering.map(|pass| pass.desc.stage.as_str()).next().unwrap_or(&request.stage)
 }
 
 fn state(path: &str, shaders: &ShaderSet, on_screen: &BTreeSet<String>, log: &ShaderLog) -> StageState {
@@ -127,5 +127,5 @@ fn state(path: &str, shaders: &ShaderSet, on_screen: &BTreeSet<String>, log: &Sh
 }
 
 fn is_pass(path: &str, shaders: &ShaderSet) -> bool {
-    shaders.graph.passes.iter().any(|pass| pass.note.stage == path)
+    shaders.graph.passes.iter().any(|pass| pass.desc.stage == path)
 }

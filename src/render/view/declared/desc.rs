@@ -32,16 +32,16 @@ pub(super) struct ScratchDesc {
 impl PassDesc {
     /// `picture`: the size of the picture, in pixels.
     pub(super) fn new(pass: &GraphPass, (name, format): (&str, PassFormat), picture: (u32, u32)) -> Self {
-        let size = pass.note.size.pixels(picture);
-        let place = pass.note.images().position(|(image, _)| pass.note.mips && image == name);
+        let size = pass.desc.size.pixels(picture);
+        let place = pass.desc.images().position(|(image, _)| pass.desc.mips && image == name);
         Self {
             size,
             format: pass_format(format),
-            mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
+            mips: if pass.desc.mips { mips::count(size.0, size.1) } else { 1 },
             is_written: pass.inputs.values().any(|input| *input == Input::Output),
-            keeps: pass.note.keep,
+            keeps: pass.desc.keep,
             // All images of a pass share the depth of the first.
-            has_depth: pass.note.model.is_some() && name == pass.name(),
+            has_depth: pass.desc.model.is_some() && name == pass.name(),
             place: place.unwrap_or(0),
         }
     }

@@ -106,8 +106,8 @@ impl Images {
         let describe = |pass: &GraphPass, image: (&str, PassFormat)| PassDesc::new(pass, image, frame.state.size);
         let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), describe);
         let mut shared = BTreeMap::new();
-        for pass in request.passes.iter().filter(|pass| pass.note.to == Target::Image) {
-            for image in pass.note.images() {
+        for pass in request.passes.iter().filter(|pass| pass.desc.to == Target::Image) {
+            for image in pass.desc.images() {
                 let slot = slots.get(image.0).map(|slot| shared.entry(*slot).or_default());
                 let images = next.images_of(gpu, (image.0, describe(pass, image)), self, slot)?;
                 next.passes.insert(image.0.to_owned(), images);
@@ -125,7 +125,7 @@ impl Images {
         }
         // Kept images and buffers survive while the user looks at another mode, or switches their pass off.
         let graph = &frame.state.shaders.graph;
-        for (name, images) in self.passes.iter().filter(|(name, _)| graph.maker(name).is_some_and(|p| p.note.keep)) {
+        for (name, images) in self.passes.iter().filter(|(name, _)| graph.maker(name).is_some_and(|p| p.desc.keep)) {
             next.passes.entry(name.clone()).or_insert_with(|| images.clone());
         }
         for (name, buffer) in &self.buffers {
@@ -133,7 +133,7 @@ impl Images {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
-        let makers = request.passes.iter().filter(|pass| pass.note.to_picture() && pass.phase == RenderPhase::Light).count();
+        let makers = request.passes.iter().filter(|pass| pass.desc.to_picture() && pass.phase == RenderPhase::Light).count();
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let (width, height) = frame.state.size;
@@ -301,7 +301,7 @@ impl Images {
             let first_level = self.passes.get(name)?.first_level.clone();
             Some((target.clone(), first_level.unwrap_or(target)))
         };
-        pass.note.images().filter_map(of).collect()
+        pass.desc.images().filter_map(of).collect()
     }
 
     /// Records that the pass has drawn its image, and what it was drawn from if a later frame may keep it.
@@ -331,7 +331,7 @@ impl Images {
 
     /// The images of a pass of this frame. Those that are kept of a pass that is off are not read.
     fn active(&self, name: &str) -> Option<&PassImages> {
-        let is_active = self.key.passes.iter().any(|pass| pass.note.draws(name));
+        let is_active = self.key.passes.iter().any(|pass| pass.desc.draws(name));
         self.passes.get(name).filter(|_| is_active)
     }
 

@@ -41,15 +41,15 @@ pub(super) fn slots<'a, D: PartialEq>(
     let mut slots: Vec<Slot<D>> = Vec::new();
     let mut slot_of = BTreeMap::new();
     let mut redrawn = BTreeSet::new();
-    for (index, pass) in passes.iter().enumerate().filter(|(_, pass)| pass.note.to == Target::Image) {
+    for (index, pass) in passes.iter().enumerate().filter(|(_, pass)| pass.desc.to == Target::Image) {
         if !is_redrawn(pass, &redrawn) {
             continue;
         }
-        redrawn.extend(pass.note.images().map(|(name, _)| name));
-        if pass.is_compute || pass.note.keep {
+        redrawn.extend(pass.desc.images().map(|(name, _)| name));
+        if pass.is_compute || pass.desc.keep {
             continue;
         }
-        for image in pass.note.images().filter(|(name, _)| !outlive.contains(name)) {
+        for image in pass.desc.images().filter(|(name, _)| !outlive.contains(name)) {
             let desc = describe(pass, image);
             let last_read = last_reads.get(image.0).copied().unwrap_or(index);
             let free = slots.iter().position(|slot| slot.last_read < index && slot.desc == desc);
@@ -67,7 +67,7 @@ pub(super) fn slots<'a, D: PartialEq>(
 /// Whether a pass is drawn again with each picture, whatever has changed. `redrawn`: such images of passes before it.
 fn is_redrawn(pass: &GraphPass, redrawn: &BTreeSet<&str>) -> bool {
     pass.is_compute
-        || pass.note.keep
+        || pass.desc.keep
         || pass.inputs.values().any(|input| match input {
             Input::Image(name) => redrawn.contains(name.as_str()),
             other => other.is_of_picture(),

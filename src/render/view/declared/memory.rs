@@ -20,7 +20,7 @@ pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) ->
     let mut buffers = BTreeMap::new();
     let mut total = 0;
     for pass in &request.passes {
-        for image in pass.note.images().filter(|_| pass.note.to == Target::Image) {
+        for image in pass.desc.images().filter(|_| pass.desc.to == Target::Image) {
             let desc = PassDesc::new(pass, image, size);
             let texel = u64::from(image.1.bytes());
             if slots.get(image.0).is_none_or(|slot| taken.insert(*slot)) {
@@ -47,15 +47,15 @@ pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) ->
                 pass.name(),
                 limit >> 20
             );
-            let note = &pass.note;
-            let word = match (note.size, note.format) {
+            let desc = &pass.desc;
+            let word = match (desc.size, desc.format) {
                 (PassSize::Pixels(..), _) => "size=",
                 (_, format) if format != PassFormat::default() => "format=",
-                _ => note.name.as_str(),
+                _ => desc.name.as_str(),
             };
             let help =
                 "a smaller size=, a format= with fewer bytes and no keep or mips take less; --memory MIB allows more";
-            return Some(note.place.error_at(word, message).with_help(help));
+            return Some(desc.place.error_at(word, message).with_help(help));
         }
     }
     None

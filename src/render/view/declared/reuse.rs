@@ -35,10 +35,10 @@ impl PassCacheKey {
         context: &PassContext<'_>,
         images: &Images,
     ) -> Option<Self> {
-        if pass.is_compute || pass.note.to != Target::Image || pass.note.keep {
+        if pass.is_compute || pass.desc.to != Target::Image || pass.desc.keep {
             return None;
         }
-        if pass.note.images().any(|(name, _)| images.is_shared(name)) {
+        if pass.desc.images().any(|(name, _)| images.is_shared(name)) {
             return None;
         }
         // Each frame reports the loops that it has cut short.
