@@ -13,7 +13,7 @@ use crate::frame::{BakeValues, PipelineRequest, TablesKey, TargetFormat};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::pipeline::PipelineSet;
-use crate::render::{GpuEnvironment, SharedImages, Sources, Tables, Traced, Uniforms, compute, measured_buffer};
+use crate::render::{GpuEnvironment, SharedImages, Sources, Tables, PathTracing, Uniforms, compute, measured_buffer};
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
 
@@ -129,7 +129,7 @@ struct Shared {
     set: Arc<PipelineSet>,
     environment: Arc<GpuEnvironment>,
     measured: Arc<Buffer>,
-    traced: Arc<Traced>,
+    path_tracing: Arc<PathTracing>,
     images: SharedImages,
 }
 
@@ -155,7 +155,7 @@ impl BrdfMeter {
             set,
             environment: GpuEnvironment::uniform(gpu, [1.0; 3])?,
             measured: measured_buffer(gpu, None)?,
-            traced: Traced::empty(gpu)?,
+            path_tracing: PathTracing::empty(gpu)?,
             images: SharedImages::new(gpu)?,
         };
         Self::on(Arc::new(shared), settings)
@@ -180,8 +180,8 @@ impl BrdfMeter {
         let params: Arc<[u8]> = values::params(&settings.shader, &shared.set.shaders.parameters).into();
         let values = BakeValues { constants: &request.constants, params: &params };
         let tables = Tables::bake(&shared.set, &TablesKey::new(&shared.set.shaders, values), None)?;
-        let (measured, traced) = (shared.measured.clone(), shared.traced.clone());
-        let sources = Sources { environment: shared.environment.clone(), tables, measured, traced };
+        let (measured, path_tracing) = (shared.measured.clone(), shared.path_tracing.clone());
+        let sources = Sources { environment: shared.environment.clone(), tables, measured, path_tracing };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
         uniforms.write(&interface::Frame::default(), &[], &params);
         let frame = uniforms.set(&shared.layouts, &sources, &shared.images)?;

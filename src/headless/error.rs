@@ -1,7 +1,7 @@
 //! Why rendering failed.
 
 use crate::gpu::GpuError;
-use crate::render::{BakeError, ProvideError, TraceError, UploadError};
+use crate::render::{BakeError, ProvideError, PathTracingError, UploadError};
 use crate::scene::MeasuredError;
 use crate::shader::Diagnostic;
 
@@ -32,7 +32,7 @@ impl From<ProvideError> for HeadlessError {
     fn from(error: ProvideError) -> Self {
         match error {
             ProvideError::Bake(error) => error.into(),
-            ProvideError::Gpu(error) | ProvideError::Trace(TraceError::Gpu(error)) => error.into(),
+            ProvideError::Gpu(error) | ProvideError::Trace(PathTracingError::Gpu(error)) => error.into(),
             ProvideError::Trace(error) => Self::Settings(error.to_string()),
             ProvideError::Measured(error) => error.into(),
             ProvideError::Stale => Self::Settings(error.to_string()),

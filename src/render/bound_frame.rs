@@ -6,7 +6,7 @@ use glam::Mat4;
 
 use super::brdf::tables::Tables;
 use super::environment::maps::GpuEnvironment;
-use super::paths::Traced;
+use super::paths::PathTracing;
 use super::scene::GpuScene;
 use crate::frame::FrameState;
 use crate::gpu::{Buffer, Rect};
@@ -24,7 +24,7 @@ pub struct BoundFrame {
     pub(super) tables: Arc<Tables>,
     pub(super) environment: Arc<GpuEnvironment>,
     pub(super) measured: Arc<Buffer>,
-    pub(super) traced: Arc<Traced>,
+    pub(super) path_tracing: Arc<PathTracing>,
 }
 
 impl BoundFrame {
@@ -96,6 +96,6 @@ impl BoundFrame {
             && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
-            && Arc::ptr_eq(&self.traced, &other.traced)
+            && Arc::ptr_eq(&self.path_tracing, &other.path_tracing)
     }
 }

@@ -19,7 +19,7 @@ pub(crate) use brdf::measured::measured_buffer;
 pub use brdf::tables::{Tables, wrong_values};
 pub use environment::bake::{BakeControl, BakeError};
 pub use environment::maps::{BakeReport, GpuEnvironment};
-pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
+pub use paths::{PathTracingError, PathTracingKey, PathTracingRequest, PathTracing};
 pub use resources::{Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};

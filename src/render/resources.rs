@@ -11,7 +11,7 @@ use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
 use super::environment::bake::{BakeControl, BakeError};
 use super::environment::maps::GpuEnvironment;
-use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
+use super::paths::{PathTracingError, PathTracingKey, PathTracingRequest, PathTracing};
 use super::scene::{GpuModel, GpuScene};
 use crate::frame::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
 use crate::pipeline::{BoundPipelines, PipelineSet};
@@ -28,14 +28,14 @@ pub struct Missing {
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
     /// The request for what random paths trace. It depends on the environment, so it is missing only once that is there.
-    pub traced: Option<TraceRequest>,
+    pub path_tracing: Option<PathTracingRequest>,
 }
 
 impl Missing {
     /// Whether nothing is missing.
     pub fn is_empty(&self) -> bool {
-        let Self { pipelines, tables, environment, measured, traced } = self;
-        !pipelines && tables.is_none() && environment.is_none() && measured.is_none() && traced.is_none()
+        let Self { pipelines, tables, environment, measured, path_tracing } = self;
+        !pipelines && tables.is_none() && environment.is_none() && measured.is_none() && path_tracing.is_none()
     }
 }
 
@@ -97,7 +97,7 @@ pub struct Resources {
     tables: Slot<TablesKey, Tables>,
     environment: Slot<EnvironmentKey, GpuEnvironment>,
     measured: Slot<MeasuredKey, Buffer>,
-    traced: Slot<TraceKey, Traced>,
+    path_tracing: Slot<PathTracingKey, PathTracing>,
 }
 
 impl Resources {
@@ -115,7 +115,7 @@ impl Resources {
             tables: Slot::new(Tables::of_mirror(gpu)?),
             environment: Slot::new(GpuEnvironment::uniform(gpu, ambient)?),
             measured: Slot::new(measured_buffer(gpu, None)?),
-            traced: Slot::new(Traced::empty(gpu)?),
+            path_tracing: Slot::new(PathTracing::empty(gpu)?),
         })
     }
 
@@ -166,8 +166,8 @@ impl Resources {
     }
 
     /// Takes what random paths trace; `None` if it could not be built.
-    pub fn set_traced(&mut self, key: TraceKey, traced: Option<Arc<Traced>>) {
-        self.traced.set(key, traced);
+    pub fn set_path_tracing(&mut self, key: PathTracingKey, path_tracing: Option<Arc<PathTracing>>) {
+        self.path_tracing.set(key, path_tracing);
     }
 
     /// The environment that was baked last.
@@ -190,9 +190,9 @@ impl Resources {
     }
 
     /// Identifies what the paths of `state` trace; `None` for a mode without random paths.
-    fn trace_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<TraceKey> {
+    fn path_tracing_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<PathTracingKey> {
         let scene = state.scene.clone().filter(|_| state.pipelines.traces);
-        state.pipelines.follows_paths().then(|| TraceKey { scene, environment: environment.clone() })
+        state.pipelines.follows_paths().then(|| PathTracingKey { scene, environment: environment.clone() })
     }
 
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
@@ -200,10 +200,10 @@ impl Resources {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();
         let measured = state.measured.as_ref();
-        let traced = self.environment_of(state, false).and_then(|environment| Self::trace_key(state, environment));
-        let traced = traced.filter(|key| self.traced.get(Some(key)).is_none());
+        let path_tracing = self.environment_of(state, false).and_then(|environment| Self::path_tracing_key(state, environment));
+        let path_tracing = path_tracing.filter(|key| self.path_tracing.get(Some(key)).is_none());
         Missing {
-            traced: traced.map(|key| TraceRequest { key, model: self.model.clone(), before: self.traced.made.clone() }),
+            path_tracing: path_tracing.map(|key| PathTracingRequest { key, model: self.model.clone(), before: self.path_tracing.made.clone() }),
             pipelines: !has_pipelines,
             tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
@@ -245,8 +245,8 @@ impl Resources {
         if !adds_suns_of(state, &environment) {
             return Ok(None);
         }
-        let key = Self::trace_key(state, &environment);
-        let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
+        let key = Self::path_tracing_key(state, &environment);
+        let Some(path_tracing) = self.path_tracing.get(key.as_ref()).cloned() else { return Ok(None) };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
             Some(scene) => match self.scene_of(scene)? {
@@ -255,7 +255,7 @@ impl Resources {
             },
             None => None,
         };
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, traced }))
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, path_tracing }))
     }
 
     /// Binds `state`, whose shaders are older than the newest, to the pipelines of their own `set`. Its light and tables are those of
@@ -282,8 +282,8 @@ impl Resources {
         if !adds_suns_of(state, &environment) {
             return Ok(None);
         }
-        let key = Self::trace_key(state, &environment);
-        let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
+        let key = Self::path_tracing_key(state, &environment);
+        let Some(path_tracing) = self.path_tracing.get(key.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
             Some(scene) => self.scene_of(scene)?,
             None => None,
@@ -291,7 +291,7 @@ impl Resources {
         if scene.is_none() && state.scene.is_some() {
             return Ok(None);
         }
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, traced }))
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, path_tracing }))
     }
 
     /// Creates everything that `state` lacks on this thread, and binds it.
@@ -319,9 +319,9 @@ impl Resources {
             set.build(&state.pipelines)?;
         }
         // Only now is the environment known.
-        if let Some(request) = self.missing(state).traced {
-            let built = Traced::new(&self.gpu, &request);
-            self.set_traced(request.key, built.as_ref().ok().cloned());
+        if let Some(request) = self.missing(state).path_tracing {
+            let built = PathTracing::new(&self.gpu, &request);
+            self.set_path_tracing(request.key, built.as_ref().ok().cloned());
             built?;
         }
         self.bind(state, false)?.ok_or(ProvideError::Stale)
@@ -383,7 +383,7 @@ pub enum ProvideError {
     Measured(#[from] MeasuredError),
     /// The model cannot be traced.
     #[error(transparent)]
-    Trace(#[from] TraceError),
+    Trace(#[from] PathTracingError),
     /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),

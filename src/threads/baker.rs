@@ -10,7 +10,7 @@ use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::pipeline::PipelineSet;
 use crate::render::{
-    BakeControl, BakeError, GpuEnvironment, Resources, Tables, TraceKey, TraceRequest, Traced, read_measured,
+    BakeControl, BakeError, GpuEnvironment, Resources, Tables, PathTracingKey, PathTracingRequest, PathTracing, read_measured,
 };
 
 /// Messages of the baker.
@@ -24,7 +24,7 @@ pub(crate) enum BakeMessage {
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
     /// The resources of random paths.
-    Traced(TraceKey, Result<Arc<Traced>, String>),
+    PathTracing(PathTracingKey, Result<Arc<PathTracing>, String>),
 }
 
 /// A running bake.
@@ -44,7 +44,7 @@ pub(crate) struct Baker {
     /// The newest read. The window takes its result, and ignores those of older ones.
     reading: Option<MeasuredKey>,
     /// The newest hierarchy that is being built. The window takes its result, and ignores those of older ones.
-    tracing: Option<TraceKey>,
+    tracing: Option<PathTracingKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
@@ -125,17 +125,17 @@ impl Baker {
     }
 
     /// Builds what random paths trace, unless it is being built.
-    pub(crate) fn trace(&mut self, request: Option<TraceRequest>) {
+    pub(crate) fn build_path_tracing(&mut self, request: Option<PathTracingRequest>) {
         let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
         self.tracing = Some(request.key().clone());
         let gpu = self.gpu.clone();
         self.spawn(TaskKind::PathTracing(request.key().clone()), move |sender| {
-            let result = Traced::new(&gpu, &request).map_err(|error| error.to_string());
+            let result = PathTracing::new(&gpu, &request).map_err(|error| error.to_string());
             let key = request.key().clone();
             // Release the device objects before the window takes the result.
             drop((gpu, request));
             return_freed_memory();
-            sender.send(Message::Bake(BakeMessage::Traced(key, result)));
+            sender.send(Message::Bake(BakeMessage::PathTracing(key, result)));
         });
     }
 
@@ -157,7 +157,7 @@ impl Baker {
     }
 
     /// Marks a hierarchy as built. Returns whether it is the newest.
-    pub(crate) fn has_traced(&mut self, key: &TraceKey) -> bool {
+    pub(crate) fn has_path_tracing(&mut self, key: &PathTracingKey) -> bool {
         self.tracing.take_if(|tracing| tracing == key).is_some()
     }
 

@@ -28,7 +28,7 @@ use crate::learn::Exercise;
 use crate::message::panic_text;
 use crate::picture::Look;
 use crate::render::tools::Tools;
-use crate::render::{Readback, TraceKey};
+use crate::render::{Readback, PathTracingKey};
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
@@ -107,7 +107,7 @@ pub(crate) enum TaskKind {
     Loader(u64),
     Baker(u64),
     Tables(TablesKey),
-    PathTracing(TraceKey),
+    PathTracing(PathTracingKey),
     MeasuredBrdf(MeasuredKey),
     LoopDiagnosis([u32; 2]),
     Checker,

@@ -295,13 +295,13 @@ impl Viewer {
                     self.resources.set_measured(key, result.ok());
                 }
             }
-            BakeMessage::Traced(key, result) => {
-                if self.threads.baker.has_traced(&key) {
+            BakeMessage::PathTracing(key, result) => {
+                if self.threads.baker.has_path_tracing(&key) {
                     let result = result.map_err(|message| {
                         self.fail_waiting(&message);
                         self.say(message);
                     });
-                    self.resources.set_traced(key, result.ok());
+                    self.resources.set_path_tracing(key, result.ok());
                 }
             }
         }
@@ -384,8 +384,8 @@ impl Viewer {
                 "waiting"
             }
             TaskKind::PathTracing(key) => {
-                if self.threads.baker.has_traced(&key) {
-                    self.resources.set_traced(key, None);
+                if self.threads.baker.has_path_tracing(&key) {
+                    self.resources.set_path_tracing(key, None);
                 }
                 "tracer"
             }

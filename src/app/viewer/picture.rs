@@ -207,7 +207,7 @@ impl Viewer {
         self.threads.baker.bake_tables(set, missing.tables, &self.resources);
         self.threads.baker.bake(set, missing.environment, &self.resources);
         self.threads.baker.read(missing.measured);
-        self.threads.baker.trace(missing.traced);
+        self.threads.baker.build_path_tracing(missing.path_tracing);
         is_empty
     }
 

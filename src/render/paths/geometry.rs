@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Vec3, Vec4};
 
-use super::TraceError;
+use super::PathTracingError;
 use crate::frame::Scene;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{ATTRIBUTE_COLOR, BvhNode, TracedCorners, TracedTriangle, Vertex};
@@ -24,7 +24,7 @@ pub(super) struct Geometry {
 impl Geometry {
     /// The triangles of all instances that the scene draws; points and lines have none. `TracedCorners::material` is an index
     /// into the model's materials, or their number for the material override.
-    pub(super) fn new(scene: &Scene) -> Result<Self, TraceError> {
+    pub(super) fn new(scene: &Scene) -> Result<Self, PathTracingError> {
         let model = scene.model();
         let replacement = scene.replacement();
         let (mut positions, mut corners) = (Vec::new(), Vec::new());
@@ -40,7 +40,7 @@ impl Geometry {
             let placed = Placed::new(instance, material, index as u32, appearance.attributes & ATTRIBUTE_COLOR != 0);
             let indices = triangles(primitive.topology, &primitive.indices);
             if positions.len() + indices.len() > MOST_TRIANGLES {
-                return Err(TraceError::TooManyTriangles { most: MOST_TRIANGLES });
+                return Err(PathTracingError::TooManyTriangles { most: MOST_TRIANGLES });
             }
             for triangle in indices {
                 let vertices = triangle.map(|index| &primitive.vertices[index as usize]);

@@ -22,9 +22,9 @@ use materials::{Materials, layers};
 
 const REPEAT: vk::SamplerAddressMode = vk::SamplerAddressMode::REPEAT;
 
-/// Why a model cannot be traced.
+/// Why a model cannot be path-traced.
 #[derive(Debug, thiserror::Error)]
-pub enum TraceError {
+pub enum PathTracingError {
     /// The scene has too many triangles.
     #[error(
         "random paths trace at most {most} triangles, and this model has more. Modes without `traces` still show it"
@@ -40,14 +40,14 @@ pub enum TraceError {
 
 /// Identifies what random paths trace.
 #[derive(Clone)]
-pub struct TraceKey {
+pub struct PathTracingKey {
     /// The scene, if the mode traces the model.
     pub(super) scene: Option<Scene>,
     /// The environment whose light paths are drawn towards.
     pub(super) environment: Arc<GpuEnvironment>,
 }
 
-impl PartialEq for TraceKey {
+impl PartialEq for PathTracingKey {
     fn eq(&self, other: &Self) -> bool {
         self.scene == other.scene && Arc::ptr_eq(&self.environment, &other.environment)
     }
@@ -55,24 +55,24 @@ impl PartialEq for TraceKey {
 
 /// A request to make what random paths trace.
 #[derive(Clone)]
-pub struct TraceRequest {
-    pub(super) key: TraceKey,
+pub struct PathTracingRequest {
+    pub(super) key: PathTracingKey,
     /// The model of the key's scene.
     pub(super) model: Option<Arc<GpuModel>>,
     /// The result that was made last. Its parts are taken over where the key is the same.
-    pub(super) before: Option<(TraceKey, Arc<Traced>)>,
+    pub(super) before: Option<(PathTracingKey, Arc<PathTracing>)>,
 }
 
-impl TraceRequest {
+impl PathTracingRequest {
     /// Identifies the result.
-    pub fn key(&self) -> &TraceKey {
+    pub fn key(&self) -> &PathTracingKey {
         &self.key
     }
 }
 
-impl std::fmt::Debug for TraceRequest {
+impl std::fmt::Debug for PathTracingRequest {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("TraceRequest").field("scene", &self.key.scene).finish_non_exhaustive()
+        f.debug_struct("PathTracingRequest").field("scene", &self.key.scene).finish_non_exhaustive()
     }
 }
 
@@ -86,39 +86,39 @@ pub(crate) struct TracedScene {
     pub(crate) sampler: Arc<Sampler>,
 }
 
-/// Everything that random paths trace and draw from.
-pub struct Traced {
+/// The scene and the light that path tracing samples.
+pub struct PathTracing {
     pub(crate) scene: Arc<TracedScene>,
-    /// The number of cells along a face's side, and the cells.
-    pub(crate) cells: Arc<Buffer>,
+    /// Alias table for importance sampling of the environment: the number of cells along a face's side, and the cells.
+    pub(crate) alias_table: Arc<Buffer>,
 }
 
-impl Traced {
-    /// No triangles, and an environment without light: for modes without random paths.
+impl PathTracing {
+    /// No triangles, and an environment without light: for modes without path tracing.
     ///
     /// # Errors
     /// Out of memory.
     pub(crate) fn empty(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
-        Ok(Arc::new(Self { scene: TracedScene::empty(gpu)?, cells: cells_buffer(gpu, 0, &[])? }))
+        Ok(Arc::new(Self { scene: TracedScene::empty(gpu)?, alias_table: alias_table_buffer(gpu, 0, &[])? }))
     }
 
     /// Builds the hierarchy of a scene and the table of an environment, and uploads both. Any thread may call this.
     ///
     /// # Errors
     /// Too many triangles, or out of memory.
-    pub fn new(gpu: &Arc<Gpu>, request: &TraceRequest) -> Result<Arc<Self>, TraceError> {
-        let TraceRequest { key, model, before } = request;
+    pub fn new(gpu: &Arc<Gpu>, request: &PathTracingRequest) -> Result<Arc<Self>, PathTracingError> {
+        let PathTracingRequest { key, model, before } = request;
         let before = before.as_ref();
         let scene = match (before.filter(|(made, _)| made.scene == key.scene), &key.scene, model) {
             (Some((_, before)), ..) => before.scene.clone(),
             (None, Some(scene), Some(model)) => TracedScene::new(gpu, scene, model)?,
             _ => TracedScene::empty(gpu)?,
         };
-        let cells = match before.filter(|(made, _)| Arc::ptr_eq(&made.environment, &key.environment)) {
-            Some((_, before)) => before.cells.clone(),
-            None => environment_cells(gpu, &key.environment.radiance.cube)?,
+        let alias_table = match before.filter(|(made, _)| Arc::ptr_eq(&made.environment, &key.environment)) {
+            Some((_, before)) => before.alias_table.clone(),
+            None => alias_table_of(gpu, &key.environment.radiance.cube)?,
         };
-        Ok(Arc::new(Self { scene, cells }))
+        Ok(Arc::new(Self { scene, alias_table }))
     }
 }
 
@@ -128,7 +128,7 @@ impl TracedScene {
         Self::with(gpu, &geometry, &[], layers(gpu, &[])?)
     }
 
-    fn new(gpu: &Arc<Gpu>, scene: &Scene, model: &GpuModel) -> Result<Arc<Self>, TraceError> {
+    fn new(gpu: &Arc<Gpu>, scene: &Scene, model: &GpuModel) -> Result<Arc<Self>, PathTracingError> {
         let start = Instant::now();
         let geometry = Geometry::new(scene)?;
         let mut materials = Materials::new(model);
@@ -168,7 +168,7 @@ fn buffer<T: bytemuck::Pod>(gpu: &Arc<Gpu>, name: &str, elements: &[T]) -> Resul
 }
 
 /// Reads an environment's cube map back and builds its table.
-fn environment_cells(gpu: &Arc<Gpu>, cube: &Arc<Image>) -> Result<Arc<Buffer>, GpuError> {
+fn alias_table_of(gpu: &Arc<Gpu>, cube: &Arc<Image>) -> Result<Arc<Buffer>, GpuError> {
     let usage = vk::BufferUsageFlags::TRANSFER_DST;
     let texels = Buffer::new(gpu, "environment readback", cube.desc().level_bytes(0), usage, Memory::Readback)?;
     one_shot(gpu, |encoder| {
@@ -182,14 +182,14 @@ fn environment_cells(gpu: &Arc<Gpu>, cube: &Arc<Image>) -> Result<Arc<Buffer>, G
         .into_iter()
         .map(|texel| texel.map(half::f16::from_bits))
         .collect();
-    let (side, cells) = CubeLuminance::new(cube.desc().width as usize, &texels).cells();
-    cells_buffer(gpu, side as u32, &cells)
+    let (side, alias_table) = CubeLuminance::new(cube.desc().width as usize, &texels).alias_table();
+    alias_table_buffer(gpu, side as u32, &alias_table)
 }
 
 /// The block `EnvironmentCells` of shaders/paths/environment_sampling.glsl.
-fn cells_buffer(gpu: &Arc<Gpu>, side: u32, cells: &[EnvironmentCell]) -> Result<Arc<Buffer>, GpuError> {
+fn alias_table_buffer(gpu: &Arc<Gpu>, side: u32, alias_table: &[EnvironmentCell]) -> Result<Arc<Buffer>, GpuError> {
     let mut bytes = side.to_ne_bytes().to_vec();
-    bytes.extend_from_slice(bytemuck::cast_slice(cells));
+    bytes.extend_from_slice(bytemuck::cast_slice(alias_table));
     bytes.resize(bytes.len().max(4 + size_of::<EnvironmentCell>()), 0);
     compute::upload_buffer(gpu, "environment cells", &bytes)
 }

@@ -286,7 +286,7 @@ impl View {
             environment: frame.environment.clone(),
             tables: frame.tables.clone(),
             measured: frame.measured.clone(),
-            traced: frame.traced.clone(),
+            path_tracing: frame.path_tracing.clone(),
         };
         let in_flight = &mut self.in_flight[slot];
         let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;

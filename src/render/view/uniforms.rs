@@ -11,7 +11,7 @@ use crate::render::brdf::ltc;
 use crate::render::brdf::tables::Tables;
 use crate::render::compute;
 use crate::render::environment::maps::GpuEnvironment;
-use crate::render::paths::Traced;
+use crate::render::paths::PathTracing;
 
 /// The resources in set 0 that are replaced at times.
 #[derive(Clone)]
@@ -19,7 +19,7 @@ pub(crate) struct Sources {
     pub(crate) environment: Arc<GpuEnvironment>,
     pub(crate) tables: Arc<Tables>,
     pub(crate) measured: Arc<Buffer>,
-    pub(crate) traced: Arc<Traced>,
+    pub(crate) path_tracing: Arc<PathTracing>,
 }
 
 impl Sources {
@@ -27,7 +27,7 @@ impl Sources {
         Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.measured, &other.measured)
-            && Arc::ptr_eq(&self.traced, &other.traced)
+            && Arc::ptr_eq(&self.path_tracing, &other.path_tracing)
     }
 }
 
@@ -83,8 +83,8 @@ impl Uniforms {
         if let Some((_, set)) = self.set.as_ref().filter(|(made_of, _)| made_of.is_same(sources)) {
             return Ok(set.clone());
         }
-        let Sources { environment, tables, measured, traced } = sources;
-        let scene = &traced.scene;
+        let Sources { environment, tables, measured, path_tracing } = sources;
+        let scene = &path_tracing.scene;
         let writer = SetWriter::default()
             .buffer(0, &self.frame)
             .buffer(1, &self.lights)
@@ -104,7 +104,7 @@ impl Uniforms {
             .buffer(16, &scene.corners)
             .buffer(17, &scene.materials)
             .texture(18, &scene.textures, &scene.sampler)
-            .buffer(19, &traced.cells);
+            .buffer(19, &path_tracing.alias_table);
         let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
         self.set = Some((sources.clone(), set.clone()));
         Ok(set)

@@ -29,7 +29,7 @@ impl CubeLuminance {
 
     /// The cells of an alias table, and their number along a side of a face: half as many as texels. Without any light, there
     /// are no cells.
-    pub fn cells(&self) -> (usize, Vec<EnvironmentCell>) {
+    pub fn alias_table(&self) -> (usize, Vec<EnvironmentCell>) {
         let side = (self.side / 2).max(1);
         let cell = |index: usize| {
             let (face, row, column) = (index / (side * side), index / side % side, index % side);
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn draws_have_the_density_that_the_table_states() {
-        let (side, cells) = cube(16, |index| (index * 7919 % 101) as f32).cells();
+        let (side, cells) = cube(16, |index| (index * 7919 % 101) as f32).alias_table();
         assert_eq!((side, cells.len()), (8, 6 * 64));
         let area = 4.0 / 64.0;
         for (cell, drawn) in cells.iter().zip(drawn(&cells)) {
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn a_bright_texel_shines_into_the_cells_around_it_across_the_edges() {
         // The first texel of the first face is at the corner of +X, +Y and +Z.
-        let (_, cells) = cube(8, |index| if index == 0 { 1.0 } else { 0.0 }).cells();
+        let (_, cells) = cube(8, |index| if index == 0 { 1.0 } else { 0.0 }).alias_table();
         let faces: Vec<usize> = (0..cells.len()).filter(|i| cells[*i].density > 0.0).map(|i| i / 16).collect();
         assert!([0, 2, 4].iter().all(|face| faces.contains(face)), "{faces:?}");
         assert!(!faces.contains(&1) && !faces.contains(&3) && !faces.contains(&5), "{faces:?}");
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn darkness_has_no_cells() {
-        assert_eq!(cube(4, |_| 0.0).cells().0, 0);
-        assert_eq!(cube(1, |_| 2.0).cells().1.len(), 6);
+        assert_eq!(cube(4, |_| 0.0).alias_table().0, 0);
+        assert_eq!(cube(1, |_| 2.0).alias_table().1.len(), 6);
     }
 }

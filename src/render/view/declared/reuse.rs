@@ -76,7 +76,7 @@ impl PassCacheKey {
             from.object(&frame.environment);
             from.object(&frame.tables);
             from.object(&frame.measured);
-            from.object(&frame.traced);
+            from.object(&frame.path_tracing);
         }
         if instances > 0 {
             from.bytes.extend(instances.to_le_bytes());
