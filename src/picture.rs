@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::render::Capture;
 pub use look::{Look, ReadError, read_checked_look, read_look};
 use part::PartFile;
@@ -30,7 +30,7 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_numbered(capture: &Capture, work: &Work) -> Result<PathBuf, String> {
+pub fn write_numbered(capture: &Capture, work: &SessionState) -> Result<PathBuf, String> {
     let path = numbered();
     write(capture, work, &path).map(|()| path)
 }
@@ -80,7 +80,7 @@ pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
 ///
 /// # Errors
 /// As [`write_image`].
-pub fn write(capture: &Capture, work: &Work, path: &Path) -> Result<(), String> {
+pub fn write(capture: &Capture, work: &SessionState, path: &Path) -> Result<(), String> {
     let cannot = |why: String| format!("cannot write {}: {why}", path.display());
     if format_of(path)? == ImageFormat::Png {
         let bytes = look::encode(capture, work, path.parent().unwrap_or(Path::new(""))).map_err(cannot)?;

@@ -36,7 +36,7 @@ use crate::control::{Asked, Clients, Control};
 use crate::disk_cache;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
-use crate::recovery::{Recorder, Work};
+use crate::recovery::{Recorder, SessionState};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
@@ -59,7 +59,7 @@ pub struct AppOptions {
     /// Settings to start with.
     pub settings: Settings,
     /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
-    pub plain: Option<Work>,
+    pub plain: Option<SessionState>,
     /// Whether a model that has lights shines by them: the user has not said which lights shine.
     pub follows_lights: bool,
     /// Size of the window in pixels.

@@ -38,7 +38,7 @@ use crate::frame::{Clock, Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
-use crate::recovery::{Recorder, Work};
+use crate::recovery::{Recorder, SessionState};
 use crate::render::{BoundFrame, Resources};
 use crate::session::Session;
 use crate::settings::{LightSource, Settings};
@@ -174,7 +174,7 @@ pub(super) struct Viewer {
     /// The message about a lack of memory.
     shortage: Option<String>,
     /// The work of a plain start, if this was one.
-    plain: Option<Work>,
+    plain: Option<SessionState>,
     /// Whether the last session is offered over the picture.
     pub(super) offers_session: bool,
     /// The file dialog that is open.

@@ -8,7 +8,7 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::render::Capture;
 use crate::scene::BUILT_IN;
 use crate::settings::{LookError, Settings};
@@ -50,7 +50,7 @@ struct Files {
 
 impl Files {
     /// The files of a picture that is written to `folder`.
-    fn of(work: &Work, folder: &Path) -> Self {
+    fn of(work: &SessionState, folder: &Path) -> Self {
         let is_built_in = |path: &Path| BUILT_IN.iter().any(|name| Path::new(name) == path);
         let place = |path: &Path| path.exists().then(|| from_folder(path, folder));
         let model = work.model.clone().unwrap_or_else(|| BUILT_IN[0].into());
@@ -78,7 +78,7 @@ impl Files {
 }
 
 /// The bytes of a PNG file in `folder` with a picture of `work`.
-pub(super) fn encode(capture: &Capture, work: &Work, folder: &Path) -> Result<Vec<u8>, String> {
+pub(super) fn encode(capture: &Capture, work: &SessionState, folder: &Path) -> Result<Vec<u8>, String> {
     let files = toml::to_string(&Files::of(work, folder)).unwrap_or_default();
     let mut bytes = Cursor::new(Vec::new());
     let written = || -> Result<(), png::EncodingError> {
@@ -167,7 +167,7 @@ mod tests {
         let mut settings = Settings::default();
         (settings.mode, settings.view.ev) = ("d \u{3b1}".to_owned(), 1.5);
         let path = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
-        let work = Work { settings: settings.clone(), ..Work::default() };
+        let work = SessionState { settings: settings.clone(), ..SessionState::default() };
         std::fs::write(path.path(), encode(&capture(), &work, Path::new("")).unwrap()).unwrap();
         let look = read_look(path.path()).unwrap();
         assert_eq!(look, Look { settings, model: Some(BUILT_IN[0].into()), shaders: None });
@@ -185,7 +185,7 @@ mod tests {
             std::fs::write(first.join(name), b"").unwrap();
         }
         let mut work =
-            Work { model: Some(first.join("models/duck.glb")), tree: Some(first.join("glsl")), ..Work::default() };
+            SessionState { model: Some(first.join("models/duck.glb")), tree: Some(first.join("glsl")), ..SessionState::default() };
         work.settings.environment.name = first.join("models/sky.hdr").display().to_string();
         let bytes = encode(&capture(), &work, &first.join("pictures")).unwrap();
         std::fs::write(first.join("pictures/look.png"), bytes).unwrap();

@@ -1,8 +1,8 @@
 //! Records of a window's session, for the process that takes its place when the device is lost or the driver crashes.
 //!
 //! `specula view` runs the window as a child process. The child's [`Recorder`] keeps two files in a folder of the session: the
-//! [`State`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
-//! After a loss, [`State::after_loss`] compares the two and decides what the next process does without: the texts that were being
+//! [`RecoveryState`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
+//! After a loss, [`RecoveryState::after_loss`] compares the two and decides what the next process does without: the texts that were being
 //! tried, or else the settings.
 
 mod recorder;
@@ -35,7 +35,7 @@ const GOOD: &str = "good.json";
 
 /// The user's settings, model and shader tree.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Work {
+pub struct SessionState {
     /// The settings.
     pub settings: Settings,
     /// The model's file; `None` is the built-in one.
@@ -44,7 +44,7 @@ pub struct Work {
     pub tree: Option<PathBuf>,
 }
 
-impl Work {
+impl SessionState {
     /// Whether both show the same from two places: all is equal but the camera and the directions of orbiting lights, which change
     /// in many frames and never make a shader hang by themselves.
     pub fn is_alike(&self, other: &Self) -> bool {
@@ -107,15 +107,15 @@ pub struct Loss {
 /// The record of a process: its work, and the texts that it tries.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct State {
+pub struct RecoveryState {
     /// Losses in a row so far.
     pub losses: u32,
     /// The last loss.
     pub loss: Option<Loss>,
     /// The user's work; `None` before the first frame.
-    pub work: Option<Work>,
+    pub work: Option<SessionState>,
     /// The work that the device has drawn without a fault.
-    pub good: Option<Work>,
+    pub good: Option<SessionState>,
     /// Texts that the process reads and compiles, by path and [`text_hash`], until the device has drawn them.
     pub tried: BTreeMap<String, u64>,
     /// Texts that are not used until one of them changes.
@@ -124,7 +124,7 @@ pub struct State {
     pub window: Option<Geometry>,
 }
 
-impl State {
+impl RecoveryState {
     /// The state that was recorded in a session's folder; the default if there is none.
     pub fn read(folder: &Path) -> Self {
         read(folder, STATE).unwrap_or_default()

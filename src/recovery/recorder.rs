@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::{Geometry, GoodTexts, State, Work};
+use super::{Geometry, GoodTexts, RecoveryState, SessionState};
 use crate::message;
 use crate::shader::{ShaderSet, TreePath, text_hash};
 
@@ -14,14 +14,14 @@ const CAMERA_INTERVAL: Duration = Duration::from_millis(250);
 /// A process that has lived so long ends a row of losses.
 const LONG_LIFE: Duration = Duration::from_secs(60);
 
-/// Writes [`State`] and [`GoodTexts`] into the folder of the session. Clones record the same session.
+/// Writes [`RecoveryState`] and [`GoodTexts`] into the folder of the session. Clones record the same session.
 #[derive(Clone)]
 pub struct Recorder(Arc<Mutex<Inner>>);
 
 struct Inner {
     /// `None` if nobody would read the records.
     folder: Option<PathBuf>,
-    state: State,
+    state: RecoveryState,
     /// Number of the work in `state`, which increases with every change but one of the camera.
     attempt: u64,
     /// The texts in `good.json`, and the generation of their set in this process.
@@ -34,7 +34,7 @@ struct Inner {
 
 impl Recorder {
     /// A recorder in a session's folder, or one that records nothing. `state` and `good` are what the folder has.
-    pub fn new(folder: Option<PathBuf>, state: State, good: GoodTexts) -> Self {
+    pub fn new(folder: Option<PathBuf>, state: RecoveryState, good: GoodTexts) -> Self {
         let (start, checked) = (Instant::now(), Instant::now());
         Self(Arc::new(Mutex::new(Inner { folder, state, attempt: 0, good, generation: 0, start, checked })))
     }
@@ -46,7 +46,7 @@ impl Recorder {
     }
 
     /// The record of the process before.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> RecoveryState {
         self.lock().state.clone()
     }
 
@@ -70,7 +70,7 @@ impl Recorder {
 
     /// Records what the next frame shows, before it is submitted. Returns the number of this work for [`Recorder::drawn`]. A moving
     /// camera and the `window` are recorded now and then.
-    pub fn begin(&self, work: &Work, window: impl FnOnce() -> Geometry) -> u64 {
+    pub fn begin(&self, work: &SessionState, window: impl FnOnce() -> Geometry) -> u64 {
         let mut inner = self.lock();
         let is_alike = inner.state.work.as_ref().is_some_and(|old| old.is_alike(work));
         let is_same = inner.state.work.as_ref() == Some(work);

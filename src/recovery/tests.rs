@@ -10,11 +10,11 @@ fn hash(text: &str) -> u64 {
 }
 
 /// A session in the folder `tree`, whose last good texts are "old".
-fn session() -> (State, GoodTexts) {
-    let work = Work { tree: Some("tree".into()), ..Work::default() };
+fn session() -> (RecoveryState, GoodTexts) {
+    let work = SessionState { tree: Some("tree".into()), ..SessionState::default() };
     let texts = ["a.glsl", "b.glsl"].map(|path| (path.to_owned(), "old".to_owned()));
     let good = GoodTexts { tree: work.tree.clone(), texts: texts.into() };
-    (State { work: Some(work.clone()), good: Some(work), ..State::default() }, good)
+    (RecoveryState { work: Some(work.clone()), good: Some(work), ..RecoveryState::default() }, good)
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn a_new_text_is_refused_and_the_settings_stay() {
     assert_eq!(next.losses, 1);
     assert!(next.tried.is_empty());
     // The same happens again with a second text: both are refused.
-    let again = State { tried: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
+    let again = RecoveryState { tried: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
     let again = again.after_loss(CAUSE, &good);
     assert_eq!((again.refused.len(), again.losses), (2, 2));
 }
@@ -51,7 +51,7 @@ fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
     work.model = Some("huge.glb".into());
     let next = state.after_loss(CAUSE, &good);
     assert_eq!(next.loss.unwrap().reset, ["shader.rate", "view.msaa", "the model"]);
-    assert_eq!(next.work, Some(Work { settings: moved.settings, ..session().0.work.unwrap() }));
+    assert_eq!(next.work, Some(SessionState { settings: moved.settings, ..session().0.work.unwrap() }));
     assert!(next.refused.is_empty());
 }
 
@@ -68,20 +68,20 @@ fn texts_of_another_tree_are_left_together_with_it() {
 #[test]
 fn records_are_read_by_the_next_process() {
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(State::read(folder.path()), State::default());
+    assert_eq!(RecoveryState::read(folder.path()), RecoveryState::default());
     let (state, good) = session();
-    let recorder = Recorder::new(Some(folder.path().to_owned()), State::default(), GoodTexts::default());
+    let recorder = Recorder::new(Some(folder.path().to_owned()), RecoveryState::default(), GoodTexts::default());
     let before = recorder.try_texts([(TreePath::from("a.glsl"), hash("new"))].into(), BTreeMap::new());
     assert!(before.is_empty());
     let window = Geometry { size: (640, 480), at: Some((3, -4)) };
     let attempt = recorder.begin(state.work.as_ref().unwrap(), || window);
-    let read = State::read(folder.path());
+    let read = RecoveryState::read(folder.path());
     assert_eq!((read.work, read.good, read.window), (state.work.clone(), None, Some(window)));
     assert_eq!(read.tried.len(), 1);
     recorder.drawn(attempt);
-    assert_eq!(State::read(folder.path()).good, state.work);
+    assert_eq!(RecoveryState::read(folder.path()).good, state.work);
     recorder.take_back(before);
-    assert!(State::read(folder.path()).tried.is_empty());
+    assert!(RecoveryState::read(folder.path()).tried.is_empty());
 
     good.write(folder.path()).unwrap();
     assert_eq!(GoodTexts::read(folder.path(), None), good);

@@ -17,7 +17,7 @@ use crate::capture::{
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;
 use crate::picture;
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::render::Texel;
 use crate::shader::{Compiler, Source};
 use crate::threads::Message;
@@ -93,7 +93,7 @@ impl Job {
         self,
         stills: &mut Stills,
         size: (u32, u32),
-        (versions, tree, work): (&[VersionPicture], (&Compiler, &Source), Work),
+        (versions, tree, work): (&[VersionPicture], (&Compiler, &Source), SessionState),
         tell: &mut dyn FnMut(u64, u64) -> bool,
     ) -> Result<Value, CaptureError> {
         let wrong = |message: String| CaptureError::Usage(message);
@@ -106,7 +106,7 @@ impl Job {
                 stills.set_count(frames);
                 stills.set_linear(file.as_deref().is_some_and(picture::holds_light));
                 let capture = stills.capture(own.unwrap_or(size))?;
-                let shown = Work { settings: stills.settings().clone(), ..work };
+                let shown = SessionState { settings: stills.settings().clone(), ..work };
                 let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
                 Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
             }
@@ -216,7 +216,7 @@ impl Viewer {
         let size = self.shown().map_or((1, 1), |state| state.size);
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
-        let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.work());
+        let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.session_state());
         self.threads.capture(number, canceled.clone(), move |sender| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {

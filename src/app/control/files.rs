@@ -10,13 +10,13 @@ use super::requests::path_text;
 use super::{Shot, Viewer};
 use crate::gpu::Buffer;
 use crate::picture;
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::render::Capture;
 
 impl Viewer {
     /// Writes the picture of the screen, and answers.
     pub(in crate::app) fn write_shot(&self, shot: Shot, capture: Capture) {
-        let work = self.shown_work();
+        let work = self.shown_session_state();
         self.threads.wait(move || {
             let Shot { reply, file } = shot;
             match write_capture(&capture, &work, file.as_deref()) {
@@ -53,7 +53,7 @@ impl Viewer {
 }
 
 /// Writes a capture to a file, or to the first free `specula-N.png`.
-pub(super) fn write_capture(capture: &Capture, work: &Work, file: Option<&Path>) -> Result<PathBuf, String> {
+pub(super) fn write_capture(capture: &Capture, work: &SessionState, file: Option<&Path>) -> Result<PathBuf, String> {
     let file = file.map_or_else(picture::numbered, Path::to_owned);
     picture::write(capture, work, &file).map(|()| file)
 }

@@ -40,7 +40,7 @@ impl Screen {
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
     fn write_screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
         let Some(capture) = self.read_picture(viewer, frame)? else { return Ok(()) };
-        match picture::write_numbered(&capture, &viewer.shown_work()) {
+        match picture::write_numbered(&capture, &viewer.shown_session_state()) {
             Ok(path) => {
                 let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
                 viewer.say(format!("wrote {}", whole.display()));

@@ -7,7 +7,7 @@ use chrono::{DateTime, Local};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
 use crate::state;
 
@@ -32,7 +32,7 @@ pub(in crate::app) struct LastSession {
     directory: PathBuf,
     /// When its window closed, in seconds since 1970.
     at: i64,
-    pub(in crate::app) work: Work,
+    pub(in crate::app) work: SessionState,
 }
 
 impl LastSession {
@@ -84,13 +84,13 @@ impl LastSessions {
 }
 
 /// The work of the last session of this directory, if the user wants windows to go on with it by themselves.
-pub fn session_to_restore() -> Option<Work> {
+pub fn session_to_restore() -> Option<SessionState> {
     let sessions = LastSessions::restored();
     sessions.here.filter(|_| sessions.always).map(|session| session.work)
 }
 
 /// Remembers the work of a session that ends.
-pub(in crate::app) fn remember(work: &Work) {
+pub(in crate::app) fn remember(work: &SessionState) {
     let Ok(directory) = std::env::current_dir() else { return };
     // Another window may have written the file meanwhile.
     let mut stored = load();
@@ -100,7 +100,7 @@ pub(in crate::app) fn remember(work: &Work) {
 }
 
 /// The work with absolute paths of files. Names of built-in models and environments stay.
-fn absolute(mut work: Work) -> Work {
+fn absolute(mut work: SessionState) -> SessionState {
     let of = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     work.model = work.model.map(|model| if model.exists() { of(&model) } else { model });
     work.tree = work.tree.map(|tree| of(&tree));
@@ -147,7 +147,7 @@ mod tests {
 
     fn session(directory: &str, mode: &str) -> LastSession {
         let settings = Settings { mode: mode.to_owned(), ..Settings::of_window() };
-        let work = Work { settings, model: Some("sphere-grid".into()), tree: None };
+        let work = SessionState { settings, model: Some("sphere-grid".into()), tree: None };
         LastSession { directory: directory.into(), at: 1_790_000_000, work }
     }
 

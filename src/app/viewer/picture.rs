@@ -8,7 +8,7 @@ use crate::app::panels::Readout;
 use crate::events::{Event, emit};
 use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::render::{BoundFrame, Missing, PixelAt, View};
 use crate::settings::Settings;
 use crate::shader::{Mode, PixelValue, expression};
@@ -227,11 +227,11 @@ impl Viewer {
     }
 
     /// The settings and the files of the picture on screen, from the current camera.
-    pub(in crate::app) fn shown_work(&self) -> Work {
+    pub(in crate::app) fn shown_session_state(&self) -> SessionState {
         let now = &self.session.settings;
         let shown = self.shown.as_ref().map_or(now, |shown| &shown.settings);
         let settings = Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() };
-        Work { settings, ..self.work() }
+        SessionState { settings, ..self.session_state() }
     }
 
     /// The state of the picture on screen.

@@ -11,7 +11,7 @@ impl Viewer {
     /// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns
     /// the attempt's number, unless the frame shows the last complete picture.
     pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
-        let work = self.work();
+        let work = self.session_state();
         let geometry =
             || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
         let attempt = self.recorder.begin(&work, geometry);

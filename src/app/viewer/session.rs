@@ -6,15 +6,15 @@ use super::Viewer;
 use crate::app::command::Command;
 use crate::app::state::last_session;
 use crate::picture::Look;
-use crate::recovery::Work;
+use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
 
 impl Viewer {
     /// The settings, the model and the shader tree.
-    pub(in crate::app) fn work(&self) -> Work {
+    pub(in crate::app) fn session_state(&self) -> SessionState {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.location().map(Path::to_owned);
-        Work { settings: self.session.settings.clone(), model: model.clone(), tree }
+        SessionState { settings: self.session.settings.clone(), model: model.clone(), tree }
     }
 
     /// Goes on with the last session, as it was left.
@@ -28,20 +28,20 @@ impl Viewer {
 
     /// Shows the look of a file: its settings, and the model and the shaders that it names. Returns the model that has to be loaded.
     pub(super) fn show_look(&mut self, look: Look) -> Option<PathBuf> {
-        let now = self.work();
+        let now = self.session_state();
         let model = match &look.model {
             Some(model) => (model != Path::new(BUILT_IN[0])).then(|| model.clone()),
             None => now.model.clone(),
         };
         let loads = is_other(model.as_deref(), now.model.as_deref());
         let tree = look.shaders.or(now.tree);
-        self.go_to(Work { settings: look.settings, model: model.clone(), tree });
+        self.go_to(SessionState { settings: look.settings, model: model.clone(), tree });
         loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
     }
 
     /// Shows other work. The camera is that of the work, and not one that frames the model.
-    fn go_to(&mut self, Work { settings, model, tree }: Work) {
-        let now = self.work();
+    fn go_to(&mut self, SessionState { settings, model, tree }: SessionState) {
+        let now = self.session_state();
         if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
             self.execute(Command::OpenTree(full_path(&tree)));
         }
@@ -60,13 +60,13 @@ impl Viewer {
 
     /// Whether the session differs from that of a plain start.
     fn has_work(&self) -> bool {
-        self.plain.as_ref().is_none_or(|plain| !self.work().is_alike(plain))
+        self.plain.as_ref().is_none_or(|plain| !self.session_state().is_alike(plain))
     }
 
     /// Remembers the session, if there is anything to go on with.
     pub(in crate::app) fn remember_session(&self) {
         if self.has_work() {
-            last_session::remember(&self.work());
+            last_session::remember(&self.session_state());
         }
     }
 }

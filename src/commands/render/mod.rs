@@ -14,7 +14,7 @@ use specula::headless::Headless;
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
-use specula::recovery::Work;
+use specula::recovery::SessionState;
 use specula::render::Capture;
 use specula::shader::{Diagnostic, Mode};
 
@@ -359,7 +359,7 @@ fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Fail
 
 /// Writes a picture with its settings, the model and the shader tree.
 fn write_picture(headless: &mut Headless, args: &Args, capture: &Capture, out: &Path) -> Result<(), Failure> {
-    let work = Work {
+    let work = SessionState {
         settings: headless.settings_mut().clone(),
         model: args.model.clone(),
         tree: args.common.source()?.location().map(Path::to_owned),

@@ -10,7 +10,7 @@ use specula::app::{self, AppError, AppOptions, OtherPicture};
 use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
-use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, State, Work};
+use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, RecoveryState, SessionState};
 use specula::shader::Source;
 
 use super::Failure;
@@ -95,13 +95,13 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         return Err(Failure::Usage(message));
     }
     let source = args.common.source()?;
-    let given = Work {
+    let given = SessionState {
         settings: args.common.settings_of_window()?,
         model: args.model,
         tree: source.location().map(Path::to_owned),
     };
     let follows_lights = args.common.leaves_lights_open();
-    let state = folder.as_deref().map(State::read).unwrap_or_default();
+    let state = folder.as_deref().map(RecoveryState::read).unwrap_or_default();
     // A model and options say what is wanted, and after a loss the record does.
     let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
     let restored = is_plain.then(app::session_to_restore).flatten();

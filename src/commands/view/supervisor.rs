@@ -12,7 +12,7 @@ use std::process::{ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use specula::message;
-use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, State, VARIABLE, remove_folder};
+use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
 
 use crate::commands::Failure;
 
@@ -46,7 +46,7 @@ pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Re
         }
     };
     while let Some(cause) = cause_of_loss(status) {
-        let state = State::read(&folder.0);
+        let state = RecoveryState::read(&folder.0);
         let tree = state.work.as_ref().and_then(|work| work.tree.clone());
         let state = state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref()));
         if state.losses >= MOST_LOSSES {
@@ -211,7 +211,7 @@ fn crash(_: ExitStatus, code: Option<i32>) -> Option<String> {
 }
 
 /// Why the session ends.
-fn farewell(cause: &str, state: &State) -> String {
+fn farewell(cause: &str, state: &RecoveryState) -> String {
     let refused: Vec<&str> = state.refused.keys().map(String::as_str).collect();
     let advice = match refused.as_slice() {
         [] => "Another program may have caused it; try `--device NAME` or `--env none`".to_owned(),
