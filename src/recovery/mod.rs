@@ -2,8 +2,8 @@
 //!
 //! `specula view` runs the window as a child process. The child's [`Recorder`] keeps two files in a folder of the session: the
 //! [`RecoveryState`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
-//! After a loss, [`RecoveryState::after_loss`] compares the two and decides what the next process does without: the texts that were being
-//! tried, or else the settings.
+//! After a loss, [`RecoveryState::after_loss`] compares the two and decides what the next process leaves out: the texts under
+//! suspicion, or else the settings.
 
 mod recorder;
 
@@ -27,7 +27,7 @@ pub const VARIABLE: &str = "SPECULA_SESSION";
 pub const LOST: u8 = 75;
 /// Exit code of a child whose device does not answer. Its parent does not pass it on.
 pub const HUNG: u8 = 76;
-/// Losses in a row after which the session ends.
+/// The session ends after this many losses in a row.
 pub const MOST_LOSSES: u32 = 3;
 
 const STATE: &str = "state.json";
@@ -45,7 +45,7 @@ pub struct SessionState {
 }
 
 impl SessionState {
-    /// Whether both show the same from two places: all is equal but the camera and the directions of orbiting lights, which change
+    /// Whether both are equal except for the camera and the directions of orbiting lights, which change
     /// in many frames and never make a shader hang by themselves.
     pub fn is_alike(&self, other: &Self) -> bool {
         *self == other.placed_as(self)
@@ -104,7 +104,7 @@ pub struct Loss {
     pub reset: Vec<String>,
 }
 
-/// The record of a process: its work, and the texts that it tries.
+/// What a process records for its successor: the state of its session, and the texts that the device has not drawn yet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecoveryState {
@@ -112,14 +112,14 @@ pub struct RecoveryState {
     pub losses: u32,
     /// The last loss.
     pub loss: Option<Loss>,
-    /// The user's work; `None` before the first frame.
+    /// The state of the session; `None` before the first frame.
     pub work: Option<SessionState>,
-    /// The work that the device has drawn without a fault.
+    /// The state that the device has drawn without a fault.
     pub good: Option<SessionState>,
-    /// Texts that the process reads and compiles, by path and [`text_hash`], until the device has drawn them.
-    pub tried: BTreeMap<String, u64>,
-    /// Texts that are not used until one of them changes.
-    pub refused: BTreeMap<String, u64>,
+    /// Texts that the device has not drawn yet, by path and [`text_hash`]: a loss is blamed on them.
+    pub suspects: BTreeMap<String, u64>,
+    /// Texts that are not compiled until one of them changes.
+    pub quarantined: BTreeMap<String, u64>,
     /// The window.
     pub window: Option<Geometry>,
 }
@@ -149,12 +149,12 @@ impl RecoveryState {
             // No stage of the last good picture has used the file.
             text_hash(&text.unwrap_or_else(|| embedded.read(&TreePath::from(path.as_str())))) != **hash
         };
-        let suspects: BTreeMap<String, u64> =
-            self.tried.iter().filter(is_new).map(|(path, hash)| (path.clone(), *hash)).collect();
+        let new: BTreeMap<String, u64> =
+            self.suspects.iter().filter(is_new).map(|(path, hash)| (path.clone(), *hash)).collect();
         let in_good_tree = self.work.as_ref().is_none_or(|work| work.tree == good.tree);
         let mut reset = Vec::new();
-        if in_good_tree && !suspects.is_empty() {
-            self.refused.extend(suspects);
+        if in_good_tree && !new.is_empty() {
+            self.quarantined.extend(new);
         } else if let (Some(work), Some(good)) = (&mut self.work, &self.good)
             && !work.is_alike(good)
         {
@@ -162,12 +162,12 @@ impl RecoveryState {
             reset = work.differences(&placed);
             *work = placed;
         }
-        self.tried.clear();
+        self.suspects.clear();
         self.loss = Some(Loss { cause: cause.to_owned(), reset });
         self
     }
 
-    /// The tree to read: [`Source::held`] if there has been a loss in it.
+    /// The tree to read: [`Source::quarantined`] if there has been a loss in it.
     pub fn source(&self, tree: Source, good: GoodTexts) -> Source {
         let (Some(loss), Some(location)) = (&self.loss, tree.location()) else { return tree };
         if good.tree.as_deref() != Some(location) {
@@ -175,8 +175,8 @@ impl RecoveryState {
         }
         let path = |text: &String| TreePath::parse(text);
         let texts = good.texts.iter().filter_map(|(name, text)| Some((path(name)?, text.clone()))).collect();
-        let refused = self.refused.iter().filter_map(|(name, hash)| Some((path(name)?, *hash))).collect();
-        Source::held(tree, &texts, refused, &format!("{} while this text was in use", loss.cause))
+        let quarantined = self.quarantined.iter().filter_map(|(name, hash)| Some((path(name)?, *hash))).collect();
+        Source::quarantined(tree, &texts, quarantined, &format!("{} while this text was in use", loss.cause))
     }
 }
 

@@ -52,11 +52,11 @@ impl Recorder {
 
     /// Records that these texts are about to be compiled and used, beside those that have been tried but not drawn. `refused`
     /// texts are not used. Returns what had been tried before.
-    pub fn try_texts(&self, texts: BTreeMap<TreePath, u64>, refused: BTreeMap<TreePath, u64>) -> BTreeMap<String, u64> {
+    pub fn try_texts(&self, texts: BTreeMap<TreePath, u64>, quarantined: BTreeMap<TreePath, u64>) -> BTreeMap<String, u64> {
         let mut inner = self.lock();
-        let before = inner.state.tried.clone();
-        inner.state.tried.extend(texts.into_iter().map(|(path, hash)| (path.to_string(), hash)));
-        inner.state.refused = refused.into_iter().map(|(path, hash)| (path.to_string(), hash)).collect();
+        let before = inner.state.suspects.clone();
+        inner.state.suspects.extend(texts.into_iter().map(|(path, hash)| (path.to_string(), hash)));
+        inner.state.quarantined = quarantined.into_iter().map(|(path, hash)| (path.to_string(), hash)).collect();
         inner.write();
         before
     }
@@ -64,7 +64,7 @@ impl Recorder {
     /// Records that the texts of the last [`Recorder::try_texts`] do not compile, so that they never reach the device.
     pub fn take_back(&self, before: BTreeMap<String, u64>) {
         let mut inner = self.lock();
-        inner.state.tried = before;
+        inner.state.suspects = before;
         inner.write();
     }
 
@@ -113,7 +113,7 @@ impl Recorder {
         let good = GoodTexts { tree, texts };
         let is_drawn =
             |path: &String, hash: u64| good.texts.get(path).is_none_or(|text| text_hash(&Ok(text.clone())) == hash);
-        inner.state.tried.retain(|path, hash| !is_drawn(path, *hash));
+        inner.state.suspects.retain(|path, hash| !is_drawn(path, *hash));
         if inner.good != good {
             inner.state.losses = 0;
             inner.good = good;

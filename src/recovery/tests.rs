@@ -20,19 +20,19 @@ fn session() -> (RecoveryState, GoodTexts) {
 #[test]
 fn a_new_text_is_refused_and_the_settings_stay() {
     let (mut state, good) = session();
-    state.tried = [("a.glsl".to_owned(), hash("new")), ("b.glsl".to_owned(), hash("old"))].into();
+    state.suspects = [("a.glsl".to_owned(), hash("new")), ("b.glsl".to_owned(), hash("old"))].into();
     let work = state.work.as_mut().unwrap();
     work.settings.mode = "normal".into();
     let work = work.clone();
     let next = state.after_loss(CAUSE, &good);
-    assert_eq!(next.refused, [("a.glsl".to_owned(), hash("new"))].into());
+    assert_eq!(next.quarantined, [("a.glsl".to_owned(), hash("new"))].into());
     assert_eq!(next.work, Some(work));
     assert_eq!(next.losses, 1);
-    assert!(next.tried.is_empty());
+    assert!(next.suspects.is_empty());
     // The same happens again with a second text: both are refused.
-    let again = RecoveryState { tried: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
+    let again = RecoveryState { suspects: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
     let again = again.after_loss(CAUSE, &good);
-    assert_eq!((again.refused.len(), again.losses), (2, 2));
+    assert_eq!((again.quarantined.len(), again.losses), (2, 2));
 }
 
 #[test]
@@ -52,17 +52,17 @@ fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
     let next = state.after_loss(CAUSE, &good);
     assert_eq!(next.loss.unwrap().reset, ["shader.rate", "view.msaa", "the model"]);
     assert_eq!(next.work, Some(SessionState { settings: moved.settings, ..session().0.work.unwrap() }));
-    assert!(next.refused.is_empty());
+    assert!(next.quarantined.is_empty());
 }
 
 #[test]
 fn texts_of_another_tree_are_left_together_with_it() {
     let (mut state, good) = session();
     state.work.as_mut().unwrap().tree = Some("other".into());
-    state.tried = [("a.glsl".to_owned(), hash("new"))].into();
+    state.suspects = [("a.glsl".to_owned(), hash("new"))].into();
     let next = state.after_loss(CAUSE, &good);
     assert_eq!(next.loss.unwrap().reset, ["the shader tree"]);
-    assert!(next.refused.is_empty());
+    assert!(next.quarantined.is_empty());
 }
 
 #[test]
@@ -77,11 +77,11 @@ fn records_are_read_by_the_next_process() {
     let attempt = recorder.begin(state.work.as_ref().unwrap(), || window);
     let read = RecoveryState::read(folder.path());
     assert_eq!((read.work, read.good, read.window), (state.work.clone(), None, Some(window)));
-    assert_eq!(read.tried.len(), 1);
+    assert_eq!(read.suspects.len(), 1);
     recorder.drawn(attempt);
     assert_eq!(RecoveryState::read(folder.path()).good, state.work);
     recorder.take_back(before);
-    assert!(RecoveryState::read(folder.path()).tried.is_empty());
+    assert!(RecoveryState::read(folder.path()).suspects.is_empty());
 
     good.write(folder.path()).unwrap();
     assert_eq!(GoodTexts::read(folder.path(), None), good);

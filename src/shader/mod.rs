@@ -31,7 +31,7 @@ pub use includes::IncludeGraph;
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};
 pub use not_finite::{FirstNotFinite, Site, TracedShaders};
 pub use pixel::PixelValue;
-pub use source::held::text_hash;
+pub use source::quarantine::text_hash;
 pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree};
 pub use spirv::specialize;
 pub use watch::{Batch, Watcher};

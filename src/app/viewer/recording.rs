@@ -31,7 +31,7 @@ impl Viewer {
     pub(super) fn report_loss(&mut self) {
         let state = self.recorder.state();
         let Some(loss) = &state.loss else { return };
-        let refused = state.refused.keys().map(String::as_str).collect();
+        let refused = state.quarantined.keys().map(String::as_str).collect();
         let event = Event::Restarted { cause: &loss.cause, losses: state.losses, refused, reset: &loss.reset };
         emit(&self.events, &event);
         match loss.reset.as_slice() {

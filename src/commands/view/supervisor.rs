@@ -212,7 +212,7 @@ fn crash(_: ExitStatus, code: Option<i32>) -> Option<String> {
 
 /// Why the session ends.
 fn farewell(cause: &str, state: &RecoveryState) -> String {
-    let refused: Vec<&str> = state.refused.keys().map(String::as_str).collect();
+    let refused: Vec<&str> = state.quarantined.keys().map(String::as_str).collect();
     let advice = match refused.as_slice() {
         [] => "Another program may have caused it; try `--device NAME` or `--env none`".to_owned(),
         refused => format!("Undo the last edits of {} before you start again", refused.join(", ")),

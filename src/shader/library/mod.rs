@@ -76,7 +76,7 @@ pub struct ShaderSet {
     pub parameters: Vec<Parameter>,
     /// The passes that the tree adds, in order.
     pub graph: Graph,
-    /// The compiler's warnings, and an error for each file whose text is refused ([`Source::held`]).
+    /// The compiler's warnings, and an error for each file whose text is refused ([`Source::quarantined`]).
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,

@@ -3,7 +3,7 @@
 pub(super) mod directory;
 pub mod draft;
 pub mod embedded;
-pub mod held;
+pub mod quarantine;
 pub mod pattern;
 mod read;
 pub mod snapshot;
@@ -22,7 +22,7 @@ use crate::shader::diagnostic::Diagnostic;
 
 use draft::Draft;
 use embedded::Example;
-use held::Held;
+use quarantine::Quarantine;
 use read::{check_text, names_in, read_bytes, read_file};
 use toy::Toy;
 
@@ -145,8 +145,8 @@ pub enum SourceError {
 pub enum Source {
     /// A directory, read again at every update.
     Disk(PathBuf),
-    /// A directory, some of whose files are held back: see [`Source::held`].
-    Held(Arc<Held>),
+    /// A directory, some of whose files are quarantined: see [`Source::quarantined`].
+    Quarantined(Arc<Quarantine>),
     /// A tree with other texts of some files in memory: see [`Source::with_draft`].
     Draft(Arc<Draft>),
     /// The tree inside the binary, or that of an example.
@@ -182,9 +182,9 @@ impl Source {
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         match self {
             Self::Disk(root) => read_file(&root.join(path.as_str())),
-            Self::Held(held) => match held.text(path) {
+            Self::Quarantined(quarantine) => match quarantine.text(path) {
                 Some(text) => Ok(text.clone()),
-                None => held.tree().read(path),
+                None => quarantine.tree().read(path),
             },
             Self::Draft(draft) => draft.read(path),
             Self::Toy(toy) => toy.read(path),
@@ -197,7 +197,7 @@ impl Source {
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match self {
             Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
-            Self::Held(held) => held.tree().read_bytes(path),
+            Self::Quarantined(quarantine) => quarantine.tree().read_bytes(path),
             Self::Draft(draft) => draft.tree().read_bytes(path),
             Self::Toy(toy) => toy.read_bytes(path),
             Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
@@ -208,7 +208,7 @@ impl Source {
     /// The path for messages. For a directory, an editor can open it from the working directory.
     pub fn display_path(&self, path: &TreePath) -> String {
         match (self, self.root()) {
-            (Self::Held(held), _) => held.tree().display_path(path),
+            (Self::Quarantined(quarantine), _) => quarantine.tree().display_path(path),
             (Self::Draft(draft), _) => draft.tree().display_path(path),
             (Self::Toy(toy), _) => toy.display_path(path),
             (_, Some(root)) if root == Path::new(".") => path.to_string(),
@@ -221,7 +221,7 @@ impl Source {
     /// All files, sorted, without hidden files and directories (of editors and git).
     pub fn list(&self) -> Vec<TreePath> {
         match (self, self.root()) {
-            (Self::Held(held), _) => held.tree().list(),
+            (Self::Quarantined(quarantine), _) => quarantine.tree().list(),
             (Self::Draft(draft), _) => draft.tree().list(),
             (Self::Toy(toy), _) => toy.list(),
             (_, Some(root)) => {
@@ -244,7 +244,7 @@ impl Source {
     pub fn folder(&self, folder: &str) -> Vec<String> {
         let mut names = match self {
             Self::Disk(root) => names_in(&root.join(folder)),
-            Self::Held(held) => held.tree().folder(folder),
+            Self::Quarantined(quarantine) => quarantine.tree().folder(folder),
             Self::Draft(draft) => draft.tree().folder(folder),
             Self::Toy(toy) => toy.names_in(folder),
             Self::Embedded(_) | Self::Memory(_) => {
@@ -263,7 +263,7 @@ impl Source {
     pub fn root(&self) -> Option<&Path> {
         match self {
             Self::Disk(root) => Some(root),
-            Self::Held(held) => held.tree().root(),
+            Self::Quarantined(quarantine) => quarantine.tree().root(),
             Self::Draft(draft) => draft.tree().root(),
             Self::Embedded(_) | Self::Memory(_) | Self::Toy(_) => None,
         }
@@ -272,7 +272,7 @@ impl Source {
     /// The directory or file that [`Source::open`] opens; `None` for a tree that is not on disk.
     pub fn location(&self) -> Option<&Path> {
         match self {
-            Self::Held(held) => held.tree().location(),
+            Self::Quarantined(quarantine) => quarantine.tree().location(),
             Self::Draft(draft) => draft.tree().location(),
             Self::Toy(toy) => Some(toy.file()),
             _ => self.root(),
@@ -282,7 +282,7 @@ impl Source {
     /// The files to watch of a tree that has no directory of its own. They change with the texts.
     pub fn files(&self) -> Vec<PathBuf> {
         match self {
-            Self::Held(held) => held.tree().files(),
+            Self::Quarantined(quarantine) => quarantine.tree().files(),
             Self::Draft(draft) => draft.tree().files(),
             Self::Toy(toy) => toy.watched(),
             _ => Vec::new(),
@@ -292,7 +292,7 @@ impl Source {
     /// The paths of the tree whose text a change of this file on disk may change.
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         match self {
-            Self::Held(held) => held.tree().changed(file),
+            Self::Quarantined(quarantine) => quarantine.tree().changed(file),
             Self::Draft(draft) => draft.tree().changed(file),
             Self::Toy(toy) => toy.changed(file),
             _ => {
@@ -307,7 +307,7 @@ impl Source {
         match self {
             Self::Toy(toy) => toy.problems(),
             // Its texts are not those on disk while some are held back.
-            Self::Held(held) if held.is_released() => held.tree().problems(),
+            Self::Quarantined(quarantine) if quarantine.is_released() => quarantine.tree().problems(),
             Self::Draft(draft) => draft.tree().problems(),
             _ => Vec::new(),
         }
@@ -318,7 +318,7 @@ impl Source {
     pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::Toy(toy) => toy.explained(diagnostic),
-            Self::Held(held) => held.tree().explained(diagnostic),
+            Self::Quarantined(quarantine) => quarantine.tree().explained(diagnostic),
             Self::Draft(draft) => draft.tree().explained(diagnostic),
             _ => diagnostic,
         }

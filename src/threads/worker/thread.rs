@@ -227,7 +227,7 @@ impl Thread {
             Change::Paths(paths) => paths.clone(),
             Change::All if library.set().is_some() => known.clone(),
             // The last good texts come first.
-            Change::All if matches!(source, Source::Held(_)) => BTreeSet::new(),
+            Change::All if matches!(source, Source::Quarantined(_)) => BTreeSet::new(),
             Change::All => source.list().into_iter().collect(),
         };
         // A new file may be included only now. Editors save other files beside, with names and endings of their own.
@@ -238,7 +238,7 @@ impl Thread {
         let is_tried = |path: &TreePath| known.contains(path) || is_shader(path);
         let paths = paths.into_iter().filter(is_tried);
         let texts = paths.map(|path| (path.clone(), text_hash(&source.read(&path)))).collect();
-        self.recorder.try_texts(texts, source.refused())
+        self.recorder.try_texts(texts, source.quarantined_files())
     }
 
     /// Compiles the stages that the last reload has left, unless a newer edit arrives.
