@@ -58,7 +58,7 @@ impl PipelineRequest {
         let mode = modes.first().map(|mode| mode.slug.clone()).unwrap_or_default();
         let mut request = Self::new(&Settings { mode, ..settings.clone() }, shaders, scene, target);
         request.passes.retain(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
-        (request.edges, request.edges_stage) = (None, String::new());
+        (request.wireframe, request.wireframe_stage) = (None, String::new());
         if modes.len() > 1 {
             request.modes = modes.iter().map(|mode| SharedMode { id: mode.id, encode: mode.encode.id() }).collect();
         }

@@ -76,9 +76,9 @@ pub struct PipelineRequest {
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
     /// The pass that draws the edges of triangles over the picture; `None` if they are not shown.
-    pub edges: Option<Arc<GraphPass>>,
+    pub wireframe: Option<Arc<GraphPass>>,
     /// The stage of that pass, which may be still to be compiled; empty if edges are not shown.
-    pub edges_stage: String,
+    pub wireframe_stage: String,
     /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
     pub modes: Vec<SharedMode>,
 }
@@ -182,8 +182,8 @@ impl PipelineRequest {
             stage,
             passes,
             draws_model,
-            edges: edges(settings, shaders),
-            edges_stage: edges_stage(settings, shaders).unwrap_or_default(),
+            wireframe: wireframe(settings, shaders),
+            wireframe_stage: wireframe_stage(settings, shaders).unwrap_or_default(),
             shown_pass,
             modes: Vec::new(),
         }
@@ -262,10 +262,10 @@ impl PipelineRequest {
     pub fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
         let model = self.draws_model.then(|| self.stage.clone());
-        let all = self.passes.iter().chain(&self.edges);
+        let all = self.passes.iter().chain(&self.wireframe);
         let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
-        let edges = Some(self.edges_stage.clone()).filter(|stage| !stage.is_empty());
-        passes.chain(model).chain(edges).collect()
+        let wireframe = Some(self.wireframe_stage.clone()).filter(|stage| !stage.is_empty());
+        passes.chain(model).chain(wireframe).collect()
     }
 
     /// Whether a picture needs stages that are still to be compiled.
@@ -289,13 +289,13 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
 }
 
 /// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
-fn edges(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
-    let stage = edges_stage(settings, shaders)?;
+fn wireframe(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
+    let stage = wireframe_stage(settings, shaders)?;
     let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.stage == stage;
     shaders.graph.passes.iter().find(draws).cloned()
 }
 
-fn edges_stage(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
+fn wireframe_stage(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
     let lines = shaders.modes.iter().find(|mode| mode.draw == DrawAs::Lines)?;
     settings.view.wireframe.then(|| lines.stage.clone())
 }

@@ -406,7 +406,7 @@ fn kind_of(input: &Input) -> PassBinding {
     match input {
         Input::Picture
         | Input::Samples
-        | Input::Behind
+        | Input::OpaqueScene
         | Input::Depth
         | Input::Image(_)
         | Input::Before(_)

@@ -57,8 +57,8 @@ impl PipelineRequest {
     }
 
     /// The pipeline that draws the edges of a material's triangles over the picture.
-    pub(crate) fn edges_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
-        let pass = self.edges.as_ref().filter(|pass| material.is_taken_by(pass))?;
+    pub(crate) fn wireframe_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
+        let pass = self.wireframe.as_ref().filter(|pass| material.is_taken_by(pass))?;
         if material.class != PrimitiveClass::Triangles {
             return None;
         }
@@ -70,7 +70,7 @@ impl PipelineRequest {
     }
 
     /// The pipeline that draws a material in the pass `behind`.
-    pub(crate) fn behind_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
+    pub(crate) fn opaque_scene_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
         let is_opaque = material.alpha != interface::ALPHA_BLEND && !self.is_transmissive(material);
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
@@ -187,7 +187,7 @@ impl PipelineRequest {
 
     /// The pipelines of the model, of what is drawn with it, of the resolve and of the mean.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let of = |m: &MaterialVariant| [self.model_key(*m), self.behind_key(*m), self.edges_key(*m)];
+        let of = |m: &MaterialVariant| [self.model_key(*m), self.opaque_scene_key(*m), self.wireframe_key(*m)];
         let model = self.materials.iter().flat_map(of).flatten();
         let added = self.added_passes().flat_map(|pass| self.pass_keys(pass));
         model.chain(added).chain(self.background_keys()).chain(self.resolve_key()).chain(self.average_key())

@@ -234,8 +234,8 @@ impl View {
         if redrawn {
             self.declared.before_model(encoder, &context)?;
         }
-        let (samples, behind) = (targets.multisampled.as_ref(), targets.behind.as_ref());
-        let given = Given { picture: Some(&targets.color), samples, behind, ..Given::default() };
+        let (samples, opaque_scene) = (targets.multisampled.as_ref(), targets.opaque_scene.as_ref());
+        let given = Given { picture: Some(&targets.color), samples, opaque_scene, ..Given::default() };
         let sets = self.declared.sets_of(&context, &given, frame.state.pipelines.model_keys())?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {

@@ -61,8 +61,8 @@ impl Passes<'_> {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
         }
         let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, &self.frame.state)).unwrap_or_default();
-        if let Some(behind) = &targets.behind {
-            encoder.pass("behind", |encoder| self.behind(encoder, &sorted.opaque, behind));
+        if let Some(opaque_scene) = &targets.opaque_scene {
+            encoder.pass("behind", |encoder| self.opaque_scene(encoder, &sorted.opaque, opaque_scene));
         }
         encoder.pass("model", |encoder| self.surfaces(encoder, &sorted));
     }
@@ -108,7 +108,7 @@ impl Passes<'_> {
         let targets = self.targets;
         // Opaque surfaces that `behind` has drawn are not drawn again, unless this mode draws them differently from the
         // final picture, which `behind` holds.
-        let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
+        let has_opaque = targets.opaque_scene.is_some() && !self.request().draws_opaque_twice();
         let clear = (!has_opaque).then_some([0.0; 4]);
         let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);
         if let Some(resolved) = resolve_depth {
@@ -129,7 +129,7 @@ impl Passes<'_> {
         self.background(encoder);
         self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
         self.added(encoder, true);
-        self.edges(encoder);
+        self.wireframe(encoder);
         encoder.end_rendering();
         if let (Some(pipeline), Some(samples)) = (weigh, &targets.multisampled) {
             encoder.transition(samples, Use::Color, Use::Sampled);
@@ -142,17 +142,17 @@ impl Passes<'_> {
     }
 
     /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
-    fn behind(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], behind: &Arc<Image>) {
+    fn opaque_scene(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], opaque_scene: &Arc<Image>) {
         let targets = self.targets;
-        encoder.transition(behind, Use::Undefined, Use::Sampled);
+        encoder.transition(opaque_scene, Use::Undefined, Use::Sampled);
         encoder.begin_rendering(&Attachments { goes_on: true, ..self.hdr() });
-        self.draw(encoder, opaque, PipelineRequest::behind_key);
+        self.draw(encoder, opaque, PipelineRequest::opaque_scene_key);
         self.added(encoder, false);
         encoder.end_rendering();
         encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
-        encoder.transition(behind, Use::Sampled, Use::CopyTo);
-        encoder.fill_levels(&targets.color, behind);
-        encoder.transition(behind, Use::CopyFrom, Use::Sampled);
+        encoder.transition(opaque_scene, Use::Sampled, Use::CopyTo);
+        encoder.fill_levels(&targets.color, opaque_scene);
+        encoder.transition(opaque_scene, Use::CopyFrom, Use::Sampled);
         encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
         encoder.transition(&targets.depth, Use::Depth, Use::Depth);
         if let Some(multisampled) = &targets.multisampled {
@@ -170,10 +170,10 @@ impl Passes<'_> {
     }
 
     /// Draws the edges of all triangles over the picture, if the settings say so.
-    fn edges(&self, encoder: &mut Encoder) {
-        let (Some(pass), Some(scene)) = (&self.request().edges, &self.frame.scene) else { return };
+    fn wireframe(&self, encoder: &mut Encoder) {
+        let (Some(pass), Some(scene)) = (&self.request().wireframe, &self.frame.scene) else { return };
         let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1, pass };
-        model.draw(encoder, &scene.draws, |material| self.request().edges_key(material));
+        model.draw(encoder, &scene.draws, |material| self.request().wireframe_key(material));
     }
 
     /// Draws what lies behind the model where nothing covers it.

@@ -34,7 +34,7 @@ pub(super) struct Targets {
     /// Depth of the first sample of each pixel, if a pass reads it and there is more than one.
     pub(super) resolved_depth: Option<Arc<Image>>,
     /// The opaque surfaces with mip levels, for transmissive surfaces to look up.
-    pub(super) behind: Option<Arc<Image>>,
+    pub(super) opaque_scene: Option<Arc<Image>>,
     /// Mean of the frames so far.
     pub(super) mean: Option<Arc<Image>>,
 }
@@ -61,7 +61,7 @@ impl Targets {
         };
         let copied = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let levels = mips::count(width, height);
-        let behind = match desc.transmission {
+        let opaque_scene = match desc.transmission {
             true => Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, format, copied) })?),
             false => None,
         };
@@ -69,7 +69,7 @@ impl Targets {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
-        Ok(Self { desc, color, multisampled, depth, resolved_depth, behind, mean })
+        Ok(Self { desc, color, multisampled, depth, resolved_depth, opaque_scene, mean })
     }
 
     /// Another color target of the same size and format.

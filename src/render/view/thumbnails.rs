@@ -102,8 +102,8 @@ impl Thumbnails {
         let context = PassContext { frame, frame_set: &set, blocks: &blocks, constants: &constants, depth };
         view.declared.before_model(encoder, &context)?;
         let request = &frame.state.pipelines;
-        let behind = targets.behind.as_ref().filter(|_| request.modes.is_empty());
-        let given = Given { picture: Some(&targets.color), behind, ..Given::default() };
+        let opaque_scene = targets.opaque_scene.as_ref().filter(|_| request.modes.is_empty());
+        let given = Given { picture: Some(&targets.color), opaque_scene, ..Given::default() };
         let sets = view.declared.sets_of(&context, &given, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
         let passes = Passes { layouts: &view.layouts, targets, frame, sets: &sets, only: None, more };

@@ -37,7 +37,7 @@ impl Input {
         match self {
             Self::Picture
             | Self::Samples
-            | Self::Behind
+            | Self::OpaqueScene
             | Self::Depth
             | Self::Before(_)
             | Self::Output
@@ -190,7 +190,7 @@ fn given(desc: &PassDesc) -> &'static [(&'static str, Input)] {
     match desc.to {
         Target::Resolve => &[],
         Target::Mean | Target::Display => &[("picture", Input::Picture)],
-        Target::Picture if desc.is_drawn_with_model() => &[("behind", Input::Behind)],
+        Target::Picture if desc.is_drawn_with_model() => &[("behind", Input::OpaqueScene)],
         Target::Picture | Target::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],
     }
 }

@@ -41,8 +41,8 @@ pub enum Input {
     Picture,
     /// The samples of the picture's pixels.
     Samples,
-    /// The opaque surfaces, which transmissive surfaces look up.
-    Behind,
+    /// Color of the opaque scene, with mip levels, which transmissive surfaces look up (`behind` in GLSL).
+    OpaqueScene,
     /// Depth of the model: 1 near, 0 at infinity or where there is nothing.
     Depth,
     /// The image of another pass.

@@ -24,7 +24,7 @@ pub(in crate::render::view) struct Given<'a> {
     /// Its samples, before they are resolved.
     pub(in crate::render::view) samples: Option<&'a Arc<Image>>,
     /// The opaque surfaces, with mip levels.
-    pub(in crate::render::view) behind: Option<&'a Arc<Image>>,
+    pub(in crate::render::view) opaque_scene: Option<&'a Arc<Image>>,
     /// The model's depth.
     pub(in crate::render::view) depth: Option<&'a Arc<Image>>,
     /// The image that a compute pass writes.
@@ -47,7 +47,7 @@ impl DeclaredPasses {
             Ok(match reads.inputs.get(&binding).ok_or_else(missing)? {
                 Input::Picture => self.sampled(given.picture.unwrap_or(&self.blank)),
                 Input::Samples => PassResource::Texture(given.samples.ok_or_else(missing)?, &self.nearest),
-                Input::Behind => PassResource::Texture(given.behind.unwrap_or(&self.blank), &self.linear),
+                Input::OpaqueScene => PassResource::Texture(given.opaque_scene.unwrap_or(&self.blank), &self.linear),
                 Input::Depth => PassResource::Texture(given.depth.unwrap_or(&self.blank), &self.nearest),
                 Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
                 Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&self.blank)),
