@@ -119,7 +119,7 @@ impl Screen {
             None => (View::new(&viewer.gpu, viewer.resources.layouts(), FRAMES_IN_FLIGHT)?, None),
         };
         let stored = still.as_ref().is_some_and(|(_, still)| still.display.is_some());
-        view.given = still.as_ref().filter(|_| !stored).map(|(_, still)| still.image.clone());
+        view.override_image = still.as_ref().filter(|_| !stored).map(|(_, still)| still.image.clone());
         if !stored {
             view.prepare(&frame)?;
         }

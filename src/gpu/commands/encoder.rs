@@ -49,7 +49,7 @@ pub struct Attachments<'a> {
     /// Whether later commands read the depth target.
     pub keeps_depth: bool,
     /// Whether later commands continue to draw to these targets. If so, depth and multisampled color are stored too.
-    pub goes_on: bool,
+    pub keeps_contents: bool,
     /// The part of the targets that is drawn.
     pub area: Rect,
 }
@@ -59,7 +59,7 @@ impl<'a> Attachments<'a> {
     pub fn of(color: &'a Arc<Image>) -> Self {
         let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
         let (clear, resolve, resolve_depth, depth) = (None, None, None, None);
-        Self { color, more: &[], clear, resolve, resolve_depth, depth, keeps_depth: false, goes_on: false, area }
+        Self { color, more: &[], clear, resolve, resolve_depth, depth, keeps_depth: false, keeps_contents: false, area }
     }
 }
 
@@ -131,7 +131,7 @@ impl Encoder {
     /// Begins drawing to `to`, and sets viewport and scissor to its area.
     pub fn begin_rendering(&mut self, to: &Attachments<'_>) {
         let load = if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
-        let store = if to.goes_on { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::DONT_CARE };
+        let store = if to.keeps_contents { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::DONT_CARE };
         let color_of = |image: &Image| {
             vk::RenderingAttachmentInfo::default()
                 .image_view(image.view)

@@ -26,7 +26,7 @@ use crate::shader::graph::{Input, RenderPhase, TextureKind};
 pub(super) use blocks::Blocks;
 use images::Images;
 pub use memory::beyond_memory;
-pub(super) use reads::Given;
+pub(super) use reads::FrameImages;
 use reads::Reads;
 use reuse::PassCacheKey;
 pub(super) use sets::PassSets;
@@ -195,7 +195,7 @@ impl DeclaredPasses {
     pub(super) fn sets_of(
         &mut self,
         context: &PassContext<'_>,
-        given: &Given<'_>,
+        images: &FrameImages<'_>,
         keys: impl Iterator<Item = PipelineKey>,
     ) -> Result<PassSets, GpuError> {
         let passes = &context.frame.state.pipelines.passes;
@@ -204,7 +204,7 @@ impl DeclaredPasses {
             let Some(pipeline) = context.frame.pipelines.get(&key) else { continue };
             let pass = &key.pass.0;
             let index = passes.iter().position(|other| Arc::ptr_eq(other, pass));
-            let reads = Reads { name: pass.name(), inputs: &pass.inputs, given, index };
+            let reads = Reads { name: pass.name(), inputs: &pass.inputs, images, index };
             sets.insert(pipeline, self.set(&pipeline.layout, context, &reads)?);
         }
         Ok(sets)
@@ -226,9 +226,9 @@ impl DeclaredPasses {
                 false => self.images.target(pass.name()).cloned(),
             };
             let Some(target) = target else { continue };
-            let given =
-                Given { picture: Some(&picture), depth: context.depth, target: Some(&target), ..Given::default() };
-            let reads = Reads { name: pass.name(), inputs: &pass.inputs, given: &given, index: Some(index) };
+            let images =
+                FrameImages { picture: Some(&picture), depth: context.depth, target: Some(&target), ..FrameImages::default() };
+            let reads = Reads { name: pass.name(), inputs: &pass.inputs, images: &images, index: Some(index) };
             let cache_key = self.cache_key(context, pass, index);
             if cache_key.as_ref().is_some_and(|key| self.images.holds(pass.name(), key)) {
                 encoder.kept_pass(pass.name());

@@ -88,7 +88,7 @@ impl View {
 
     /// Whether samples of the picture are on their way, or the last frame showed new limits, which a legend does not know yet.
     pub fn awaits_range_sample(&self) -> bool {
-        self.is_shown_anew
+        self.limits_changed
             || self.range_sampled != 0 && self.range_sample.as_ref().map(|range_sample| range_sample.picture) != Some(self.range_sampled)
     }
 }

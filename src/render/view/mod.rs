@@ -28,7 +28,7 @@ pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use range_sample::RangeSampleReadback;
 
-use declared::{Blocks, DeclaredPasses, PassContext, Given};
+use declared::{Blocks, DeclaredPasses, PassContext, FrameImages};
 
 use super::bound_frame::BoundFrame;
 use crate::frame::{Display, Limits, TargetFormat};
@@ -112,12 +112,12 @@ pub struct View {
     /// The content of the display's constants in the last frame.
     displayed: Option<(Display, Option<Limits>)>,
     /// Whether the last frame showed other limits than the one before.
-    is_shown_anew: bool,
+    limits_changed: bool,
     /// The limits of another view, which replace those of this view's own values.
     followed: Option<Option<Limits>>,
-    /// The light that the tone map reads instead of the picture that was drawn: that of a file. It has the size of the frames, and is
-    /// in [`Use::Sampled`].
-    pub given: Option<Arc<Image>>,
+    /// The light of a file, which the tone map reads instead of the rendered frame. It has the size of the frame and is in
+    /// [`Use::Sampled`].
+    pub override_image: Option<Arc<Image>>,
 }
 
 impl View {
@@ -154,9 +154,9 @@ impl View {
             mode_since: None,
             known_limits: HashMap::new(),
             displayed: None,
-            is_shown_anew: false,
+            limits_changed: false,
             followed: None,
-            given: None,
+            override_image: None,
         })
     }
 
@@ -214,9 +214,9 @@ impl View {
 
         let redrawn = self.begins_picture(frame, only, redraw);
         let limits = self.limits_of(frame);
-        let is_shown_anew =
+        let limits_changed =
             self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
-        self.is_shown_anew = is_shown_anew;
+        self.limits_changed = limits_changed;
         let samples_range = (self.samples_range || frame.state.display.is_measured()) && self.range_sampled != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
@@ -235,8 +235,8 @@ impl View {
             self.declared.before_model(encoder, &context)?;
         }
         let (samples, opaque_scene) = (targets.multisampled.as_ref(), targets.opaque_scene.as_ref());
-        let given = Given { picture: Some(&targets.color), samples, opaque_scene, ..Given::default() };
-        let sets = self.declared.sets_of(&context, &given, frame.state.pipelines.model_keys())?;
+        let images = FrameImages { picture: Some(&targets.color), samples, opaque_scene, ..FrameImages::default() };
+        let sets = self.declared.sets_of(&context, &images, frame.state.pipelines.model_keys())?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {
             passes.model(encoder);
@@ -248,7 +248,7 @@ impl View {
 
         // The probed pixel, which `pixel` reads once the frame has finished.
         let drawn_picture = self.declared.picture().unwrap_or(targets.picture());
-        let picture = self.given.as_ref().unwrap_or(drawn_picture).clone();
+        let picture = self.override_image.as_ref().unwrap_or(drawn_picture).clone();
         let is_on_display = frame.state.pipelines.shows_display();
         let in_light = self.probe.filter(|_| !is_on_display);
         in_flight.pixel.record(encoder, &picture, in_light, self.picture);
@@ -258,8 +258,8 @@ impl View {
         }
 
         // The HDR picture to the display: exposure, tone map, sRGB.
-        let given = Given { picture: Some(&picture), ..Given::default() };
-        let sets = self.declared.sets_of(&context, &given, frame.state.pipelines.tonemap_key().into_iter())?;
+        let images = FrameImages { picture: Some(&picture), ..FrameImages::default() };
+        let sets = self.declared.sets_of(&context, &images, frame.state.pipelines.tonemap_key().into_iter())?;
         if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &sets, output.image, rect));
@@ -268,7 +268,7 @@ impl View {
 
         // The display to the output, through the declared passes after the tone map.
         let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
-        let display = self.declared.on_display(encoder, &context, redrawn || is_shown_anew, tone_map)?;
+        let display = self.declared.on_display(encoder, &context, redrawn || limits_changed, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(display) = display {
@@ -300,14 +300,14 @@ impl View {
         let accumulates = frame.state.pipelines.accumulates;
         let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
         let unchanged = !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same(frame));
-        let goes_on = accumulates && !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
+        let continues = accumulates && !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
         let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED && redraw != Redraw::ToneMap;
         let redrawn = !unchanged || improves || matches!(redraw, Redraw::Always | Redraw::Pixel(..));
         if redrawn {
             let now = frame.state.camera.clip_from_world();
             self.cameras = Some([now, self.cameras.map_or(now, |[last, _]| last)]);
             self.picture += 1;
-            self.sample_index = if goes_on { self.sample_index.saturating_add(1) } else { 0 };
+            self.sample_index = if continues { self.sample_index.saturating_add(1) } else { 0 };
         }
         redrawn
     }

@@ -83,7 +83,7 @@ impl Passes<'_> {
             more: &drawn,
             clear: Some([0.0; 4]),
             depth: Some(&targets.depth),
-            goes_on: true,
+            keeps_contents: true,
             ..Attachments::of(first.drawn())
         };
         encoder.begin_rendering(&attachments);
@@ -96,7 +96,7 @@ impl Passes<'_> {
             encoder.transition(&targets.depth, Use::Depth, Use::Depth);
             let resolve = target.multisampled.as_ref().map(|_| &target.color);
             let attachments =
-                Attachments { resolve, depth: Some(&targets.depth), goes_on: true, ..Attachments::of(target.drawn()) };
+                Attachments { resolve, depth: Some(&targets.depth), keeps_contents: true, ..Attachments::of(target.drawn()) };
             encoder.begin_rendering(&attachments);
             self.background(encoder);
             encoder.end_rendering();
@@ -145,7 +145,7 @@ impl Passes<'_> {
     fn opaque_scene(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], opaque_scene: &Arc<Image>) {
         let targets = self.targets;
         encoder.transition(opaque_scene, Use::Undefined, Use::Sampled);
-        encoder.begin_rendering(&Attachments { goes_on: true, ..self.hdr() });
+        encoder.begin_rendering(&Attachments { keeps_contents: true, ..self.hdr() });
         self.draw(encoder, opaque, PipelineRequest::opaque_scene_key);
         self.added(encoder, false);
         encoder.end_rendering();

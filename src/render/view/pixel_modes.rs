@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::capture::PixelReadback;
-use super::declared::{PassContext, Given};
+use super::declared::{PassContext, FrameImages};
 use super::passes::{ColorTarget, Passes, Sorted, sort};
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -71,8 +71,8 @@ impl PixelModes {
         encoder.bind_set(&view.layouts, &sets[0]);
         view.declared.before_model(encoder, &context(of_passes))?;
         encoder.bind_set(&view.layouts, &sets[1]);
-        let given = Given { picture: Some(&targets.color), ..Given::default() };
-        let pass_sets = view.declared.sets_of(&context(of_pixel), &given, state.pipelines.model_keys())?;
+        let images = FrameImages { picture: Some(&targets.color), ..FrameImages::default() };
+        let pass_sets = view.declared.sets_of(&context(of_pixel), &images, state.pipelines.model_keys())?;
         let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
         let passes = Passes { layouts: &view.layouts, targets, frame, sets: &pass_sets, only: None, more };
         let all: Vec<&Arc<Image>> =
@@ -138,7 +138,7 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
     let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
     let Some(first) = all.first() else { return };
     let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {
-        let attachments = Attachments { more, clear, depth: Some(depth), goes_on: true, ..Attachments::of(color) };
+        let attachments = Attachments { more, clear, depth: Some(depth), keeps_contents: true, ..Attachments::of(color) };
         encoder.begin_rendering(&attachments);
         encoder.set_part_of_picture(origin, frame.state.size);
     };

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::declared::{PassContext, Given};
+use super::declared::{PassContext, FrameImages};
 use super::passes::{ColorTarget, Passes};
 use super::{BoundFrame, View};
 use crate::frame::{Display, Limits};
@@ -103,8 +103,8 @@ impl Thumbnails {
         view.declared.before_model(encoder, &context)?;
         let request = &frame.state.pipelines;
         let opaque_scene = targets.opaque_scene.as_ref().filter(|_| request.modes.is_empty());
-        let given = Given { picture: Some(&targets.color), opaque_scene, ..Given::default() };
-        let sets = view.declared.sets_of(&context, &given, request.model_keys())?;
+        let images = FrameImages { picture: Some(&targets.color), opaque_scene, ..FrameImages::default() };
+        let sets = view.declared.sets_of(&context, &images, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
         let passes = Passes { layouts: &view.layouts, targets, frame, sets: &sets, only: None, more };
         match &*request.modes {
@@ -120,8 +120,8 @@ impl Thumbnails {
                 self.pending.insert(slot, frame.state.displays.clone());
             }
             encoder.bind_set(&view.layouts, &tonemap_sets[index]);
-            let given = Given { picture: Some(picture), ..Given::default() };
-            let sets = view.declared.sets_of(&context, &given, std::iter::once(key.clone()))?;
+            let images = FrameImages { picture: Some(picture), ..FrameImages::default() };
+            let sets = view.declared.sets_of(&context, &images, std::iter::once(key.clone()))?;
             encoder.transition(output, Use::Undefined, Use::Color);
             passes.tone_map_with(encoder, Some(&key), &sets, output, rect);
             encoder.transition(output, Use::Color, Use::CopyFrom);
