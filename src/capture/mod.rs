@@ -1,12 +1,12 @@
 //! Many pictures in one file: a contact sheet of modes, and animations. The same code serves a command, which has a [`Headless`], and
-//! the window, which draws with [`Stills`] on a thread.
+//! the window, which draws with [`OffscreenCapture`] on a thread.
 
 mod animation;
 mod label;
 mod modes;
 mod mp4;
 mod sheet;
-mod stills;
+mod offscreen;
 mod turntable;
 mod webp;
 mod yuv;
@@ -27,8 +27,8 @@ use crate::shader::ShaderSet;
 pub use animation::{Animation, check_animation};
 pub use modes::modes_of;
 pub use sheet::SheetPlan;
-pub use stills::Stills;
-pub(crate) use stills::VersionPicture;
+pub use offscreen::OffscreenCapture;
+pub(crate) use offscreen::VersionPicture;
 pub use turntable::{Turn, Turntable};
 
 /// Draws pictures of a session at any size.

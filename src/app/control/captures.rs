@@ -11,7 +11,7 @@ use super::files::write_capture;
 use super::requests::{path_text, short};
 use crate::app::viewer::Viewer;
 use crate::capture::{
-    Animation, CaptureError, Renderer as _, SheetPlan, Stills, Turn, Turntable, VersionPicture, check_animation,
+    Animation, CaptureError, Renderer as _, SheetPlan, OffscreenCapture, Turn, Turntable, VersionPicture, check_animation,
     modes_of,
 };
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
@@ -91,7 +91,7 @@ impl Job {
     /// shader tree. Returns the result of the answer.
     fn draw(
         self,
-        stills: &mut Stills,
+        offscreen: &mut OffscreenCapture,
         size: (u32, u32),
         (versions, tree, work): (&[VersionPicture], (&Compiler, &Source), SessionState),
         tell: &mut dyn FnMut(u64, u64) -> bool,
@@ -100,13 +100,13 @@ impl Job {
         match self {
             Self::Picture { file, size: own, mode, frames } => {
                 if let Some(mode) = mode {
-                    modes_of(stills.session(), std::slice::from_ref(&mode)).map_err(wrong)?;
-                    stills.settings().mode = mode;
+                    modes_of(offscreen.session(), std::slice::from_ref(&mode)).map_err(wrong)?;
+                    offscreen.settings().mode = mode;
                 }
-                stills.set_count(frames);
-                stills.set_linear(file.as_deref().is_some_and(picture::holds_light));
-                let capture = stills.capture(own.unwrap_or(size))?;
-                let shown = SessionState { settings: stills.settings().clone(), ..work };
+                offscreen.set_count(frames);
+                offscreen.set_linear(file.as_deref().is_some_and(picture::holds_light));
+                let capture = offscreen.capture(own.unwrap_or(size))?;
+                let shown = SessionState { settings: offscreen.settings().clone(), ..work };
                 let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
                 Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
             }
@@ -118,10 +118,10 @@ impl Job {
                         "[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"
                     )));
                 }
-                let modes = modes_of(stills.session(), &names).map_err(wrong)?;
-                let values: Vec<_> = modes.iter().zip(stills.pixel(size, at, &modes, tell)?).collect();
-                let not_finite = stills.not_finite((size, at), &values, tree);
-                let textures: Vec<Value> = stills.texels(size, at)?.iter().map(Texel::json).collect();
+                let modes = modes_of(offscreen.session(), &names).map_err(wrong)?;
+                let values: Vec<_> = modes.iter().zip(offscreen.pixel(size, at, &modes, tell)?).collect();
+                let not_finite = offscreen.not_finite((size, at), &values, tree);
+                let textures: Vec<Value> = offscreen.texels(size, at)?.iter().map(Texel::json).collect();
                 let values: Map<String, Value> =
                     values.iter().map(|(mode, value)| (mode.slug.clone(), short(value.json(mode)))).collect();
                 let mut found =
@@ -132,19 +132,19 @@ impl Job {
                 Ok(found)
             }
             Self::Sheet { file, names, size, columns } => {
-                let modes = modes_of(stills.session(), &names).map_err(wrong)?;
+                let modes = modes_of(offscreen.session(), &names).map_err(wrong)?;
                 let count = modes.len();
-                SheetPlan { modes, size, columns }.write(stills, &file, tell)?;
+                SheetPlan { modes, size, columns }.write(offscreen, &file, tell)?;
                 Ok(json!({ "file": path_text(&file), "modes": count }))
             }
             Self::Turntable { file, frames, fps, size: own, turn } => {
                 let plan = Turntable { frames, fps, size: own.unwrap_or(size), turn };
-                plan.write(stills, &file, tell)?;
+                plan.write(offscreen, &file, tell)?;
                 Ok(json!({ "file": path_text(&file), "frames": frames }))
             }
             Self::Timeline { file, fps, size: own } => {
                 let animation = Animation::new(&file, fps, versions.len())?;
-                stills.timeline(versions, own.unwrap_or(size), animation, tell)?;
+                offscreen.timeline(versions, own.unwrap_or(size), animation, tell)?;
                 Ok(json!({ "file": path_text(&file), "versions": versions.len() }))
             }
         }
@@ -228,10 +228,10 @@ impl Viewer {
                 !canceled.load(Ordering::Relaxed)
             };
             let result = match tell(0, 0) {
-                true => Stills::new(&gpu, session, resources, clock)
+                true => OffscreenCapture::new(&gpu, session, resources, clock)
                     .map_err(|error| CaptureError::Render(error.into()))
-                    .and_then(|mut stills| {
-                        job.draw(&mut stills, size, (&versions, (&compiler, &source), work), &mut tell)
+                    .and_then(|mut offscreen| {
+                        job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell)
                     }),
                 false => Err(CaptureError::Canceled),
             };

@@ -16,7 +16,7 @@ use crate::shader::not_finite::NotFinite;
 use crate::shader::{Compiler, Mode, PixelValue, Source};
 
 /// Draws pictures of a session.
-pub struct Stills {
+pub struct OffscreenCapture {
     gpu: Arc<Gpu>,
     session: Session,
     resources: Resources,
@@ -39,7 +39,7 @@ pub(crate) struct VersionPicture {
     pub(crate) like: Option<BoundFrame>,
 }
 
-impl Stills {
+impl OffscreenCapture {
     /// Copies of what the window draws with. `clock` is the time of all pictures.
     ///
     /// # Errors
@@ -246,7 +246,7 @@ impl Stills {
     }
 }
 
-impl Renderer for Stills {
+impl Renderer for OffscreenCapture {
     fn settings(&mut self) -> &mut Settings {
         &mut self.session.settings
     }
