@@ -1,6 +1,10 @@
 //! Results on disk that take long to make: what bakes compute, and the driver's pipelines.
 //!
 //! A baked entry is named by a hash of all its inputs, so it is never stale.
+//!
+//! The cache is `baked/` in `$SPECULA_CACHE`, or in `specula` of the user's cache folder. A name is the hash of all
+//! inputs, SPIR-V and sizes included, so an entry is never stale; an entry ends in a hash of itself, so a damaged one
+//! counts as absent. Beyond 512 MiB the oldest entries are removed.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,9 +19,9 @@ const MOST_BYTES: u64 = 512 << 20;
 const BAKED: &str = "baked";
 const PIPELINES: &str = "pipelines";
 const ENDING: &str = "bake";
-/// Bytes of a driver's pipelines. A session of some hundred edits collects more, which are not stored.
+/// Largest pipeline cache of a driver in bytes. Beyond this, after some hundred edits, it is not stored.
 const MOST_PIPELINE_BYTES: usize = 32 << 20;
-/// Bytes of the checksum at the end of a file: XXH3 of all before it.
+/// Bytes of the checksum at the end of a file: XXH3 of the rest.
 const CHECKSUM: u64 = 8;
 
 /// The name of an entry: a hash of all its inputs and of Specula's version.
@@ -64,7 +68,7 @@ pub(crate) fn contains(key: &str, size: u64) -> bool {
     metadata.is_some_and(|metadata| metadata.len() == size + CHECKSUM)
 }
 
-/// Stores an entry. A failure costs only time, so it is traced and not reported.
+/// Stores an entry. A failure costs only time, so it is logged and not reported.
 pub(crate) fn store(key: &str, bytes: &[u8]) {
     store_in(BAKED, key, bytes);
 }
@@ -93,7 +97,7 @@ impl PipelineStore for Pipelines {
 
 fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    // Another process may read the entry at the same time, so it must appear whole.
+    // Another process may read the entry at the same time, so it must appear complete.
     let temporary = folder.join(format!("{key}.{}.part", std::process::id()));
     let mut file_of_part = std::fs::File::create(&temporary)?;
     file_of_part.write_all(bytes)?;

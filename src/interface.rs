@@ -4,6 +4,10 @@
 //! `shader::contract` checks every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and [`BLOCKS`].
 //!
 //! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
+//!
+//! Pipeline layouts are fixed by the contract, so a reload never changes one. A shader may use any subset of what is
+//! bound for it. A tree whose `interface.glsl` is of another version is refused by name. The test
+//! `interface_glsl_is_current` compares the printed file with the committed one.
 
 mod access;
 mod blocks;

@@ -10,7 +10,7 @@
 #include "common/math.glsl"
 #include "material/textures.glsl"
 
-// For debug modes. Code that must vanish where the bit is not set writes the comparison out instead (ARCHITECTURE.md,
+// For debug modes. Code that must vanish where the bit is not set writes the comparison out instead (shaders/README.md,
 // "Features").
 bool has_feature(uint feature) { return (FEATURES & feature) != 0u; }
 

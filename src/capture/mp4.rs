@@ -1,4 +1,8 @@
 //! A video: H.264 in an MP4 file.
+//!
+//! A video has 16 to 3840 pixels a side, at most 2160 on the shorter one, and even sides: an odd side repeats its last
+//! column or row. It is 8 bit 4:2:0 of the Baseline profile, so fine red or blue lines blur. Transparent pixels are
+//! black.
 
 use std::io::{Seek as _, SeekFrom, Write as _};
 use std::num::NonZeroU32;
@@ -21,14 +25,16 @@ use shiguredo_mp4::{BoxSize, BoxType, TrackKind};
 use super::yuv::Planes;
 use crate::picture::Replacement;
 
-/// Pixels that the encoder takes on each side, and at most on the shorter.
+/// Pixels that the encoder accepts on each side, and at most on the shorter.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=3840;
 const SHORTER: u32 = 2160;
-/// Quantization of all blocks, 12 (best) to 51. At 18, the PSNR was 38 to 50 dB, with the loss by 4:2:0: the larger a picture, the higher.
+/// Quantization of all blocks, 12 (best) to 51. At 18, the PSNR was 38 to 50 dB, including the loss by 4:2:0; larger frames had
+/// higher values.
 const QUANTIZATION: u8 = 18;
-/// Seconds between frames from which a player can begin.
+/// Seconds between key frames, from which a player can start.
 const SEEK_S: f32 = 2.0;
-/// Ticks of the file's clock that a frame lasts. The clock's rate makes that a frame's time, to a thousandth of a frame a second.
+/// Duration of a frame in ticks of the file's clock. The clock's rate represents the frame rate to a thousandth of a frame per
+/// second.
 const TICKS: u32 = 1000;
 
 /// A video that is being written, frame by frame, to a temporary file. Dropped unfinished, it leaves no file.
@@ -45,8 +51,8 @@ pub(super) struct Mp4 {
 }
 
 impl Mp4 {
-    /// Begins a video of frames of `size`, of which `expected` are to come: the index of so many fits in front of them, where a
-    /// player that loads the file from a server finds it at once.
+    /// Begins a video of `expected` frames of `size`. Their index fits in front of them, where a player that streams the file
+    /// finds it at once.
     pub(super) fn begin(path: &Path, fps: f32, size: (u32, u32), expected: usize) -> Result<Self, String> {
         let planes = Planes::new(size);
         let (width, height) = planes.size();
@@ -118,9 +124,9 @@ impl Mp4 {
     }
 }
 
-/// Every block has the same quantization, so that quality does not depend on what moves, and no frame is skipped.
+/// Every block has the same quantization, so that quality does not depend on motion, and no frame is skipped.
 fn config(fps: f32) -> EncoderConfig {
-    // Luma and chroma follow BT.709, but a display's picture has the transfer function of sRGB.
+    // Luma and chroma follow BT.709, but a display-encoded frame has the transfer function of sRGB.
     let colors = VuiConfig::bt709().transfer_characteristics(TransferCharacteristics::Srgb);
     EncoderConfig::new()
         .rate_control_mode(RateControlMode::Quality)
@@ -140,7 +146,7 @@ fn config(fps: f32) -> EncoderConfig {
 fn sample_entry(stream: &[u8]) -> Result<SampleEntry, String> {
     let config = H264SampleEntryConfig { length_size: LengthSize::FourBytes };
     let mut entry = build_avc1_box_from_annexb(stream, &config).map_err(text)?;
-    // Color for players that do not look into the stream: the codes are those of `config`, and the last byte says limited range.
+    // Color for players that do not parse the stream: the codes are those of `config`, and the last byte means limited range.
     let colors: Vec<u8> = [&b"nclx"[..], &[0, 1, 0, 13, 0, 1, 0]].concat();
     let box_type = BoxType::Normal(*b"colr");
     let box_size = BoxSize::with_payload_size(box_type, colors.len() as u64);
@@ -148,7 +154,7 @@ fn sample_entry(stream: &[u8]) -> Result<SampleEntry, String> {
     Ok(SampleEntry::Avc1(entry))
 }
 
-/// Keeps the encoder from writing to stderr. It warns about a bitrate that it cannot hold, which is of no interest here.
+/// Keeps the encoder from writing to stderr. It warns about a bitrate that it cannot hold, which does not matter here.
 fn silence(encoder: &mut Encoder) {
     let mut level = WELS_LOG_QUIET;
     // SAFETY: the encoder lives, reads one integer during the call, and takes this option also before its first frame.

@@ -1,5 +1,9 @@
 //! Draws pictures of a window's session on another thread. It shares the window's resources, and has a view and targets of its own, so
 //! that the window's picture stays as it is.
+//!
+//! `Resources` is `Clone`: a clone shares all that is on the device and then goes its own way. The thread has a view
+//! and targets of its own, so the frame, accumulation buffer and history of the window stay as they are. A capture is
+//! drawn in one piece, so its size is limited by the memory of the device.
 
 use std::sync::Arc;
 
@@ -24,23 +28,23 @@ pub struct OffscreenCapture {
     view: View,
     output: Option<Arc<Image>>,
     clock: Clock,
-    /// Frames that are drawn for each picture, for passes that go on from frame to frame.
+    /// Frames that are drawn for each capture, for passes that depend on earlier frames.
     count: u32,
-    /// Whether pictures are for files of linear light, whose pixels are plain means of the samples.
+    /// Whether captures are for files of linear light, whose pixels are plain averages of the samples.
     is_linear: bool,
 }
 
-/// A version of the shaders, for a picture of it.
+/// A version of the shaders to capture.
 pub(crate) struct VersionPicture {
     pub(crate) set: Arc<PipelineSet>,
     /// Label that is drawn into the picture.
     pub(crate) label: String,
-    /// A frame with its shaders, if there was one: its light is the version's own.
+    /// A frame drawn with the version, if there was one: it holds the light that the version's shaders baked.
     pub(crate) like: Option<BoundFrame>,
 }
 
 impl OffscreenCapture {
-    /// Copies of what the window draws with. `clock` is the time of all pictures.
+    /// Copies of what the window draws with. `clock` is the time of all captures.
     ///
     /// # Errors
     /// No memory left.
@@ -50,17 +54,17 @@ impl OffscreenCapture {
         Ok(Self { gpu: gpu.clone(), session, resources, frames, view, output: None, clock, count: 1, is_linear: false })
     }
 
-    /// Sets the number of frames that each picture takes.
+    /// Sets the number of frames that each capture takes.
     pub fn set_count(&mut self, count: u32) {
         self.count = count.max(1);
     }
 
-    /// Sets whether pictures are for files of linear light (EXR).
+    /// Sets whether captures are for files of linear light (EXR).
     pub fn set_linear(&mut self, is_linear: bool) {
         self.is_linear = is_linear;
     }
 
-    /// The value of a pixel in each of `modes`, with one sample per pixel. `size` is that of the picture.
+    /// The value of a pixel in each of `modes`, with one sample per pixel. `size` is that of the frame.
     ///
     /// # Errors
     /// As [`Renderer::capture`].
@@ -99,7 +103,7 @@ impl OffscreenCapture {
         Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
     }
 
-    /// The first statement that makes NaN or infinity at the pixel `at`, if one of the values in these modes is not finite.
+    /// The first statement that computes NaN or infinity at the pixel `at`, if one of the values in these modes is not finite.
     pub(crate) fn not_finite(
         &mut self,
         (size, at): ((u32, u32), (u32, u32)),
@@ -140,11 +144,11 @@ impl OffscreenCapture {
             let state = Arc::new(self.session.frame_state_of(&version.set.shaders, self.clock, size, target));
             version.set.build_aside(&state.pipelines).map_err(HeadlessError::from)?;
             let bound = self.resources.bind_older(&version.set, &state, version.like.as_ref());
-            // Its light is gone, if another environment was chosen since.
+            // Its light is gone if another environment was chosen since.
             let Some(frame) = bound.map_err(HeadlessError::from)? else { continue };
             let mut picture = image_of(self.picture(&frame)?)?;
             let (x, y, width) = (12, size.1.saturating_sub(30), size.0 as f32 - 24.0);
-            // Legible on any picture: light over dark.
+            // Legible on any background: a light text over a dark one.
             for (at, color) in [((x + 1, y + 1), [0; 3]), ((x, y), [235; 3])] {
                 labels.write(&mut picture, at, (18.0, width), color, &version.label);
             }
@@ -174,7 +178,7 @@ impl OffscreenCapture {
         self.bind_as(size, |state| state)
     }
 
-    /// Binds the state of the session, which `adapt` changes before.
+    /// Binds the state of the session after `adapt` has changed it.
     fn bind_as(
         &mut self,
         size: (u32, u32),
@@ -189,13 +193,13 @@ impl OffscreenCapture {
             return Err(HeadlessError::Settings(format!("the shaders of the mode `{mode}` have errors")));
         }
         if let Some(set) = self.resources.pipelines() {
-            // Not as a request of the window's, whose pipelines stay.
+            // Built without counting as a request, so that the window's pipelines stay.
             set.build_aside(&state.pipelines)?;
         }
         Ok(self.resources.provide(&state)?)
     }
 
-    /// Draws a frame as often as the settings ask, and reads the last one back.
+    /// Draws as many frames as the settings ask for, and reads the last one back.
     fn picture(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
         self.view.restart_passes();
         self.view.restart_mean();
@@ -207,7 +211,7 @@ impl OffscreenCapture {
         }
         let mut readback = self.draw(frame, Redraw::Always, View::read_back)?;
         if frame.state.display.is_measured() {
-            // The range follows the values that have just been drawn.
+            // An automatic range uses the values that have just been drawn.
             readback = self.draw(frame, Redraw::ToneMap, View::read_back)?;
         }
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))

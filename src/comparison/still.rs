@@ -1,4 +1,8 @@
 //! A picture from a file on the device, scaled to the view that it is compared with.
+//!
+//! Threads read and scale the file. The colors of a PNG or JPEG are copied to the target unchanged. The light of an HDR
+//! or EXR replaces the HDR target of the second `View` (`View::override_image`), so it goes through the same tone map,
+//! range and display passes as the frame beside it.
 
 use std::sync::Arc;
 
@@ -10,11 +14,11 @@ use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Rect, Swapchain, upload_images
 
 /// A scaled picture on the device.
 pub struct Still {
-    /// In `Use::Sampled`. Colors of the display in the swapchain's format, or light in full floats.
+    /// In `Use::Sampled`. LDR colors in the swapchain's format, or light in full floats.
     pub image: Arc<Image>,
     /// The part of the image that the picture covers. The rest is black, or without coverage.
     pub covered: Rect,
-    /// The colors of the display on the CPU; `None` for light, which a view tone maps first.
+    /// The LDR colors on the CPU; `None` for light, which a view tone maps first.
     pub display: Option<Arc<RgbaImage>>,
 }
 

@@ -1,5 +1,12 @@
 //! Commands from outside, as JSON lines on stdin or on a local socket, and the lines that answer them. `crate::app::control` carries
 //! them out; this module knows neither window nor device.
+//!
+//! A thread for each input reads lines, parses them and sends a request with its `Reply`; the window's thread only
+//! executes. A `Reply` is answered exactly once, also when it is dropped. A client's lines are written by a thread of
+//! its own; 16 MiB unread end a client of the socket, and cost stdout lines. A client may have 64 commands open; its
+//! next line is read when one is answered, so a flood fills a pipe and not the memory. All events of a window go
+//! through these threads, so a reader that does not read never stops it. The supervisor forwards its stdin to the
+//! child, and to the next child after a loss.
 
 mod client;
 mod described;
@@ -22,13 +29,13 @@ pub(crate) use reply::Reply;
 pub(crate) use request::{Open, Request, VersionsRequest};
 pub use socket::{Socket, socket_path};
 
-/// A command, and who waits for its answer.
+/// A command, and the client that waits for its answer.
 pub(crate) struct Asked {
     pub(crate) request: Request,
     pub(crate) reply: Reply,
 }
 
-/// The programs outside: those that read events, and the commands that they send.
+/// The programs outside: subscribers of events, and the commands that they send.
 pub struct Control {
     clients: Clients,
     sender: Sender<Asked>,
@@ -36,31 +43,32 @@ pub struct Control {
     socket: Option<Socket>,
 }
 
-/// How long the end of the program waits for readers of its last lines.
+/// How long the end of the program waits for clients to receive their last lines.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 impl Control {
-    /// Nobody outside.
+    /// No clients.
     pub fn new() -> Self {
         let (sender, asked) = unbounded();
         Self { clients: Clients::default(), sender, asked, socket: None }
     }
 
-    /// Prints events on stdout, and returns the client that stands for its reader.
+    /// Prints events on stdout, and returns the client for it.
     pub fn print_events(&self) -> Client {
         let stdout = Client::start(std::io::stdout(), None);
         self.clients.add(stdout.clone());
         stdout
     }
 
-    /// Reads commands on a thread until `input` ends, which ends nothing else. Answers go to `client`. `then` runs at the end.
+    /// Reads commands on a thread until `input` ends; the end of the input ends nothing else. Answers go to `client`. `then` runs
+    /// at the end.
     pub fn read(&self, input: impl Read + Send + 'static, client: Client, then: impl FnOnce() + Send + 'static) {
         let sender = self.sender.clone();
         let work = move || {
             reader::read(input, &client, &sender);
             then();
         };
-        // Without the thread there are no commands, and the window works as ever.
+        // If the thread cannot start, there are no commands from this input.
         let _ = std::thread::Builder::new().name("specula-stdin".to_owned()).spawn(work);
     }
 
@@ -70,7 +78,7 @@ impl Control {
         self.socket = Some(socket);
     }
 
-    /// Everybody who reads events.
+    /// All event subscribers.
     pub fn clients(&self) -> &Clients {
         &self.clients
     }

@@ -1,10 +1,18 @@
 //! How a picture's values become colors: range, channels, colormap and dither, from the settings and the mode.
+//!
+//! The range belongs to the display and not to the rendered frame: `Display::constants` writes it to the last members
+//! of `Frame`, so a change of range reruns the tone map only. An automatic range comes from a sample of the frame
+//! (`render/view/range_sample.rs`): a nearest-neighbor blit picks up to 16,384 pixels, which are read when the frame
+//! has finished, and the next frame uses their 1st and 99th percentile, rounded. Limits stay while at most a tenth of
+//! the values is cut off and at most a third of the range is empty, so they do not flicker. A highlight of a few pixels
+//! may lie beyond an automatic range. `render` draws, reads the sample and tone maps once more, so files do not depend
+//! on what was drawn before.
 
 use crate::interface::Frame;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
 use crate::shader::{Encode, Mode, expression};
 
-/// How the display maps the values of a mode to colors. The mapping changes no value, so it needs no new render.
+/// How the display maps the values of a mode to colors. The mapping changes no value, so a change needs no new render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Display {
     range: Range,
@@ -19,7 +27,7 @@ enum Range {
     #[default]
     Encoded,
     Fixed(f32, f32),
-    /// The range of the values in the picture.
+    /// The range of the values in the frame (automatic range).
     Measured {
         /// Whether 0 lies in the middle.
         is_signed: bool,
@@ -55,17 +63,17 @@ impl Display {
         Self { range, channels: view.channels, colormap, dither: view.dither }
     }
 
-    /// Whether it maps values by range, channels or colormap: not each as its mode stores it.
+    /// Whether it maps values by range, channels or colormap, and not as the mode stores them.
     pub(crate) fn maps_values(&self) -> bool {
         self.range != Range::Encoded || self.channels != Channels::Rgb || self.colormap != Colormap::None
     }
 
-    /// Whether the range follows the picture's values.
+    /// Whether the range is automatic: it follows the values of the frame.
     pub fn is_measured(&self) -> bool {
         matches!(self.range, Range::Measured { .. })
     }
 
-    /// The limits that values within 0..1 (directions: -1..1) are shown with, if the range follows the picture's values.
+    /// The limits for values within 0..1 (directions: -1..1), if the range is automatic.
     pub(crate) fn unit_limits(&self) -> Option<Limits> {
         match self.range {
             Range::Measured { is_signed, .. } => Some((if is_signed { -1.0 } else { 0.0 }, 1.0)),
@@ -78,8 +86,9 @@ impl Display {
         self.colormap
     }
 
-    /// The limits for a picture in which all but a hundredth of the values at each end lie in `values`. `before`: the limits of the
-    /// last picture, which stay while they fit, so that a moving picture does not flicker. `None`: values are stored as the mode says.
+    /// The limits for a frame in which all but a hundredth of the values at each end lie in `values`. `before`: the limits of the
+    /// last frame, which stay while they fit, so that moving content does not flicker. `None`: values are stored as the mode
+    /// says.
     pub fn limits(&self, values: Option<Limits>, before: Option<Limits>) -> Option<Limits> {
         match self.range {
             Range::Encoded => None,
@@ -111,20 +120,20 @@ impl Display {
     }
 }
 
-/// Whether limits show values from `low` to `high` well enough: at most a tenth is cut off, and at most a third is left empty.
+/// Whether the limits suit values from `low` to `high`: at most a tenth is cut off, and at most a third of the range is empty.
 fn still_fit((before_low, before_high): Limits, (low, high): Limits) -> bool {
     let span = before_high - before_low;
     let fits = |gap: f32| (-0.1..=0.33).contains(&(gap / span));
     fits(low - before_low) && fits(before_high - high)
 }
 
-/// Limits around the values that are round numbers, so that a legend can be read.
+/// Limits around the values, rounded so that a legend is readable.
 fn rounded(low: f32, high: f32) -> Limits {
     let (low, high) = (f64::from(low), f64::from(high));
     let span = (high - low).max(1e-3 * high.abs().max(low.abs())).max(1e-6);
     // Two digits of the span: a step is a hundredth to a tenth of it.
     let step = 10.0_f64.powf(span.log10().floor() - 1.0);
-    // A value that is a round number already stays, although it is not exact as a float.
+    // A value that is already a round number stays, although it is not exact as a float.
     let (first, last) = ((low / step + 1e-3).floor() * step, (high / step - 1e-3).ceil() * step);
     // Values near 0 begin there.
     let first = if first > 0.0 && first < 0.1 * span { 0.0 } else { first };

@@ -1,4 +1,10 @@
 //! The model as the settings show it: variant (KHR_materials_variants), materials, place, and what is drawn of it.
+//!
+//! `Scene::loaded` identifies the resources. `Scene::model` stands where `model.*` places it, with its bounds, lights
+//! and cameras, and shares the primitives, so framing, shadows, path tracing and picking need not know of the
+//! transform. Materials that `materials.*` or `material.override` change get a uniform block and a descriptor set with
+//! the same images; nothing is compiled unless a feature appears. A channel of the override reads its texture as 1 by a
+//! view of the image with other components (`Image::with_ones`).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,7 +18,7 @@ use crate::scene::{
 };
 use crate::settings::{MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings};
 
-/// The settings that make a scene of a model.
+/// The settings that turn a model into a scene.
 #[derive(Clone, Debug, PartialEq)]
 struct Look {
     variant: Option<usize>,
@@ -45,7 +51,7 @@ impl Look {
     }
 }
 
-/// A model as the settings show it. Cheap to clone.
+/// A model with the selected variant, materials and transform. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The model that was loaded.
@@ -221,7 +227,7 @@ impl Scene {
     }
 }
 
-/// The materials that the look changes, by their indices; empty if it changes none.
+/// The materials that the settings change, by their indices; empty if they change none.
 fn changed(model: &Model, look: &Look) -> Arc<[Option<Material>]> {
     let channels = look.material.as_ref().filter(|material| !material.enabled);
     if channels.is_none() && look.materials.is_empty() {

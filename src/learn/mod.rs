@@ -2,6 +2,14 @@
 //!
 //! An exercise is data in `assets/learn/NN-name/`: a text, what is wrong with the shipped tree at its start, and a list of goals
 //! that are measured. Nothing of it is compiled into a special case: [`Exercise::read`] takes any folder of that form.
+//!
+//! The start of an exercise is the shipped tree with `[[fault]]` edits and the files of `start/`; its solution has
+//! `[[solution]]` edits and the files of `solution/`. Edits instead of whole files keep an exercise true when the
+//! shipped file changes: a text that is no longer found exactly once fails a test. A `[[goal]]` has a sentence and a
+//! check (`Check` in `goal.rs`). Most checks compare with the tree of the solution on the same device, so no reference
+//! pictures are stored. The folder of a student holds the whole tree and `EXERCISE.md`, whose last line names the
+//! exercise, so any way to open the folder opens it. The checker compiles the student's tree a second time: on two
+//! cores, an edit that is saved just then waits for its share of them.
 
 mod exercise;
 mod folder;

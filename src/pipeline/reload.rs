@@ -1,4 +1,15 @@
 //! A reload turns changed files into a new pipeline set or diagnostics. It never modifies the set in use.
+//!
+//! A new set gets every pipeline that the window needs now, built in parallel. It inherits a pipeline if its stages did
+//! not change, or if their specialized modules behave as before (`spirv::behavior_hash`, which ignores the numbering of
+//! ids and functions that are never called, and treats equal types and constants as one). So an edit of the clear coat
+//! builds pipelines only for materials that have one, and an edit of an NDF that is not selected builds none. A set
+//! keeps the pipelines of its 64 newest requests, so dragging sliders all day costs no memory.
+//!
+//! On a GPU, most of a reload is the driver compiling an optimized module: on an H200, 41 to 64 ms of 55 to 82 ms are
+//! the fragment stage (`SPECULA_LOG=debug` prints the time of each pipeline). The driver finds the vertex stage, which
+//! an edit leaves alone, in its cache (0.002 ms), so graphics pipeline libraries would save nothing. On lavapipe the
+//! driver compiles at the first draw, in the queue: the picture stays, but that frame takes some 200 ms longer.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -33,7 +44,7 @@ pub enum Outcome {
     },
     /// New pipelines.
     Ready(Arc<PipelineSet>),
-    /// Why there are no new pipelines. The last good set stays.
+    /// The diagnostics of a failed reload. The last good set stays in use.
     Failed(Vec<Diagnostic>),
 }
 
@@ -50,12 +61,12 @@ pub struct Reload {
 }
 
 impl Reload {
-    /// Whether the device has got or will get anything that the reload has compiled. It does not if nothing has changed, or if the
-    /// shaders do not compile.
+    /// Whether the device has used or will use anything that the reload compiled: false if nothing has changed, or if the shaders
+    /// do not compile.
     pub fn reaches_device(&self) -> bool {
         match &self.outcome {
             Outcome::Ready(_) => true,
-            // A reload that a newer edit has superseded leaves its pipelines to that edit.
+            // A superseded reload leaves its pipelines to the newer edit.
             Outcome::Unchanged { .. } => !self.report.stages.is_empty(),
             // The driver has refused a pipeline.
             Outcome::Failed(_) => self.pipeline_ms > 0.0,
@@ -69,7 +80,7 @@ impl Reloader {
         Self::with(gpu, layouts, Library::new(source, compiler.clone(), &stages()))
     }
 
-    /// The same with the stages that measure the BRDF.
+    /// [`Reloader::new`] with the stages that measure the BRDF.
     pub fn measuring(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
         Self::with(gpu, layouts, Library::new(source, compiler.clone(), &all_stages()))
     }
@@ -78,7 +89,7 @@ impl Reloader {
         Self { gpu: gpu.clone(), layouts: layouts.clone(), library, current: None, unbuilt: None }
     }
 
-    /// Reads another tree, or the same one as if for the first time. Compiles nothing yet.
+    /// Reads another tree, or the same one from scratch. Compiles nothing yet.
     pub fn open(&mut self, source: Source) {
         *self = Self::new(&self.gpu, &self.layouts, self.library.compiler(), source);
     }
@@ -88,7 +99,7 @@ impl Reloader {
         self.library.set_source(source);
     }
 
-    /// Watches the expression of the settings. Returns what the next update must name, if anything differs.
+    /// Watches the expression of the settings. Returns the paths that the next update must name, if anything differs.
     ///
     /// # Errors
     /// A message if the setting is no place and expression. Nothing is watched then.
@@ -116,12 +127,12 @@ impl Reloader {
         self.build(update, request, || false)
     }
 
-    /// [`Reloader::update`] of what is on screen: the stages and pipelines that `request` needs. If these are good, other
-    /// stages may be pending in the new set, and [`Reloader::finish`] compiles them.
+    /// [`Reloader::update`] restricted to what is on screen: the stages and pipelines that `request` needs. If these are good,
+    /// other stages may be pending in the new set, and [`Reloader::finish`] compiles them.
     ///
-    /// With `with_light`, what bakes light counts as on screen. In a window, an edit of it shows in the old light first.
-    /// `superseded` returns whether a newer edit waits. If so, the update ends after compiling with [`Outcome::Unchanged`], and
-    /// the next update builds the pipelines.
+    /// With `with_light`, stages that bake light count as on screen; in a window, an edit of them first appears in the previous
+    /// light. `superseded` returns whether a newer edit waits. If so, the update ends after compiling with
+    /// [`Outcome::Unchanged`], and the next update builds the pipelines.
     pub fn update_first(
         &mut self,
         change: Change,
@@ -140,13 +151,13 @@ impl Reloader {
         self.build(update, request, superseded)
     }
 
-    /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result. Declared
-    /// passes that are off are not needed, unless `with_all_passes`.
+    /// Compiles what a first frame needs, while the model may still be loading. [`Reloader::build`] takes the result. Declared
+    /// passes that are off are skipped, unless `with_all_passes`.
     pub fn compile_first_picture(&mut self, with_all_passes: bool) -> Update {
         self.library.first_picture(with_all_passes)
     }
 
-    /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.
+    /// Compiles the stages that [`Reloader::update_first`] has left. The returned set has the pipelines of the previous one.
     pub fn finish(
         &mut self,
         request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
@@ -168,7 +179,7 @@ impl Reloader {
                 return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }
             Update::Ready(shaders, mut report) => {
-                // A superseded edit shows with this one.
+                // A superseded edit becomes visible with this one.
                 if let Some(before) = self.unbuilt.take() {
                     report.changed = joined(before.changed, report.changed);
                 }

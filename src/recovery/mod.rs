@@ -4,6 +4,39 @@
 //! [`RecoveryState`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
 //! After a loss, [`RecoveryState::after_loss`] compares the two and decides what the next process leaves out: the texts under
 //! suspicion, or else the settings.
+//!
+//! # Losing the device
+//!
+//! Drivers cannot always create a lost device again in the same process, a hung device blocks every destructor, and a
+//! crash leaves no process. So all three are handled alike: the process that draws the window ends, and
+//! `commands/view/supervisor.rs` starts another one with the same arguments. A signal of a crash, a panic of the
+//! window's thread, and the exit codes for a lost or hung device count as losses.
+//!
+//! The folder of the records can be read by the user only, and is in memory where the system offers that
+//! (`XDG_RUNTIME_DIR`, `/dev/shm`):
+//!
+//! - **Before** anything new reaches the compiler or the device, the window records its settings, model, tree,
+//!   geometry, and the hashes of the changed texts (`suspects`). This takes 0.5 ms for an edit. A moving camera is
+//!   recorded every 250 ms, and at each edit.
+//! - **After** the device has drawn it, the window records the settings of a frame that has finished (`good`), and the
+//!   texts once the picture has settled, with all of its stages and light (`good.json`).
+//!
+//! After a loss, the suspect texts that differ from the good ones are **quarantined**, all together, since only
+//! together they are known to be bad. The next window reads a `Source::Quarantined`, in which every file that differs
+//! from its last good text has that text, so the picture and all modes come back first. Then the files on disk follow
+//! as an ordinary edit, except the quarantined ones: each is a diagnostic, and the good text stays until one of them
+//! changes. Before the first frame, the embedded texts count as good, so a tree that loses the device at once can still
+//! be opened. If no text was new, settings, model and tree are **set back** to what was drawn last, and a message names
+//! the differences. The camera stays.
+//!
+//! A row of losses ends with a frame of a new text, or after a minute. The third loss in a row ends the session with
+//! exit code 3 and the names of the quarantined files. While a row lasts, the window is in safe mode and builds no
+//! pipelines ahead of time, since nothing would be suspected if that crashed. The event `restarted` reports what
+//! happened. Commands without a window end with exit code 3.
+//!
+//! Limits: after a loss, the next window needs a device at once; if the driver is still resetting it and offers none,
+//! the session ends. A setting that loses the device before the picture has settled is blamed on the texts, and an edit
+//! on top of one that has not settled is set back with it.
 
 mod recorder;
 
@@ -25,7 +58,7 @@ pub use recorder::Recorder;
 pub const VARIABLE: &str = "SPECULA_SESSION";
 /// Exit code of a child whose device was lost. Its parent does not pass it on.
 pub const LOST: u8 = 75;
-/// Exit code of a child whose device does not answer. Its parent does not pass it on.
+/// Exit code of a child whose device does not respond. Its parent does not pass it on.
 pub const HUNG: u8 = 76;
 /// The session ends after this many losses in a row.
 pub const MOST_LOSSES: u32 = 3;
@@ -51,7 +84,7 @@ impl SessionState {
         *self == other.placed_as(self)
     }
 
-    /// The same with the camera and the directions of orbiting lights of `other`.
+    /// The same state with the camera and the directions of orbiting lights of `other`.
     fn placed_as(&self, other: &Self) -> Self {
         let mut placed = self.clone();
         placed.settings.camera = other.settings.camera.clone();
@@ -100,7 +133,7 @@ pub struct Geometry {
 pub struct Loss {
     /// The reason, as "the graphics device was lost".
     pub cause: String,
-    /// Names of the settings that were set back, since no text was new.
+    /// Names of the settings that were reset, since no text was new.
     pub reset: Vec<String>,
 }
 
@@ -138,15 +171,16 @@ impl RecoveryState {
         write(folder, STATE, self)
     }
 
-    /// The record that the next process starts with, after a loss with this `cause`. Texts are suspected first. If none is new, all that is
-    /// not alike is set back to what was drawn last. `good` are the texts that the device has drawn.
+    /// The record that the next process starts with, after a loss with this `cause`. New texts are suspected first. If there are
+    /// none, the state is reset to what was drawn last, except for the camera and the lights' directions. `good` are the texts
+    /// that the device has drawn.
     #[must_use]
     pub fn after_loss(mut self, cause: &str, good: &GoodTexts) -> Self {
         self.losses += 1;
         let embedded = Source::embedded();
         let is_new = |(path, hash): &(&String, &u64)| {
             let text = good.texts.get(*path).cloned().map(Ok);
-            // No stage of the last good picture has used the file.
+            // The last good frame did not use the file.
             text_hash(&text.unwrap_or_else(|| embedded.read(&TreePath::from(path.as_str())))) != **hash
         };
         let new: BTreeMap<String, u64> =
@@ -167,7 +201,7 @@ impl RecoveryState {
         self
     }
 
-    /// The tree to read: [`Source::quarantined`] if there has been a loss in it.
+    /// The tree to read: [`Source::quarantined`] if the device was lost while it was in use.
     pub fn source(&self, tree: Source, good: GoodTexts) -> Source {
         let (Some(loss), Some(location)) = (&self.loss, tree.location()) else { return tree };
         if good.tree.as_deref() != Some(location) {
@@ -190,8 +224,8 @@ pub struct GoodTexts {
 }
 
 impl GoodTexts {
-    /// The texts that were recorded in a session's folder. Before the first picture, the texts in the program count as good for
-    /// every tree.
+    /// The texts that were recorded in a session's folder. Before the first frame, the embedded texts count as good for every
+    /// tree.
     pub fn read(folder: &Path, tree: Option<&Path>) -> Self {
         read(folder, GOOD).unwrap_or_else(|| {
             let embedded = Source::embedded();
@@ -205,7 +239,7 @@ impl GoodTexts {
     }
 }
 
-/// Removes the folder of a session, if nothing but the records are in it.
+/// Removes the folder of a session, if it contains nothing but the records.
 pub fn remove_folder(folder: &Path) {
     // Under another name, since a thread may still be recording.
     let ended = folder.with_extension("ended");

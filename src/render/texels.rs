@@ -1,4 +1,6 @@
 //! The texels of a material's textures at a pixel: found by a ray on the CPU, read back from the device.
+//!
+//! What pre-rasterization stages do to vertices and texture coordinates is ignored.
 
 use std::sync::Arc;
 
@@ -41,7 +43,7 @@ pub struct Texel {
 }
 
 impl TexelPlace {
-    /// The slot in words, as `metallic roughness`.
+    /// The name of the slot, as `metallic roughness`.
     pub fn slot_name(&self) -> String {
         slot_name(self.slot)
     }
@@ -85,8 +87,8 @@ impl Texel {
     }
 }
 
-/// Where the nearest surface of the model under a pixel reads its textures. A surface that a mask or alpha makes invisible counts too.
-/// Stages that move vertices or coordinates do not count.
+/// Where the nearest surface of the model under a pixel reads its textures. A surface that a mask or alpha makes invisible counts
+/// too. Pre-rasterization stages that move vertices or coordinates are ignored.
 pub fn texel_places(state: &FrameState, at: (u32, u32)) -> Vec<TexelPlace> {
     let Some(scene) = state.scene.as_ref().filter(|scene| scene.replacement().is_none()) else { return Vec::new() };
     let model = scene.model();

@@ -1,4 +1,15 @@
 //! Builds the lights of a frame from the settings and the model.
+//!
+//! All kinds of lights use one formula without a branch (`lighting/punctual.glsl`). Up to four are a specialization
+//! constant, `LIGHT_COUNT`, so that the loop over them is unrolled where a mode looks at all of them: on lavapipe that
+//! is a tenth of the frame. A frame has at most 200 lights and four suns: they are a uniform block, which a software
+//! device reads faster than a buffer. `frame.light_clip_from_world` has the views of the first 16 lights, suns of the
+//! environment after the others. Rust computes them, since a software device would do so in each pixel. A light that
+//! `user_light` moves gets its view in GLSL (`lighting/shadows/light_view.glsl`); the pass `light_views` writes the
+//! views to an image for the vertex stage of the shadow map, which cannot include `user.glsl`.
+//!
+//! As long as the user has not chosen which lights shine, a window shows a model with lights in its own, because a file
+//! with lights was lit by its author. Commands without a window do not.
 
 use glam::{Mat4, Vec3, Vec4};
 

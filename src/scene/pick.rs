@@ -1,4 +1,7 @@
 //! Picking: finds the instances of a model that may cover a pixel, and the nearest surface.
+//!
+//! Lines and points are not picked, and alpha is ignored. Lights of a file are selected by the mark that the window
+//! draws for them; they have no handle, since their place is no setting.
 
 use glam::{Mat4, Vec2, Vec3, Vec4Swizzles as _};
 use rayon::prelude::*;
@@ -10,8 +13,8 @@ use super::model::{Bounds, Instance, Model, Primitive, Topology};
 /// Margin in pixels around a primitive: for the width of points and lines, and for the neighbors that derivatives use.
 const REACH: f32 = 4.0;
 
-/// For each instance, whether one of its triangles, lines or points comes near the pixel `at` of a picture of this size,
-/// hidden or not. The test is conservative: it may be true for an instance that misses the pixel, but never the reverse.
+/// For each instance, whether one of its triangles, lines or points comes near the pixel `at` of a frame of this size, hidden or
+/// not. The test is conservative: it may be true for an instance that misses the pixel, but never the reverse.
 pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u32, u32)) -> Vec<bool> {
     let half = Vec2::new(size.0 as f32, size.1 as f32) * 0.5;
     let pixel = Vec2::new(at.0 as f32, at.1 as f32) + 0.5;
@@ -45,7 +48,7 @@ pub struct Hit {
 /// Which sides of an instance are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// It is not drawn at all.
+    /// The instance is not drawn.
     None,
     /// Triangles that face the eye.
     Front,
@@ -53,8 +56,8 @@ pub enum Sides {
     Both,
 }
 
-/// The nearest triangle of the model that the middle of the pixel `at` sees in a picture of this size, of the instances and sides that
-/// are drawn. Transparent surfaces count too. `None` beside the model.
+/// The nearest triangle at the center of the pixel `at` in a frame of this size, among the instances and sides that are drawn.
+/// Transparent surfaces count too. `None` where the pixel misses the model.
 pub fn pick(
     model: &Model,
     view: &CameraView,
@@ -97,7 +100,7 @@ pub fn pick(
 /// Triangles that one task tests.
 const TRIANGLES_A_TASK: usize = 1 << 14;
 
-/// The direction in which a pixel sees, world space; not normalized.
+/// The direction of the view ray through a pixel, world space; not normalized.
 pub fn ray(view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Vec3 {
     let across = 2.0 * (at.0 as f32 + 0.5) / width.max(1) as f32 - 1.0;
     let up = 1.0 - 2.0 * (at.1 as f32 + 0.5) / height.max(1) as f32;
@@ -131,7 +134,7 @@ fn enters(ray: Vec3, eye: Vec3, placed: &Instance, primitive: &Primitive) -> boo
     first <= last
 }
 
-/// The nearest point of the model's triangles that a pixel sees: as [`pick`], with both sides of all instances.
+/// The nearest point of the model's triangles at a pixel: [`pick`] with both sides of all instances.
 pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
     pick(model, view, size, at, |_| Sides::Both).map(|hit| hit.point)
 }
@@ -206,7 +209,7 @@ mod tests {
         let points: Vec<Vec3> = (0..400).step_by(7).filter_map(|x| point_at(&model, &view, size, (x, 100))).collect();
         assert!(points.len() > 5, "{points:?}");
         for point in points {
-            // Its pixel is the one that was asked for, and it is on the side of the spheres towards the eye.
+            // It is the requested pixel, and the point is on the near side of the spheres.
             let clip = view.clip_from_world() * point.extend(1.0);
             let y = (clip.y / clip.w + 1.0) * 100.0;
             assert!((y - 100.5).abs() < 0.01, "{point}: row {y}");

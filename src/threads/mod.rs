@@ -1,5 +1,39 @@
 //! The background threads. Each sends its results to the window's thread, which alone changes what is on screen.
 //! ARCHITECTURE.md shows which thread sends what.
+//!
+//! # Who does what
+//!
+//! - **The window's thread** handles input, runs egui, records and presents. It never compiles, and reads no file. It
+//!   writes only the session's recovery record (a few kilobytes, in memory), the panel layout, and the list of recent
+//!   files, when they change. It waits for the device only for a new swapchain, a new glyph, a screenshot, and the
+//!   first frame after a reload, whose time it reports. The value under the mouse is copied within the frame and read
+//!   once that frame has finished.
+//! - **The worker** compiles and builds pipelines. It joins edits that wait and takes them first; of an edit, it first
+//!   compiles what is on screen. Once the window has drawn that (`Shown`), it compiles the other stages of the edit
+//!   (`Completed`). Then it carries out the newest build request, whatever became of the edits, and builds the debug
+//!   modes before and after the one on screen. Work for idle times comes last: pipelines of the inspector, driver
+//!   statistics (`AskDriver`), thumbnails. It takes one such pipeline at a time, so an edit waits for one at most.
+//!   Pipelines of thumbnails are built on a thread beside the worker.
+//! - **The loader** parses, decodes and uploads a model. It may touch the device only through a gate that closing
+//!   shuts, so closing never waits for a file. The newest request wins.
+//! - **The baker** bakes environments, one submission per pass, and the BRDF lookup tables, reads measured BRDFs, and
+//!   builds what path tracing needs. A map that is still being decoded when a newer one is requested is left to a
+//!   thread of its own (`cancel.rs`). The newest request wins.
+//! - **The measurer** measures the BRDF of the inspected pixel's material, with one `BrdfMeter` for the newest shaders
+//!   and one for the previous ones, which it compiles itself, on a pool of one thread.
+//! - **The checker** measures the goals of an exercise with a `Headless` of its own, once an edit has settled. A file
+//!   event ends it between two goals.
+//! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
+//!   new frame or pixel ends its work before the next step.
+//! - **Captures** are drawn by a thread with a clone of `Resources`. A second shader tree has a thread as long as it is
+//!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
+//!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
+//!   the file dialog.
+//! - **Watchers** only send paths, under the names that they were given.
+//!
+//! All results are messages, which wake the window; so are the requests of screen readers, which AccessKit's thread
+//! sends. A thread that panics sends a message too: the window reports it, keeps its picture and counts the thread's
+//! work as failed. The worker then continues with a new reloader.
 
 pub(crate) mod baker;
 pub(crate) mod checker;
@@ -28,7 +62,7 @@ use crate::learn::Exercise;
 use crate::message::panic_text;
 use crate::picture::Look;
 use crate::render::tools::Tools;
-use crate::render::{Readback, PathTracingKey};
+use crate::render::{PathTracingKey, Readback};
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
@@ -45,27 +79,27 @@ pub(crate) enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
     Bake(BakeMessage),
-    /// The diagnostic of a loop that did not end, by the words that name it; `None` if it is none of the current shaders'.
+    /// The diagnostic of a loop that did not end, by the words that name it; `None` if it belongs to older shaders.
     EndlessLoop([u32; 2], Option<Box<Diagnostic>>),
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
-    /// The difference of the two pictures that the window compares, or why there is none.
+    /// The difference of the two pictures that the window compares, or the reason why there is none.
     Compared(u64, Result<Box<Comparison>, String>),
-    /// The picture of a file that the window compares with, or why there is none, by the number of the request.
+    /// The picture of a file that the window compares with, or the reason why there is none, by the number of the request.
     PictureRead(u64, Result<Arc<Picture>, String>),
-    /// The same picture, scaled to the window's picture.
+    /// The same picture, scaled to the window's frame.
     PictureFits(u64, Result<Arc<Still>, String>),
     /// A result of the thread of the second shader tree with this number.
     SecondTree(u64, SecondTreeMessage),
-    /// The texts of a version of the shaders have been written to its files, or why not.
+    /// The texts of a version of the shaders have been written to its files, or the reason why not.
     VersionWritten(u64, Result<String, String>),
-    /// Summary of the edits written to the shader files, or the reason why none were written.
+    /// A summary of the edits that were written to the shader files, or the reason why none were.
     Written(Result<String, String>),
     /// The curves of a pixel's material.
     Curves(Box<measurer::Measured>),
-    /// The first statement that makes NaN or infinity at the inspected pixel, for the request with this number.
+    /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
-    /// The settings of a look file, or why it cannot be used.
+    /// The settings of a look file, or the reason why it cannot be used.
     Look(Result<Box<Look>, String>),
     /// The pictures of the built-in models and environments.
     Pictures(Box<BuiltInPictures>),
@@ -169,7 +203,7 @@ impl MessageSender {
     pub(crate) fn pass_on(&self, asked: Receiver<Asked>) {
         let sender = self.clone();
         let work = move || asked.iter().for_each(|asked| sender.send(Message::Asked(Box::new(asked))));
-        // Without the thread, commands wait in vain, and the window works as ever.
+        // If the thread cannot start, these commands never complete.
         let _ = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work);
     }
 
@@ -200,7 +234,7 @@ impl DeviceGate {
     }
 }
 
-/// All threads. Dropping this ends those that use the device and waits for them, but not for a model that is still being
+/// All threads. Dropping this ends the threads that use the device and waits for them, but not for a model that is still being
 /// parsed.
 pub(crate) struct Threads {
     // The watcher sends to the worker, so it is dropped first.
@@ -218,7 +252,7 @@ pub(crate) struct Threads {
     device_threads: Vec<JoinHandle<()>>,
     /// Threads that draw captures, and what cancels each.
     capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
-    /// Held by the capture that is being drawn, so that the others wait.
+    /// Held by the capture that is being drawn, so that captures run one after the other.
     capturing: Arc<Mutex<()>>,
     sender: MessageSender,
 }
@@ -250,7 +284,7 @@ impl Threads {
         }
     }
 
-    /// Compares a part of two pictures, whose copies have finished, on a thread of its own. The result comes with this number.
+    /// Compares a part of two pictures, whose copies have finished, on a thread of its own. The result carries this number.
     pub(crate) fn compare(&self, number: u64, pictures: [Side; 2], part: Rect) {
         self.wait(move || {
             let of = |side: Side| {
@@ -264,7 +298,7 @@ impl Threads {
         });
     }
 
-    /// Scales the picture of a file to the size of the window's picture, and uploads it. The result comes with this number.
+    /// Scales the picture of a file to the size of the window's frame, and uploads it. The result carries this number.
     pub(crate) fn scale(&mut self, number: u64, picture: Arc<Picture>, size: (u32, u32)) {
         self.device_threads.retain(|thread| !thread.is_finished());
         let gpu = self.gpu.clone();
@@ -288,7 +322,7 @@ impl Threads {
         }));
     }
 
-    /// Draws the capture with this number on a thread of its own, after those before it. Closing waits for it, and cancels it before.
+    /// Draws the capture with this number on a thread of its own, after earlier ones. Closing cancels it and waits for it.
     pub(crate) fn capture(
         &mut self,
         number: u64,
@@ -304,17 +338,18 @@ impl Threads {
         self.capturers.push((canceled, thread));
     }
 
-    /// The end of the messages to the window, for work that answers later.
+    /// The sender of messages to the window, for work that answers later.
     pub(crate) fn sender(&self) -> MessageSender {
         self.sender.clone()
     }
 
     /// Sends the pipelines that `make` returns.
     pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
-        self.device_threads.push(self.sender.spawn(TaskKind::ToolPipelines, |sender| sender.send(Message::Tools(make()))));
+        self.device_threads
+            .push(self.sender.spawn(TaskKind::ToolPipelines, |sender| sender.send(Message::Tools(make()))));
     }
 
-    /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
+    /// Runs `work`, which waits and uses no device, on a thread of its own, and sends its message. The thread may outlive the
     /// window.
     pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
         self.sender.spawn(TaskKind::External, |sender| work().into_iter().for_each(|message| sender.send(message)));
@@ -327,7 +362,7 @@ impl Threads {
             return Ok(());
         }
         let (changes, tree) = (self.worker.changes(), source.clone());
-        // An edit comes before the measurement of the one before.
+        // An edit cancels the measurement of the previous one.
         let supersede = self.checker.superseding();
         let on_batch = move |batch: Batch| {
             supersede();
@@ -339,7 +374,7 @@ impl Threads {
         Ok(())
     }
 
-    /// Watches the files that the tree has now, after a change.
+    /// Watches the current files of the tree, after a change.
     pub(crate) fn follow_tree(&self, source: &Source) {
         if let Some(watcher) = self.tree_watcher.as_ref().filter(|_| source.root().is_none()) {
             watcher.set_files(&source.files());

@@ -1,5 +1,9 @@
 //! A second shader tree, whose picture is compared with that of the first. A thread compiles it, and again after each change of it,
 //! builds its pipelines and bakes its light, so that the window waits for none of it.
+//!
+//! The thread compiles with a `Reloader` and a watcher of its own. For pipelines and light that `Resources::bind_older`
+//! lacks, the window sends it a clone of `Resources`; the thread provides what is missing and sends back a
+//! `BoundFrame`, whose light later frames use.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,11 +22,11 @@ use crate::shader::{Batch, Change, Compiler, Diagnostic, ShaderSet, Source, Watc
 pub(crate) enum SecondTreeMessage {
     /// The tree was compiled: its pipelines, unless the picture's stages have errors, and the errors of all stages.
     Compiled(Option<Arc<PipelineSet>>, Vec<Diagnostic>),
-    /// The frame that [`SecondTree::provide`] has asked for, or the reason why there is none.
+    /// The frame that [`SecondTree::provide`] was asked for, or the reason why there is none.
     Provided(Result<Box<BoundFrame>, String>),
 }
 
-/// A picture of the second tree, and the window's resources, which it shares.
+/// A frame of the second tree, and the window's resources, which it shares.
 pub(crate) struct Needs {
     pub(crate) snapshot: Snapshot,
     pub(crate) resources: Resources,
@@ -35,13 +39,13 @@ enum Job {
     Provide(Box<Needs>),
 }
 
-/// The window's end of the thread. Dropping it ends the thread, after the stage that is being compiled.
+/// The window's handle of the thread. Dropping it ends the thread, after the stage that is being compiled.
 pub(crate) struct SecondTree {
     // The watcher sends jobs, so it is dropped first.
     _watcher: Option<Watcher>,
     jobs: Sender<Job>,
     canceled: Arc<AtomicBool>,
-    /// Its number, which its messages have.
+    /// Its number, which its messages carry.
     pub(crate) number: u64,
 }
 
@@ -70,7 +74,7 @@ impl SecondTree {
         Ok(Self { _watcher: watcher, jobs, canceled, number })
     }
 
-    /// Builds and bakes what a picture needs. The newest request wins.
+    /// Builds and bakes what a frame needs. The newest request wins.
     pub(crate) fn provide(&self, needs: Needs) {
         // Fails only after the thread has panicked, which the window reports.
         let _ = self.jobs.send(Job::Provide(Box::new(needs)));
@@ -92,7 +96,7 @@ fn watch(source: &Source, jobs: Sender<Job>) -> Result<Watcher, String> {
     Watcher::new(source.root(), &source.files(), on_batch).map_err(|error| error.to_string())
 }
 
-/// The thread's own.
+/// The state of the thread.
 struct Tree {
     reloader: Reloader,
     snapshot: Snapshot,
@@ -155,13 +159,13 @@ impl Tree {
     }
 }
 
-/// Builds the pipelines of a picture, bakes its light where the window's does not fit, and binds it.
+/// Builds the pipelines of a frame, bakes its light where the window's does not fit, and binds it.
 fn provide(needs: Needs) -> Result<BoundFrame, String> {
     let Needs { mut resources, set, state, .. } = needs;
     set.build(&state.pipelines).map_err(|error| error.to_string())?;
     resources.set_pipelines(&set);
     let bound = resources.provide(&state);
-    // Only now it is known how many suns the tree finds in the environment.
+    // The number of suns that the tree finds in the environment is known only after the bake.
     let suns = resources.environment().sun_count();
     if suns <= state.pipelines.sun_count {
         return bound.map_err(|error| error.to_string());

@@ -1,5 +1,11 @@
 //! Thumbnails and values of pixels, which are drawn between frames. Each submission waits until the device has run the one before. So no
 //! frame waits for more than one of them, and the window's thread for none.
+//!
+//! A window shows a frame when the device has drawn it, so anything in the frame delays it, and the thread that waits
+//! for it. One submission follows a frame, the next one when the device has run it, and none between a save and its
+//! first frame. So the frame of an edit waits for one of them at most, which a software device runs while the edit is
+//! compiled. Such a device also continues for 200 ms without a frame, because showing a thumbnail takes it longer than
+//! drawing one.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

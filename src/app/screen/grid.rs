@@ -1,4 +1,6 @@
 //! Draws further modes beside the picture, each with a view of its own, so that each has its range, its samples and its mean.
+//!
+//! Each mode has a `View` of its own, with its own range, accumulation buffer and probe.
 
 use std::sync::Arc;
 

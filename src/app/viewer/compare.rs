@@ -1,5 +1,9 @@
 //! Compares the picture with another one: that of an older version of the shaders, one that the user has kept, that of a second
 //! shader tree, or a picture from a file.
+//!
+//! The other side of a comparison is rendered by a second `View`, so neither side disturbs the accumulation buffer or
+//! the history of the other; its left columns are copied over the newest frame. Until the other side is ready, the
+//! present comparison stays. After a lost device, the next window does not restore the comparison.
 
 mod file;
 mod labels;

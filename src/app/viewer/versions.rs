@@ -1,4 +1,11 @@
 //! The versions of the shaders that were on screen, with what each changed, what it cost and how it looked.
+//!
+//! When shaders of a new generation come on screen, the window keeps the previous ones as a version: their
+//! `PipelineSet` and the last frame that they rendered. A version can be rendered again with the current settings:
+//! `Resources::bind_older` binds the settings to the version's own pipelines, which the worker builds if they are
+//! missing, and to the light of the version's last frame, because light baked by newer shaders would not be the
+//! version's. Where that light does not fit (another environment was chosen since), the last frame itself is shown. A
+//! version in which a loop did not end is not rendered again. When memory runs out, versions are dropped first.
 
 use std::cell::OnceCell;
 use std::collections::VecDeque;

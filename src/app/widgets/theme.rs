@@ -1,4 +1,6 @@
 //! Colors, fonts and spacing of the window, dark and light: one accent, three grays of text, two sizes of type ([`BODY`] and [`SMALL`]).
+//!
+//! The colors are resolved by a thread-local of the window's thread, the one global of the program.
 
 use std::cell::Cell;
 

@@ -1,5 +1,10 @@
 //! Statistics of a compiled pipeline: the SPIR-V words of its modules, the compile time of the driver, and the driver's statistics of
 //! the machine code (VK_KHR_pipeline_executable_properties). Each driver reports different statistics under its own names.
+//!
+//! The driver's statistics need VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT, which may change what a driver does and
+//! whether its cache hits. So no pipeline of a frame has this flag: if the user asks, the worker builds the largest
+//! pipeline of each stage once more with the flag when idle. A change is the difference to the same request in the set
+//! of the previous version.
 
 use std::ffi::{CStr, c_char};
 use std::sync::OnceLock;
@@ -10,27 +15,27 @@ use serde::Serialize;
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
-/// A number that a driver tells of machine code.
+/// A driver statistic of machine code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Statistic {
-    /// The driver's name for it, as `Register Count`.
+    /// The driver's name of the statistic, as `Register Count`.
     pub name: String,
-    /// Meaning of the number, as the driver describes it.
+    /// The driver's description of the statistic.
     pub meaning: String,
     /// Its value. A driver's true is 1.
     pub value: f64,
 }
 
-/// Machine code that a driver has made of one stage or of several.
+/// Machine code that a driver has generated for one stage or several.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Executable {
-    /// The driver's name for it.
+    /// The driver's name of the code.
     pub name: String,
-    /// Kinds of the stages in it, as `fragment`.
+    /// The kinds of its stages, as `fragment`.
     pub stages: Vec<&'static str>,
-    /// Invocations that run together; 0 if the driver does not tell.
+    /// Invocations that run together (subgroup size); 0 if the driver does not report it.
     pub subgroup_size: u32,
-    /// The driver's numbers, in its order.
+    /// The driver's statistics, in its order.
     pub statistics: Vec<Statistic>,
 }
 
@@ -41,9 +46,9 @@ pub struct PipelineStage {
     pub stage: String,
     /// Words of its specialized module.
     pub words_before: usize,
-    /// Words that the driver got: the specialized module after Specula's optimizer.
+    /// Words that the driver gets: the specialized module after Specula's optimizer.
     pub words: usize,
-    /// The driver's time for this stage, milliseconds, if it tells.
+    /// The driver's time for this stage, milliseconds, if it reports that.
     pub driver_ms: Option<f64>,
 }
 
@@ -64,12 +69,12 @@ impl CompileInfo {
         Self { stages, ms, is_cached, statistics: OnceLock::new() }
     }
 
-    /// The numbers that the driver has told; `None` until it is asked ([`CompileInfo::set_statistics`]).
+    /// The driver's statistics; `None` until they are queried ([`CompileInfo::set_statistics`]).
     pub fn statistics(&self) -> Option<&[Executable]> {
         self.statistics.get().map(Vec::as_slice)
     }
 
-    /// Keeps the numbers that the driver tells of the same pipeline, built once more to be asked.
+    /// Stores the statistics that were queried from a second build of this pipeline.
     pub fn set_statistics(&self, statistics: Vec<Executable>) {
         let _ = self.statistics.set(statistics);
     }
@@ -81,7 +86,7 @@ pub(super) fn feedback_ms(feedback: &vk::PipelineCreationFeedback) -> Option<f64
     is_valid.then_some(feedback.duration as f64 * 1e-6)
 }
 
-/// The numbers that the driver tells of a pipeline, which must have been created with the flag `CAPTURE_STATISTICS`.
+/// Queries the statistics of a pipeline, which must have been created with the flag `CAPTURE_STATISTICS`.
 pub(super) fn read(gpu: &Gpu, pipeline: vk::Pipeline) -> Result<Vec<Executable>, GpuError> {
     let Some(extension) = &gpu.executables else { return Ok(Vec::new()) };
     let info = vk::PipelineInfoKHR::default().pipeline(pipeline);

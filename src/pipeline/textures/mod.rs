@@ -1,4 +1,11 @@
 //! The images of a tree's `//@texture` annotations on the device.
+//!
+//! Textures belong to the pipeline set, since the worker decodes and uploads them. A texture is a name and the kind of
+//! sampler that reads it (`TextureKind`), so a table can be a volume in one stage and a strip in another.
+//! `graph/textures.rs` finds and reads the files; `shape.rs` derives from the sizes in their headers how layers lie in
+//! them and whether the device has such an image, before anything is decoded. `flip` turns a face, layer or slice
+//! upside down after it was cut out, an equirectangular image before it is resampled. Only files are cube maps, volumes
+//! and arrays: images of passes are 2D.
 
 mod panorama;
 mod shape;
@@ -20,7 +27,7 @@ use crate::shader::graph::{Texture, TextureFile, TextureKind};
 use crate::shader::{Diagnostic, Graph};
 use shape::{Cut, Shape};
 
-/// A texture on the device, with what it was made of.
+/// A texture on the device, with what it was made from.
 struct Uploaded {
     of: Arc<Texture>,
     image: Arc<Image>,
@@ -32,8 +39,8 @@ struct Uploaded {
 pub struct PassTextures(BTreeMap<(String, TextureKind), Arc<Uploaded>>);
 
 impl PassTextures {
-    /// Decodes and uploads the textures of `graph`. Those that `before` has are taken over; if nothing changed, the result is
-    /// the same object.
+    /// Decodes and uploads the textures of `graph`. Textures that `before` has are reused; if nothing changed, the result is the
+    /// same object.
     ///
     /// # Errors
     /// A file is no image, sizes do not fit the kind of the texture, or the device has no such image or is out of memory: each
@@ -74,7 +81,7 @@ fn is_float(picture: &DynamicImage) -> bool {
     matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_))
 }
 
-/// Decodes a texture and brings it to the device.
+/// Decodes a texture and uploads it.
 fn upload(gpu: &Arc<Gpu>, of: &Arc<Texture>) -> Result<Uploaded, String> {
     // The sizes are checked before anything is decoded.
     let (pictures, sizes) = match of.is_table() {

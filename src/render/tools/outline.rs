@@ -1,5 +1,8 @@
 //! The outline of selected instances: a mask of them in a target of its own, and a filter that finds its edge. The mask has no depth, so
 //! the outline also shows where something hides them.
+//!
+//! The outline is drawn after the frame, into the swapchain's image, so screenshots never have it. Without a selection
+//! nothing is drawn. Lines and points have no outline.
 
 use std::sync::Arc;
 
@@ -13,7 +16,7 @@ use crate::gpu::{
 };
 use crate::render::BoundFrame;
 
-/// How an outline looks.
+/// The style of an outline.
 #[derive(Clone, Copy, Debug)]
 pub struct OutlineStyle {
     /// RGB as displayed.
@@ -39,7 +42,7 @@ struct LinePush {
     size: [f32; 2],
 }
 
-/// The targets of an outline, for pictures of one size.
+/// The targets of an outline, for frames of one size.
 pub struct Outline {
     tools: Arc<Tools>,
     mask: Arc<Image>,
@@ -67,13 +70,13 @@ impl Outline {
         Ok(Self { tools: tools.clone(), mask, multisampled, set })
     }
 
-    /// Whether it fits pictures of this size.
+    /// Whether it fits frames of this size.
     pub fn fits(&self, size: (u32, u32)) -> bool {
         (self.mask.desc().width, self.mask.desc().height) == size
     }
 
-    /// Draws the outline of the instances for which `is_selected`, over the picture of `frame` that lies at `at` in `target`, which is in
-    /// [`Use::Color`] before and after.
+    /// Draws the outline of the instances for which `is_selected` holds, over the frame that lies at `at` in `target`, which is
+    /// in [`Use::Color`] before and after.
     pub fn draw(
         &self,
         encoder: &mut Encoder,

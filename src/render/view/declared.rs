@@ -1,4 +1,26 @@
 //! The passes of the shader tree: their images and buffers, and how a view draws those that make an image or a new picture.
+//!
+//! Images and buffers belong to the view (`images.rs`); those that a new graph needs unchanged stay, with their
+//! content, so an edit does not end a simulation. Images with the same properties share one image of the device if one
+//! is read for the last time before the other is drawn (`lifetimes.rs`); depth, and the first level of images with mip
+//! levels, are needed only while a pass draws, so all passes share them. `--memory` limits what is left (`memory.rs`):
+//! exceeding it is an error at the line of the pass for commands, and a notice over the last frame in a window. Between
+//! passes every image is in `Use::Sampled`.
+//!
+//! What a pipeline reads is known from its optimized modules: bindings, and bytes of the block `Frame`
+//! (`gpu::ResourceUsage`). A branch that a constant switches off does not count. Three decisions follow:
+//!
+//! - An image is reused if it would be the same (`reuse.rs`): nothing differs in its pipelines, the images and textures
+//!   that it reads, the model, and the bytes of uniform blocks that it uses. So a shadow map is drawn again when a
+//!   light moves, and stays while the camera does. Compute passes, passes that `keep`, and those that read `picture`,
+//!   `depth` or a buffer are always drawn.
+//! - A picture is animated if a pipeline reads the clock (`interface::CLOCK`), or a pass depends on time: it reads the
+//!   previous frame or a buffer. The window then draws continuously. Without a window, `--frames`, `--time` and `--fps`
+//!   give the times, and each picture begins with empty images. Accumulation by path tracing continues while only what
+//!   follows the model is animated.
+//! - A picture that reads keys (`interface::KEYS`) is drawn again when one of them changes, and once more after a
+//!   press, which counts in one frame. Other pictures get no keys, so they stay the same whatever is pressed. If a
+//!   pipeline reads `frame.clip_from_world_before`, the window draws once more after the camera has come to rest.
 
 mod blocks;
 mod desc;
@@ -39,17 +61,17 @@ pub(super) struct DeclaredPasses {
     /// Interpolates between texels and between levels.
     linear: Arc<Sampler>,
     nearest: Arc<Sampler>,
-    /// Reads as 0. Passes read it in place of a missing image, such as that of a pass that is switched off.
+    /// Reads as 0. Replaces a missing image, such as that of a pass that is switched off.
     blank: Arc<Image>,
-    /// The same in place of missing textures, by their kind.
+    /// Replaces missing textures, by their kind.
     blanks: BTreeMap<TextureKind, Arc<Image>>,
-    /// The set of tasks, through which compute stages report endless loops.
+    /// Descriptor set 3, through which compute stages report endless loops.
     task_set: Arc<DescriptorSet>,
     images: Images,
     sets: Sets,
-    /// The HDR picture after the passes before the tone map, or the image of the shown pass.
+    /// The HDR image after the passes before the tone map, or the image of the shown pass.
     picture: Option<Arc<Image>>,
-    /// The displayed picture, after the passes that follow the tone map.
+    /// The LDR output, after the passes that follow the tone map.
     display: Option<Arc<Image>>,
 }
 
@@ -64,8 +86,7 @@ pub(super) struct PassContext<'a> {
     pub(super) depth: Option<&'a Arc<Image>>,
 }
 
-/// Number of cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and
-/// spares.
+/// Cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and spares.
 const SETS_KEPT: usize = 8;
 
 impl DeclaredPasses {
@@ -92,8 +113,8 @@ impl DeclaredPasses {
         })
     }
 
-    /// Creates the images and buffers that `frame` needs. Those that still fit are kept, with their content. Returns
-    /// false if the needs are the same as before.
+    /// Creates the images and buffers that `frame` needs. Those that still fit keep their content. Returns false if the
+    /// requirements are unchanged.
     pub(super) fn prepare(&mut self, frame: &BoundFrame) -> Result<bool, GpuError> {
         let next = self.images.next(&self.gpu, frame)?;
         let is_new = next.is_some();
@@ -110,7 +131,7 @@ impl DeclaredPasses {
         self.images.restart();
     }
 
-    /// The HDR picture that the tone map reads, if a pass has changed it or a pass's image is shown.
+    /// The HDR image that the tone map reads, if a pass has changed it or a pass's image is shown.
     pub(super) fn picture(&self) -> Option<&Arc<Image>> {
         self.picture.as_ref()
     }
@@ -135,7 +156,7 @@ impl DeclaredPasses {
         finish_buffers(encoder, context);
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
         let shown = shown_image(context.frame).filter(|(_, pass)| pass.phase != RenderPhase::Display);
-        // The tone map reads an image of the picture's size.
+        // The tone map reads an image of the frame's size.
         if let Some((name, _)) = shown
             && let (Some(from), Some(to)) = (self.images.current(name), self.images.shown())
         {
@@ -151,7 +172,7 @@ impl DeclaredPasses {
     }
 
     /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
-    /// [`Use::Sampled`]: the same as before unless the picture was `redrawn`.
+    /// [`Use::Sampled`]: the previous one unless the frame was `redrawn`.
     pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
@@ -179,7 +200,7 @@ impl DeclaredPasses {
         Ok(Some(last))
     }
 
-    /// Forgets the drawn pictures: the frame's commands were not submitted.
+    /// Marks all images as undefined: the frame's commands were not submitted.
     pub(super) fn forget(&mut self) {
         self.images.forget();
         (self.picture, self.display) = (None, None);
@@ -191,7 +212,7 @@ impl DeclaredPasses {
         self.picture = None;
     }
 
-    /// The sets of the pipelines of `keys`, which draw to the picture. Images of passes are read as they are now.
+    /// The sets of the pipelines of `keys`, which draw to the HDR target. They read the current images of passes.
     pub(super) fn sets_of(
         &mut self,
         context: &PassContext<'_>,
@@ -210,7 +231,7 @@ impl DeclaredPasses {
         Ok(sets)
     }
 
-    /// Draws the passes of one part of the frame, from this picture. Returns the last picture.
+    /// Draws the passes of one phase, starting from this picture. Returns the resulting picture.
     fn run(
         &mut self,
         encoder: &mut Encoder,
@@ -226,8 +247,12 @@ impl DeclaredPasses {
                 false => self.images.target(pass.name()).cloned(),
             };
             let Some(target) = target else { continue };
-            let images =
-                FrameImages { picture: Some(&picture), depth: context.depth, target: Some(&target), ..FrameImages::default() };
+            let images = FrameImages {
+                picture: Some(&picture),
+                depth: context.depth,
+                target: Some(&target),
+                ..FrameImages::default()
+            };
             let reads = Reads { name: pass.name(), inputs: &pass.inputs, images: &images, index: Some(index) };
             let cache_key = self.cache_key(context, pass, index);
             if cache_key.as_ref().is_some_and(|key| self.images.holds(pass.name(), key)) {
@@ -246,7 +271,7 @@ impl DeclaredPasses {
         Ok(picture)
     }
 
-    /// The sources of a pass in this frame.
+    /// The cache key of a pass in this frame.
     fn cache_key(&self, context: &PassContext<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<PassCacheKey> {
         let keys = context.frame.state.pipelines.pass_keys(pass);
         let pipelines: Vec<_> = keys.iter().filter_map(|key| context.frame.pipelines.get(key)).collect();
@@ -270,7 +295,8 @@ impl DeclaredPasses {
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
-        // Every image with the one that the pass draws to: an attachment has one level, so levels are made of an image of its own.
+        // Each image with the one that the pass draws to: an attachment has a single level, so mip levels are made from a
+        // separate image.
         let images: Vec<(Arc<Image>, Arc<Image>)> = match pass.desc.to_picture() {
             true => vec![(target.clone(), target.clone())],
             false => self.images.targets(pass),
@@ -337,7 +363,8 @@ impl DeclaredPasses {
         if writes_image {
             encoder.transition(target, Use::Sampled, Use::Storage);
         }
-        let sets: Vec<_> = [Some(context.frame_set), set.as_ref(), Some(&self.task_set)].into_iter().flatten().collect();
+        let sets: Vec<_> =
+            [Some(context.frame_set), set.as_ref(), Some(&self.task_set)].into_iter().flatten().collect();
         encoder.dispatch(pipeline, &sets, groups);
         if writes_image {
             encoder.transition(target, Use::Storage, Use::Sampled);
@@ -345,7 +372,7 @@ impl DeclaredPasses {
         Ok(())
     }
 
-    /// The set for what a stage reads by name, as it is now. `None` if the layout has none.
+    /// The current set of the resources that a stage reads by name. `None` if the layout has none.
     fn set(
         &mut self,
         layout: &Arc<PassLayout>,
@@ -390,8 +417,9 @@ fn uses_buffers(pass: &GraphPass) -> bool {
 
 /// SYNC: makes what passes wrote to buffers visible to the passes that make up the picture, if one of them reads a buffer.
 fn finish_buffers(encoder: &mut Encoder, context: &PassContext<'_>) {
-    let makes_picture =
-        |pass: &&Arc<GraphPass>| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap);
+    let makes_picture = |pass: &&Arc<GraphPass>| {
+        matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap)
+    };
     if context.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
         encoder.buffers_done();
     }

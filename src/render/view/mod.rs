@@ -1,5 +1,18 @@
 //! A view draws [`BoundFrame`]s. It owns the render targets, tracks what they hold, and keeps the mean of an accumulating mode,
 //! so that views share nothing but the resources of their frames.
+//!
+//! `View::draw` writes uniforms, draws the model to an HDR target (4x multisampled by default), resolves it, adds it to
+//! the accumulation buffer of an accumulating mode, copies the probed pixel, and tone maps. If nothing has changed,
+//! only the tone map runs. Each pass has a debug label and GPU timestamps, which `bench frame` and the panel "Timing"
+//! report.
+//!
+//! A mode that says `accumulate` is a Monte Carlo estimate. `average.frag` adds each frame to an accumulation buffer of
+//! full floats with weight 1 / n until anything about the frame changes; `frame.sample_index` selects the next samples.
+//!
+//! HDR alpha is coverage plus flags: "no data" and "not finite" survive half floats, clamping and the MSAA resolve
+//! (`common/pixel.glsl`, decoded by `shader/pixel.rs`). Depth is reversed and infinite. Vertices are read by device
+//! address, a draw's matrices are push constants, and a material is a descriptor set. The debug mode is one
+//! specialization constant of `debug.frag`, `MODE`, so the driver keeps the code of one mode only.
 
 mod capture;
 mod declared;
@@ -28,7 +41,7 @@ pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use range_sample::RangeSampleReadback;
 
-use declared::{Blocks, DeclaredPasses, PassContext, FrameImages};
+use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
 
 use super::bound_frame::BoundFrame;
 use crate::frame::{Display, Limits, TargetFormat};
@@ -38,24 +51,24 @@ use crate::gpu::{
 use crate::shader::PixelValue;
 use crate::shader::graph::Input;
 
-/// The destination of a view's picture.
+/// The destination of a view's output.
 pub struct Output<'a> {
     /// The image. [`View::draw`] leaves it in [`Use::Color`].
     pub image: &'a Arc<Image>,
     /// The use that the image is in: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
     pub before: Use,
-    /// Upper left corner of the picture in the image. The rest of the image becomes black.
+    /// Upper left corner of the output in the image. The rest of the image becomes black.
     pub at: (u32, u32),
 }
 
 /// How much of a frame [`View::draw`] draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redraw {
-    /// Draws the model only if the picture has changed since the last frame; otherwise only tone maps.
+    /// Draws the model only if it has changed since the last frame; otherwise only tone maps.
     IfChanged,
-    /// Draws the model in any case. As ever, declared passes keep images that would be the same again.
+    /// Forces the model pass. Declared passes still reuse unchanged outputs.
     Always,
-    /// Draws the model only if the picture has changed. Otherwise a mean stays as it is, and only the tone map runs.
+    /// Draws the model only if it has changed. Otherwise an accumulation buffer stays as it is, and only the tone map runs.
     ToneMap,
     /// Draws the model, but shades only this pixel, counted from the upper left corner.
     Pixel(u32, u32),
@@ -92,22 +105,22 @@ pub struct View {
     drawn: Option<(BoundFrame, Option<Rect>)>,
     /// The cameras of the last picture and of the one before, as `clip_from_world`.
     cameras: Option<[Mat4; 2]>,
-    /// How often the model was drawn.
+    /// Number of times the model was drawn.
     picture: u64,
     sample_index: u32,
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
-    /// Whether samples of each picture are wanted, although no range follows them.
+    /// Whether to sample each frame's values even if no range is automatic.
     pub samples_range: bool,
     /// The newest samples.
     range_sample: Option<Arc<RangeSample>>,
-    /// The picture of which the last samples were copied.
+    /// The frame of which the last samples were copied.
     range_sampled: u64,
-    /// The limits between which almost all values of a picture lie.
+    /// The limits between which almost all values of a frame lie.
     measured: Option<(u64, Option<Limits>)>,
     /// The value of `MODE`, and its first picture since it was chosen.
     mode_since: Option<(u32, u64)>,
-    /// The limits of the last picture of each mode, by the value of `MODE`.
+    /// The limits of the last frame of each mode, by the value of `MODE`.
     known_limits: HashMap<u32, Limits>,
     /// The content of the display's constants in the last frame.
     displayed: Option<(Display, Option<Limits>)>,
@@ -217,7 +230,8 @@ impl View {
         let limits_changed =
             self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
         self.limits_changed = limits_changed;
-        let samples_range = (self.samples_range || frame.state.display.is_measured()) && self.range_sampled != self.picture;
+        let samples_range =
+            (self.samples_range || frame.state.display.is_measured()) && self.range_sampled != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
 
@@ -257,7 +271,7 @@ impl View {
             self.range_sampled = self.picture;
         }
 
-        // The HDR picture to the display: exposure, tone map, sRGB.
+        // The HDR target to the display: exposure, tone map, sRGB.
         let images = FrameImages { picture: Some(&picture), ..FrameImages::default() };
         let sets = self.declared.sets_of(&context, &images, frame.state.pipelines.tonemap_key().into_iter())?;
         if !has_display_passes {
@@ -266,7 +280,7 @@ impl View {
             return Ok(());
         }
 
-        // The display to the output, through the declared passes after the tone map.
+        // The LDR output, through the declared passes after the tone map.
         let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
         let display = self.declared.on_display(encoder, &context, redrawn || limits_changed, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
@@ -294,8 +308,8 @@ impl View {
         Ok(set)
     }
 
-    /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the mean
-    /// while the model looks the same, and starts again when that changes.
+    /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the accumulation
+    /// buffer while the model looks the same, and restarts when that changes.
     fn begins_picture(&mut self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> bool {
         let accumulates = frame.state.pipelines.accumulates;
         let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
@@ -312,7 +326,7 @@ impl View {
         redrawn
     }
 
-    /// Whether the picture shows how the camera has moved, so that the next one differs even if the camera rests.
+    /// Whether the picture shows camera motion, so that the next frame differs even if the camera rests.
     pub fn is_moving(&self, frame: &BoundFrame) -> bool {
         self.cameras.is_some_and(|[now, before]| now != before) && frame.reads_motion()
     }
@@ -347,7 +361,7 @@ impl View {
         self.picture
     }
 
-    /// The number of frames in the mean.
+    /// The number of accumulated frames.
     pub fn accumulated(&self) -> u32 {
         self.sample_index + 1
     }
@@ -357,7 +371,7 @@ impl View {
         self.in_flight.get(slot).and_then(|in_flight| in_flight.pixel.read())
     }
 
-    /// Records the readback of the picture in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
+    /// Records the readback of the image in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
     /// `Readback::finish` once the frame has finished.
     ///
     /// # Errors

@@ -1,4 +1,17 @@
 //! Draws the model with the pipelines of a pass: with vertices and indices, or with mesh stages. Also draws quads.
+//!
+//! **Mesh stages** (`VK_EXT_mesh_shader`) run in place of the vertex stage. Indices have an address in `Draw`, as
+//! vertices do, so a mesh stage reads both through push constants, and no descriptor changes between draws. The
+//! workgroup size of the stage says how many triangles a group has: the reflected `local_size`, 32 in
+//! `common/model.mesh.glsl`, which keeps 96 vertices of a `Fragment` far below every limit. A draw starts `triangles /
+//! local_size` workgroups times the instances; with a task stage, each of its invocations decides about one group.
+//! Primitives that need more workgroups than each device can start take several draws (`first_triangle`). A device
+//! without the extension refuses the stages in `pipeline/limits.rs`, after they have compiled, so `check` finds their
+//! errors anywhere.
+//!
+//! Groups share no vertices between triangles, so each corner is transformed once per triangle, and they follow the
+//! order of the indices, not the shape of the surface. `draws` and `triangles` of `bench` count what a mesh pipeline is
+//! given, not what its stages keep.
 
 use std::sync::Arc;
 

@@ -1,5 +1,15 @@
 //! How the passes that make up the picture are drawn, in the order in which they run: the model with its background, the
 //! resolve of its samples, the mean, the tone map.
+//!
+//! The model is drawn in this order: opaque surfaces front to back; if a surface is transmissive, a copy of the HDR
+//! target so far, blurred level by level (the opaque scene color, `behind` in GLSL), and those surfaces back to front;
+//! the environment where nothing covers it; blended surfaces back to front. A mode that says `through` draws the opaque
+//! surfaces twice: as in the final picture for the copy, then as the mode shows them. Lines of the wireframe come last,
+//! in the same multisampled target, flagged as "no data" over data. Blended primitives are sorted by their centers, so
+//! interleaved ones blend in the wrong order. Nothing is culled: this is a viewer of models, not of worlds.
+//!
+//! How `model` is drawn stays in Rust: the order of its surfaces, the copy of the opaque scene and the number of
+//! samples depend on the scene and the settings, not on the shader tree.
 
 use std::sync::Arc;
 
@@ -18,9 +28,9 @@ pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
-    /// The sets of the stages of model, sky and mean.
+    /// The sets of the stages of the model, the sky and the accumulation.
     pub(super) sets: &'a PassSets,
-    /// The part of the picture to shade; `None` is all of it.
+    /// The part of the frame to shade; `None` is all of it.
     pub(super) only: Option<Rect>,
     /// The targets of further modes that are drawn at once: color, and multisampled color if there is more than one sample.
     pub(super) more: &'a [ColorTarget],
@@ -95,19 +105,23 @@ impl Passes<'_> {
             encoder.transition(target.drawn(), Use::Color, Use::Color);
             encoder.transition(&targets.depth, Use::Depth, Use::Depth);
             let resolve = target.multisampled.as_ref().map(|_| &target.color);
-            let attachments =
-                Attachments { resolve, depth: Some(&targets.depth), keeps_contents: true, ..Attachments::of(target.drawn()) };
+            let attachments = Attachments {
+                resolve,
+                depth: Some(&targets.depth),
+                keeps_contents: true,
+                ..Attachments::of(target.drawn())
+            };
             encoder.begin_rendering(&attachments);
             self.background(encoder);
             encoder.end_rendering();
         }
     }
 
-    /// Draws the surfaces that `behind` has not drawn, and the sky.
+    /// Draws the surfaces that the opaque scene color does not hold yet, and the sky.
     fn surfaces(&self, encoder: &mut Encoder, sorted: &Sorted<'_>) {
         let targets = self.targets;
-        // Opaque surfaces that `behind` has drawn are not drawn again, unless this mode draws them differently from the
-        // final picture, which `behind` holds.
+        // Opaque surfaces in the opaque scene color are not drawn again, unless this mode draws them differently from the final
+        // picture, which that image holds.
         let has_opaque = targets.opaque_scene.is_some() && !self.request().draws_opaque_twice();
         let clear = (!has_opaque).then_some([0.0; 4]);
         let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);
@@ -169,14 +183,14 @@ impl Passes<'_> {
         }
     }
 
-    /// Draws the edges of all triangles over the picture, if the settings say so.
+    /// Draws the wireframe of all triangles over the picture, if the settings say so.
     fn wireframe(&self, encoder: &mut Encoder) {
         let (Some(pass), Some(scene)) = (&self.request().wireframe, &self.frame.scene) else { return };
         let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1, pass };
         model.draw(encoder, &scene.draws, |material| self.request().wireframe_key(material));
     }
 
-    /// Draws what lies behind the model where nothing covers it.
+    /// Draws the background where nothing covers it.
     pub(super) fn background(&self, encoder: &mut Encoder) {
         for pipeline in self.request().background_keys().filter_map(|key| self.pipeline(&key)) {
             self.sets.bind(encoder, pipeline);
@@ -198,7 +212,7 @@ impl Passes<'_> {
         encoder.end_rendering();
     }
 
-    /// Adds the newest frame to the mean, and leaves the mean in [`Use::Sampled`].
+    /// Adds the newest frame to the accumulation buffer, and leaves that in [`Use::Sampled`].
     pub(super) fn accumulate(&self, encoder: &mut Encoder, index: u32) {
         let Some(mean) = &self.targets.mean else { return };
         let Some(pipeline) = self.request().average_key().and_then(|key| self.pipeline(&key)) else { return };
@@ -219,7 +233,7 @@ impl Passes<'_> {
         encoder.transition(mean, Use::Color, Use::Sampled);
     }
 
-    /// Tone maps the picture in `sets` to `rect` of `output`. The rest of `output` becomes black.
+    /// Tone maps the HDR image in `sets` to `rect` of `output`. The rest of `output` becomes black.
     pub(super) fn tone_map(&self, encoder: &mut Encoder, sets: &PassSets, output: &Arc<Image>, rect: Rect) {
         let key = self.request().tonemap_key();
         self.tone_map_with(encoder, key.as_ref(), sets, output, rect);
@@ -237,7 +251,7 @@ impl Passes<'_> {
         encoder.begin_rendering(&cleared(output));
         if let Some(pipeline) = key.and_then(|key| self.pipeline(key)) {
             encoder.set_viewport(rect);
-            // After a resize, the previous picture may be larger than its output.
+            // After a resize, the previous frame may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
             sets.bind(encoder, pipeline);
             encoder.draw(3);

@@ -1,9 +1,15 @@
 //! The values of one pixel in several modes: only the pixels that share their derivatives are drawn, to targets of two by two pixels.
+//!
+//! The targets hold the pixels that share derivatives with the inspected one. The viewport is that of the whole frame,
+//! moved so that this quad lies at the corner of the targets, so rasterization, derivatives and mip levels are the
+//! frame's. Only `gl_FragCoord` differs: shaders use `picture_px()` (`common/picture_px.glsl`) instead, and a user
+//! shader that reads `gl_FragCoord` itself gets other coordinates here. Passes after the model, and what lies behind
+//! transmissive surfaces, are left out. Where a mode shows a color for each number, the same draw gives the number.
 
 use std::sync::Arc;
 
 use super::capture::PixelReadback;
-use super::declared::{PassContext, FrameImages};
+use super::declared::{FrameImages, PassContext};
 use super::passes::{ColorTarget, Passes, Sorted, sort};
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -11,8 +17,8 @@ use crate::frame::PipelineRequest;
 use crate::gpu::{Attachments, Encoder, Gpu, GpuError, Image, Rect, SetLayouts, Use};
 use crate::shader::PixelValue;
 
-/// Draws a pixel of a frame in several modes at once, and reads the values back. It shares nothing with the large picture but the
-/// resources of its frames.
+/// Draws a pixel of a frame in several modes at once, and reads the values back. It shares nothing with the view of the window
+/// but the resources of its frames.
 pub struct PixelModes {
     /// Its passes and uniforms. A draw has two slots: one for the passes that the model reads, one for the pixel.
     view: View,
@@ -24,7 +30,8 @@ pub struct PixelModes {
 }
 
 impl PixelModes {
-    /// Width and height of the targets. Graphics hardware shades two by two pixels together and takes derivatives between them.
+    /// Width and height of the targets. Graphics hardware shades pixels in quads of two by two and takes derivatives within a
+    /// quad.
     const QUAD: u32 = 2;
 
     /// Creates the uniforms for this many draws in flight.
@@ -36,9 +43,9 @@ impl PixelModes {
         Ok(Self { view: View::new(gpu, layouts, 2 * in_flight)?, targets: None, more: Vec::new(), values })
     }
 
-    /// Draws the pixel `at`, counted from the upper left corner, of `frame`, a state of [`crate::frame::FrameState::of_modes`] with one
-    /// sample per pixel. `slot` is one of the draws in flight, from 0. Passes after the model are left out, and transmissive surfaces
-    /// show nothing behind them.
+    /// Draws the pixel `at`, counted from the upper left corner, of `frame`, a state of [`crate::frame::FrameState::of_modes`]
+    /// with one sample per pixel. `slot` is one of the draws in flight, from 0. Passes after the model are left out, and
+    /// transmissive surfaces show nothing behind them.
     ///
     /// # Errors
     /// Out of memory. Drop this object then, unless the commands are not submitted.
@@ -123,7 +130,7 @@ impl PixelModes {
         values.filter_map(|value| value.read()).map(|pixel| pixel.value).collect()
     }
 
-    /// Forgets what is drawn: the commands of a frame were not submitted.
+    /// Marks the targets as undefined: the commands of a frame were not submitted.
     pub fn forget(&mut self) {
         self.view.forget();
     }
@@ -138,7 +145,8 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
     let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
     let Some(first) = all.first() else { return };
     let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {
-        let attachments = Attachments { more, clear, depth: Some(depth), keeps_contents: true, ..Attachments::of(color) };
+        let attachments =
+            Attachments { more, clear, depth: Some(depth), keeps_contents: true, ..Attachments::of(color) };
         encoder.begin_rendering(&attachments);
         encoder.set_part_of_picture(origin, frame.state.size);
     };

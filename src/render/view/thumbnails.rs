@@ -1,15 +1,28 @@
 //! Thumbnails: small pictures of several modes, drawn at once and copied to their places in one image.
+//!
+//! Up to eight modes share one draw and one pipeline. `spirv::specialize_several` specializes a stage for a set of
+//! values of `MODE`: the constant, and what depends on it, become private variables; a new entry point calls the old
+//! one once for each mode and writes each color to a target of its own; code that no mode of the set needs is dropped.
+//! No uniform holds the mode, so drivers cannot specialize for it again, and ordinary pipelines do not change.
+//! `frame::mode_sets` groups modes of one group and stage, so that a set compiles little for one mode alone. One
+//! pipeline for all modes would take lavapipe 2 s to compile in the queue, where it holds up frames, and a draw per
+//! mode would process the vertices a hundred times.
+//!
+//! Passes after the model, such as bloom, are left out, and transmissive surfaces show nothing behind them, except in
+//! the final picture. Modes of path tracing and images of passes have no thumbnails. A `discard` in one mode of a set,
+//! or a loop that does not end, affects the whole set. On lavapipe the first draw of each set compiles it in the queue,
+//! and an edit that is saved just then waits for it.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::declared::{PassContext, FrameImages};
+use super::declared::{FrameImages, PassContext};
 use super::passes::{ColorTarget, Passes};
 use super::{BoundFrame, View};
 use crate::frame::{Display, Limits};
 use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, SetLayouts, Use, vk};
 
-/// Draws thumbnails. It has targets of its own and shares nothing with the large picture but the resources of its frames.
+/// Draws thumbnails. It has targets of its own and shares nothing with the view of the window but the resources of its frames.
 pub struct Thumbnails {
     view: View,
     /// The targets of the second mode and the following ones.
@@ -23,7 +36,7 @@ pub struct Thumbnails {
 }
 
 impl Thumbnails {
-    /// Modes that are drawn at once, where the device has as many color targets.
+    /// Most modes that one draw can show, where the device has as many color targets.
     const MOST_AT_ONCE: usize = 8;
 
     /// Creates the uniforms for this many sets of modes in flight.
@@ -41,7 +54,7 @@ impl Thumbnails {
     }
 
     /// Reads the samples of a slot's last draw. Returns the modes, by the value of `MODE`, whose limits they have changed: their
-    /// thumbnails are out of date. SYNC: after the fence of that draw.
+    /// thumbnails are outdated. SYNC: after the fence of that draw.
     pub fn collect(&mut self, slot: usize) -> Vec<u32> {
         let mut changed = Vec::new();
         for (index, (mode, components, display)) in
@@ -150,7 +163,7 @@ impl Thumbnails {
         Ok(())
     }
 
-    /// Forgets what is drawn: the commands of a frame were not submitted.
+    /// Marks the targets as undefined: the commands of a frame were not submitted.
     pub fn forget(&mut self) {
         self.view.forget();
         self.pending.clear();

@@ -14,6 +14,13 @@
 //!
 //! `//@pass` and `//@texture` stand anywhere in their file ([`pass`], [`texture`]). Any other annotation follows its declaration on
 //! the same line, or is on the line before it.
+//!
+//! `conserves="A B"` and `reciprocal="A"` behind a list of choices name those that guarantee the property; a
+//! combination guarantees what all of its choices do, and `specula brdf` checks it. A mode with `numbers=` shows a
+//! color for each number, and gives the number itself where a single pixel is read (`FrameState::with_numbers`,
+//! `frame.gives_numbers`); `PixelValue::text` and `json` say what it means. An annotation that does not parse is an
+//! error with its line. Values are kept by name in `Settings::shader`, so they survive reloads in which offsets move.
+//! Parameters go through a uniform buffer and cost nothing; constants build pipelines.
 
 mod cursor;
 mod mode;

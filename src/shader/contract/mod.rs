@@ -1,5 +1,10 @@
 //! Checks compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both
 //! sides.
+//!
+//! `access.rs` walks the call graph of each module and refuses resources that are not bound for the stage at the line
+//! that reads them; `pipeline/set.rs` refuses a module that slipped through before the driver sees it. A global `const
+//! bool` that joins specialization constants by `&&` or `||` is refused with its line, since glslang leaves it without
+//! a value and the driver would fail or crash.
 
 pub mod access;
 mod capability;

@@ -3,6 +3,14 @@
 //! The library compiles one more stage, [`STAGE`], while an expression is watched. Its text is that of the stage that draws the
 //! picture, with another `main` around it; and in the file with the expression, a call of `watch_value` stands on the line of
 //! the statement. Only this stage sees these texts ([`Overlay`]): the picture's own stage is not compiled again.
+//!
+//! Every line of the stage's text stays in its place: `main` becomes `watched_main`, the first include is a library
+//! with `watch_value` for each type, and a new `main` calls the old one and writes the value that was kept. `place.rs`
+//! inserts `watch_value(EXPR);` on the line of the statement, which `syntax.rs` finds without a preprocessor.
+//! `library/watched.rs` follows the line over edits by the unchanged lines above and below it. An expression that does
+//! not compile leaves the stage pending, and the window keeps the last frame of this mode. The stage is not part of
+//! `debug.frag`, because a wrong expression must not disable a hundred modes. A loop without end in this stage has no
+//! line in its message.
 
 mod follow;
 mod overlay;

@@ -4,6 +4,54 @@
 //! image one frame ago, `picture` the picture so far, and `depth` the depth of the model. A pass with `to=picture`
 //! replaces the picture, or adds to it if it draws the model or the background. A pass follows the passes whose images it reads,
 //! and the pass that its `after=` names. Names break ties.
+//!
+//! Any `.frag` or `.comp` file of the tree that says `//@pass` is a stage (`Library::find_passes`), compiled, checked
+//! and swapped in with the others: all or nothing. One file is one pass, so its name, its images and its errors have
+//! one place. A pass says what it reads by declaring it, and nothing else: `uniform sampler2D glow;` needs no binding.
+//! `compile/unbound.rs` finds such names in the text, and `spirv::bindings` moves them to `SET_PASS`; the binding of
+//! each is its place among the sorted names, so that it does not change when an edit compiles a part of the stage.
+//! Bindings of pre-rasterization stages begin at multiples of `VERTEX_BINDINGS`, so the stages of a pipeline share a
+//! set. The pipeline layout holds what its specialized modules use (`gpu::PassLayout`): what a constant switches off is
+//! not bound. The graph looks up the names (`inputs.rs`), orders the passes (`order.rs`), and refuses what is unknown
+//! or waits for itself, with its line.
+//!
+//! **The picture itself is declared in the same way**, at the top of its stages; no stage of a picture is named in
+//! Rust:
+//!
+//! | pass | stage | annotation |
+//! |---|---|---|
+//! | `model` | `pbr.frag` | `draw=model to=picture` |
+//! | `debug`, `paths` | `debug.frag`, `paths.frag` | `draw=model to=picture instead=model`: draws the model in modes that say `stage=debug`, `stage=paths` |
+//! | `background` | `sky.frag` | `draw=background to=picture` |
+//! | `resolve` | `resolve.frag` | `to=resolve`: one color from the samples of a pixel, where the mode is tone mapped |
+//! | `mean` | `average.frag` | `to=mean`: the accumulation buffer |
+//! | `tonemap` | `tonemap.frag` | `to=display` |
+//!
+//! A tree must have `model` and `tonemap`; `roles.rs` says what is required of them. A tree without `resolve` gets
+//! plain averages, as data, accumulated frames, thumbnails and files of linear light do (`TargetFormat::weighs`).
+//!
+//! Order and phases:
+//!
+//! - What is drawn with the model shares its multisampled target and its depth (`RenderPhase::Model`): further passes
+//!   with `draw=model to=picture` add shells, hulls or copies to it. Opaque ones follow the opaque surfaces, so
+//!   transmissive surfaces show them; blended ones come last.
+//! - A pass whose image the model or the background reads is drawn before the model (`RenderPhase::BeforeModel`), so it
+//!   cannot read `picture` or `depth`. A compute pass that writes a buffer which the model, the background or quads
+//!   only read (`readonly`) is drawn before them, with the compute passes that share its buffers, unless one of these
+//!   needs their picture.
+//! - The picture goes through the passes with `to=picture` one after the other: those before the tone map in the HDR
+//!   format, those after it (`after=tonemap`, or after such a pass) in the display's format. A pass that reads
+//!   `picture` sees it as it is at its place, which is just before the first pass that needs it.
+//! - `Graph::active` keeps only what the picture, or the shown pass, needs, so a pass that is off, or that nobody
+//!   reads, is never bound. Passes that are on but that nobody reads are compiled after the first picture, like those
+//!   that are off (`Library::passes_off`). An image of a pass that is off reads as 0.
+//! - A pass whose image is read as `before_NAME` keeps it, with or without `keep`. Passes of the tree
+//!   (`passes/surface/last_picture.frag`) copy `picture` and `depth` when a pass reads `before_picture` or
+//!   `before_depth`.
+//! - A pass with `draw=background` covers what the model does not, at the model's samples and behind its blended
+//!   surfaces. One that also has `blend` lies over the others, and over a plain or missing background too, as `ground`
+//!   does. A window starts with `passes.ground=true` and the blurred environment (`Settings::of_window`); commands
+//!   start with neither, so that `render` gives the model alone.
 
 mod contradiction;
 mod inputs;

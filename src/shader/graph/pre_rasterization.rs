@@ -1,4 +1,15 @@
 //! The stages of a pass before the rasterizer: which files they are, and whether they fit together.
+//!
+//! A pass has pre-rasterization stages of its own or those of the model: with any of the files `NAME.vert`, `.geom`,
+//! `.tesc`, `.tese`, `.mesh`, `.task` beside `NAME.frag` it takes these, and the model's vertex stage if it has none.
+//! So `pbr.tese` moves the picture, its debug modes and all passes without such files. The contract compares the
+//! outputs of each stage with the inputs of the next, without the array of vertices. Materials on points or lines get
+//! no pipeline in a pass whose stages take triangles. With `draw=quads` the vertex stage must not read `draw.vertices`,
+//! whose address would be 0, so that word, and the material, are refused in any file that its stages include.
+//!
+//! Limits: the output limit of a geometry stage (1024 numbers on every device, `max_vertices` times its outputs) is
+//! left to the driver. Shadow maps have a vertex stage of their own, so geometry and tessellation stages beside
+//! `pbr.frag` do not change shadows; path tracing, framing and picking use the mesh as it was loaded.
 
 use std::collections::{BTreeMap, BTreeSet};
 

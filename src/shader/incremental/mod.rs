@@ -8,6 +8,17 @@
 //!
 //! A stage with unusual code is compiled as a whole. So is every edit with an error or a warning, so that messages do
 //! not depend on incremental compilation.
+//!
+//! [`scan`] needs no preprocessor: a function with a `#` line in its body counts as rest. If two versions differ in
+//! nothing but comments and white space, the old module stays. A thin text has stubs of the functions that the edited
+//! ones call; since glslang drops what `main` does not reach, its `main` calls the edited functions. Of `pbr.frag`, 23
+//! of 148 kB remain, and 6 of 34 ms.
+//!
+//! A stage is compiled as a whole at start, with the reload key, after an edit of a declaration or a signature, where a
+//! function is ambiguous or its effect reaches others (`precise`, `__LINE__`, a macro with half a block), if it is a
+//! task or mesh stage, if it has a block with two arrays of the same type (glslang declares that type twice), and
+//! whenever the thin text gives an error or a warning. So no message ever comes from a thin text, and its line numbers
+//! need not be right.
 
 mod difference;
 mod header;

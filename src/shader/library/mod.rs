@@ -1,5 +1,16 @@
 //! The shader tree as a transaction: takes changed paths, and returns either a complete new set or diagnostics. In the
 //! second case the old set remains.
+//!
+//! The library keeps the include graph, including the paths where an include was not found, so creating such a file
+//! later is an edit too. It compiles the dirty stages from one snapshot of the tree, reflects them, checks them against
+//! the contract and reads the annotations.
+//!
+//! **What is on screen comes first** (`update_first`, `finish`). The picture, the debug modes and path tracing are
+//! stages of their own. If an edit reaches stages that are on screen, only these are compiled, and the set appears with
+//! the others `pending`: no frame can show them. They follow once the frame is on screen, in a set of the same
+//! generation. An error in them is reported as any other, and disables their modes until it is repaired, but not the
+//! picture. In a window, stages that bake light follow too; until then the picture shows the previous light. Anything
+//! unusual, such as an annotation of a constant that only pending stages have, compiles the whole tree at once.
 
 mod beside;
 pub mod check;

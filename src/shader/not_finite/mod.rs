@@ -4,6 +4,18 @@
 //! through a function that remembers the number of the first one that is not finite. The stage writes this number in place of the
 //! color, so that one draw of one pixel finds the first statement in the order of execution, through functions and loops. Lines stay
 //! where they are.
+//!
+//! The text of the stage is rewritten so that every initializer, assignment and returned value is the argument of a
+//! function, `trace_finite(number, value)`, with an overload for each type and for each struct that is made in place.
+//! The function keeps the first number whose value is not finite, and `main` writes that number as the color. So one
+//! compilation and one draw of a pixel give the first statement in the order of execution. The types of names are
+//! guessed from their declarations; where the compiler disagrees, the lines with errors are left out and the stage is
+//! compiled again. The set of pipelines is that of the picture except for this stage (`PipelineSet::variant`), so light
+//! and tables are the picture's.
+//!
+//! Limits: only the fragment stage of the mode is searched, not the stages before it, passes, bakes and path tracing.
+//! Headers of loops, conditions, `++` and values of whole arrays are not traced, so the next statement is named there.
+//! Infinity that a shader handles on purpose counts too.
 
 mod report;
 mod stage;

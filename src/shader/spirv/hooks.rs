@@ -1,4 +1,7 @@
 //! Reads from a module what the author's hooks change: members of the surface, and vertices.
+//!
+//! The features of a hook's extensions count for every lit material (`PipelineRequest::hook_features`). If
+//! `user_vertex` moves vertices, a mode that traces tells the user (`PipelineRequest::limit`).
 
 use foldhash::{HashMap, HashSet, HashSetExt};
 

@@ -9,6 +9,9 @@
 //!
 //! Where the system has no notifications (its watches are used up), and on network mounts, which other machines write to,
 //! the watcher looks at all files every 500 ms. `SPECULA_POLL=1` in the environment makes it do so everywhere.
+//!
+//! A plain save settles after 2 ms. A batch (a checkout, a deleted file) settles after 30 ms of silence, or after 150
+//! ms at most. Content hashes drop saves that change nothing.
 
 mod fingerprint;
 mod mounts;

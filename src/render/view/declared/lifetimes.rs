@@ -1,4 +1,6 @@
 //! Which images of a frame can be one image of the device: those that are read for the last time before the other is drawn.
+//!
+//! Images share memory only if they have the same size, format and levels, and are drawn again with every frame.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -7,7 +9,7 @@ use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{PassFormat, Target};
 use crate::shader::graph::Input;
 
-/// An image of the device, while passes are assigned to it.
+/// An image of the device while passes are assigned to it.
 struct Slot<D> {
     desc: D,
     /// Index of the last pass that reads what the newest pass has drawn to it.
@@ -64,7 +66,7 @@ pub(super) fn slots<'a, D: PartialEq>(
     slot_of
 }
 
-/// Whether a pass is drawn again with each picture, whatever has changed. `redrawn`: such images of passes before it.
+/// Whether a pass is drawn again in every frame, whatever has changed. `redrawn`: such images of earlier passes.
 fn is_redrawn(pass: &GraphPass, redrawn: &BTreeSet<&str>) -> bool {
     pass.is_compute
         || pass.desc.keep

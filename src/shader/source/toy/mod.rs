@@ -2,6 +2,14 @@
 //!
 //! The file, the buffers beside it and what they include appear below `opened/`. Each of them that draws an image has a stage
 //! in `passes/`, which is written here and includes it. Everything else is the tree in the binary.
+//!
+//! Lines that Vulkan does not compile are changed, each in its place. Lines that GLSL does not have (`#iChannel0
+//! "file"`) are checked before anything compiles (`problems.rs`), and every other diagnostic gets the author's line,
+//! names and words (`Source::explained`). The stage in `passes/` maps `iChannel0` to a name that the graph knows.
+//! `shaders/toy.glsl` includes nothing, so that an author may use any name, and gets time and size from the block
+//! `Pass`. A file that reads the keyboard adds the pass `toy_keyboard`, which draws the keys of the block `Frame` to an
+//! image. A displayed picture that does not read the previous one covers it: neither the model nor the passes below it
+//! are drawn (`GraphPass::covers`).
 
 mod adapt;
 mod beside;

@@ -4,6 +4,16 @@
 //! A driver does the same, but the time it takes follows the words and the memory traffic that it is given: on NVIDIA, half of
 //! the time of a pipeline goes into what glslang leaves undone. SPIRV-Tools' optimizer needs as much time as it saves. This one
 //! does only what pays: it keeps the structure of control flow, moves no code, and does no arithmetic on floats.
+//!
+//! Of the picture's module a fifth remains, and its pipeline takes half the time. The passes: `inline.rs`; local
+//! variables become values in `variables.rs` and `promote.rs`; `simplify.rs` replaces what is known or was computed
+//! before; `dead.rs` drops what is unused, and `tidy.rs` the control flow around it. A function that returns early
+//! becomes a switch with one case, which each return leaves by a break; one that returns from a loop stays a function.
+//! A variable stays in memory if an unknown index reaches into it.
+//!
+//! The optimizer knows the instructions that glslang emits for Vulkan (`operands.rs`). A module with any other
+//! instruction goes to the driver unchanged (those of task and mesh stages do), as does one with separate samplers or a
+//! `debugPrintfEXT`.
 
 mod dead;
 mod graph;
