@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often the waiting caller asks whether it is canceled.
+/// How often the waiting caller checks whether it is canceled.
 const INTERVAL: Duration = Duration::from_millis(10);
 
 /// Work on a thread of its own.
@@ -15,16 +15,16 @@ pub(crate) struct Running<T> {
 }
 
 impl<T: Send + 'static> Running<T> {
-    /// Starts `work`. If the caller gives it up, its thread is left to itself until the process ends, so `work` must not use the
+    /// Starts `work`. If the caller abandons it, the thread runs on by itself until the process ends, so `work` must not use the
     /// device.
     pub(crate) fn start(work: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, result) = channel();
-        // Sending fails if the caller has given up.
+        // Sending fails if the caller has abandoned the work.
         let thread = std::thread::spawn(move || drop(sender.send(work())));
         Self { thread, result }
     }
 
-    /// Returns the result of the work, or `None` as soon as `canceled` says so. A panic of the work goes on in the caller.
+    /// Returns the result of the work, or `None` once `canceled` returns true. A panic of the work is resumed in the caller.
     pub(crate) fn wait_unless(self, canceled: &dyn Fn() -> bool) -> Option<T> {
         loop {
             match self.result.recv_timeout(INTERVAL) {

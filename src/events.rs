@@ -26,25 +26,25 @@ pub enum Event<'a> {
     },
     /// A reload is finished.
     Reload(ReloadEvent),
-    /// After a reload: the stages that the picture did not need have been compiled.
+    /// After a reload: the stages that the frame did not need have been compiled.
     Completed(CompletedEvent),
     /// The window shows all of the last reload: its stages are compiled and its light is baked.
     Settled {
         /// Shader generation.
         generation: u64,
     },
-    /// The thumbnails in sight show what the picture shows.
+    /// The visible thumbnails show the current state.
     Thumbnails {
         /// How many were drawn since the last event.
         drawn: usize,
     },
     /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
-    /// A picture was rendered in a mode that accumulates random paths.
+    /// A frame was rendered in a path-traced mode.
     Paths {
         /// Slug of the mode.
         mode: &'a str,
-        /// Random paths of each pixel.
+        /// Paths per pixel.
         paths_per_pixel: u64,
         /// Milliseconds for all of its frames.
         ms: f64,
@@ -82,7 +82,7 @@ pub enum Event<'a> {
         /// The texels of the material's textures, as `specula probe` prints them.
         textures: Vec<serde_json::Value>,
     },
-    /// The inspector has looked for the first statement that makes NaN or infinity at the pinned pixel.
+    /// The inspector has searched for the first statement that computes NaN or infinity at the pinned pixel.
     #[serde(rename = "not-finite")]
     NotFinite {
         /// Shader generation.
@@ -130,7 +130,7 @@ pub enum Event<'a> {
         /// The message that the window shows.
         message: &'a str,
     },
-    /// The device was lost or the program crashed, and this window goes on with the session.
+    /// The device was lost or the program crashed, and this window continues the session.
     Restarted {
         /// The reason, as "the graphics device was lost".
         cause: &'a str,
@@ -203,7 +203,7 @@ pub struct ReloadEvent {
     pub first_frame_ms: f64,
 }
 
-/// The stages of a reload that the picture did not need.
+/// The stages of a reload that the frame did not need.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct CompletedEvent {
     /// Shader generation.
@@ -243,9 +243,9 @@ impl ReloadEvent {
 
 /// The stages of a report in one line: those that draw the picture first, and how many more there are.
 pub fn in_short(stages: &[String]) -> String {
-    /// More do not fit beside the names of the changed files.
+    /// More stages do not fit beside the names of the changed files.
     const SHOWN: usize = 4;
-    // The picture's fragment stages lie at the root of the tree; below it are passes, and the bakes that nobody sees.
+    // The picture's fragment stages lie at the root of the tree; below it are passes, and the bakes, which are of less interest.
     let rank = |stage: &&str| match stage.rsplit_once('/') {
         None => u32::from(!stage.ends_with(".frag")),
         Some((folder, _)) if folder.starts_with("passes") => 2,
@@ -265,9 +265,9 @@ fn to_microseconds(ms: f64) -> f64 {
     (ms * 1e3).round() / 1e3
 }
 
-/// Who gets events.
+/// Event subscribers.
 pub trait Audience {
-    /// Whether there is nobody.
+    /// Whether there are no subscribers.
     fn is_empty(&self) -> bool;
     /// Takes the line of an event.
     fn take(&self, line: &str);
@@ -281,7 +281,7 @@ impl Audience for bool {
 
     fn take(&self, line: &str) {
         use std::io::Write as _;
-        // Specula goes on after the reader has closed the pipe.
+        // Specula continues after the reader has closed the pipe.
         let _ = writeln!(std::io::stdout().lock(), "{line}");
     }
 }
@@ -296,7 +296,7 @@ impl Audience for &Clients {
     }
 }
 
-/// Sends an event to those who get events.
+/// Sends an event to the subscribers.
 pub fn emit(to: impl Audience, event: &Event<'_>) {
     if to.is_empty() {
         return;

@@ -19,14 +19,14 @@ pub enum FileKind {
     Shader,
     /// A folder with a shader tree.
     ShaderTree,
-    /// Any other folder.
+    /// A folder that is not a shader tree.
     Folder,
     /// Anything else.
     Other,
 }
 
 impl FileKind {
-    /// The kind of `path`. Only folders are looked into.
+    /// The kind of `path`. Only folders are read.
     pub fn of(path: &Path) -> Self {
         if path.is_dir() {
             return if is_specula_tree(path) { Self::ShaderTree } else { Self::Folder };

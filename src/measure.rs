@@ -13,7 +13,7 @@ use crate::frame::{BakeValues, PipelineRequest, TablesKey, TargetFormat};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::pipeline::PipelineSet;
-use crate::render::{GpuEnvironment, SharedImages, Sources, Tables, PathTracing, Uniforms, compute, measured_buffer};
+use crate::render::{GpuEnvironment, PathTracing, SharedImages, Sources, Tables, Uniforms, compute, measured_buffer};
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
 
@@ -37,7 +37,7 @@ pub struct Grid {
     pub columns: u32,
     /// First and last angle to the normal, degrees.
     pub theta: (f32, f32),
-    /// Samples per cell.
+    /// Samples in each cell.
     pub samples: u32,
 }
 
@@ -60,7 +60,7 @@ fn step((first, last): (f32, f32), index: u32, count: u32) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-/// A pair of directions, and how much f changes when they are swapped.
+/// A pair of directions, and the change of f when they are swapped.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Worst {
@@ -84,7 +84,7 @@ pub struct Lobe {
     pub multiple: [f32; 3],
 }
 
-/// A property that an annotation claims for a choice: see brdf/models.glsl.
+/// A property that a choice guarantees, by its annotation: see brdf/models.glsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Claim {
     /// A white surface reflects no more light than it receives.
@@ -94,7 +94,7 @@ pub enum Claim {
 }
 
 impl Claim {
-    /// The choices of a constant that make this claim. `None` if the constant does not affect it.
+    /// The choices of a constant that guarantee this property. `None` if the constant does not affect it.
     pub fn of(self, constant: &Constant) -> Option<&Vec<String>> {
         match self {
             Self::Conserves => constant.conserves.as_ref(),
@@ -115,7 +115,7 @@ pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Cons
     shaders.constants.iter().zip(chosen).map(|(constant, (_, bits))| (constant, name(constant, bits))).collect()
 }
 
-/// The [`choices`] that do not make `claim`. If there are none, the combination makes it.
+/// The [`choices`] that do not guarantee `claim`. If there are none, the combination guarantees it.
 pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
     let lacks =
         |(constant, chosen): &(&Constant, String)| claim.of(constant).is_some_and(|names| !names.contains(chosen));
@@ -161,7 +161,7 @@ impl BrdfMeter {
         Self::on(Arc::new(shared), settings)
     }
 
-    /// The same shaders with other settings.
+    /// [`BrdfMeter::new`] for the same shaders with other settings.
     ///
     /// # Errors
     /// As [`BrdfMeter::new`].
@@ -196,7 +196,7 @@ impl BrdfMeter {
         self.run(MEASURE_STAGES[0], surface, grid)
     }
 
-    /// The worst pair of directions of each cell. Columns only split the work; they have no angle.
+    /// The worst pair of directions of each cell. Columns only split the work; they do not stand for an angle.
     ///
     /// # Errors
     /// A device error.
@@ -212,8 +212,8 @@ impl BrdfMeter {
         self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, Grid { columns: 1, ..grid })
     }
 
-    /// Lobes in the plane of incidence. The columns split -90 to 90 degrees evenly, and the eye is at their centers; the light
-    /// is at `grid.theta.0` degrees on the negative side.
+    /// Lobes in the plane of incidence. The columns split -90 to 90 degrees evenly, with the eye at their centers; the light is
+    /// at `grid.theta.0` degrees on the negative side.
     ///
     /// # Errors
     /// A device error.

@@ -6,7 +6,7 @@ use std::fmt::{Display, Write as _};
 use std::io::Write as _;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Least likeness, 0..1, of a name that is suggested for another.
+/// Least similarity, 0..1, for a suggestion.
 const LEAST_LIKENESS: f64 = 0.4;
 
 /// One line of text without control characters: each, line breaks and tabs too, becomes an escape such as `\u{1b}`. For
@@ -84,26 +84,26 @@ pub fn warn(message: impl Display) {
     print_error(format_args!("specula: warning: {}", escape_lines(&message.to_string())));
 }
 
-/// The candidate most like what was typed, whatever the case of its letters; the first of several that are equally
-/// like it. `None` when none is like it.
+/// The candidate most similar to what was typed, ignoring case; the first of several equally similar ones. `None` if none is
+/// similar enough.
 pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let likeness = |candidate: &'a str| (likeness(typed, candidate), candidate);
     best(candidates.into_iter().map(likeness))
 }
 
-/// How much two names are alike, 0..1; 1 when they differ in the case of their letters at most.
+/// The similarity of two names, 0..1; 1 if they differ only in case.
 pub(crate) fn likeness(a: &str, b: &str) -> f64 {
     strsim::normalized_damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }
 
-/// The first candidate with the greatest likeness, if that is enough to be suggested.
+/// The first candidate with the greatest similarity, if that is enough for a suggestion.
 pub(crate) fn best<'a>(candidates: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
     let (likeness, best) = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
     (likeness > LEAST_LIKENESS).then_some(best)
 }
 
-/// The question for the end of a message about an unknown name, as `` Did you mean `studio`? `` with a space in front;
-/// empty when no candidate is like it.
+/// The question at the end of a message about an unknown name, as `` Did you mean `studio`? `` with a leading space; empty if no
+/// candidate is similar.
 pub fn did_you_mean<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     nearest(typed, candidates).map(|name| format!(" Did you mean `{name}`?")).unwrap_or_default()
 }

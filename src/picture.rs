@@ -18,7 +18,7 @@ pub use part::{Halt, remove_unfinished};
 /// Linux gives up after this many symbolic links, too.
 const MAX_LINKS: usize = 40;
 
-/// Fails if the extension of `path` is that of no picture format.
+/// Fails if no picture format has the extension of `path`.
 ///
 /// # Errors
 /// The file extension is neither .png nor .exr.
@@ -26,7 +26,7 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
     format_of(path).map(|_| ())
 }
 
-/// Writes a frame as [`numbered`], with what made it. Returns the path.
+/// Writes a capture to the next free [`numbered`] path, with its settings and files. Returns the path.
 ///
 /// # Errors
 /// As [`write()`].
@@ -46,7 +46,7 @@ pub fn numbered_as(stem: &str, ending: &str) -> PathBuf {
     free.unwrap_or_else(|| format!("{stem}.{ending}").into())
 }
 
-/// Fails before any work when no picture can be written to `path`.
+/// Fails before any work if no picture can be written to `path`.
 ///
 /// # Errors
 /// The file extension is neither .png nor .exr, the folder does not exist, or `path` is a folder.
@@ -71,12 +71,12 @@ pub fn check_path(path: &Path) -> Result<(), String> {
 /// `out` with the mode's name before the extension: `helmet.png` becomes `helmet.metallic.png`.
 pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     let ending = out.extension().unwrap_or_default().to_string_lossy();
-    // Not every file system has names with a colon.
+    // Some file systems do not allow a colon in names.
     out.with_extension(format!("{}.{ending}", slug.replace(':', "-")))
 }
 
-/// Writes a capture to a file, as [`write_image`] does: 8-bit color, and the settings and files that made it, to a PNG, the raw values
-/// to an EXR.
+/// Writes a capture to a file, as [`write_image`] does: a PNG gets 8-bit color with the settings and files, an EXR the raw
+/// values.
 ///
 /// # Errors
 /// As [`write_image`].
@@ -162,7 +162,7 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other(format!("more than {MAX_LINKS} symbolic links lead to each other")))
 }
 
-/// Whether a file of this name holds linear light, which no tone map has changed.
+/// Whether a file with this name holds linear light, before the tone map.
 pub fn holds_light(path: &Path) -> bool {
     matches!(format_of(path), Ok(ImageFormat::OpenExr))
 }

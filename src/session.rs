@@ -21,7 +21,7 @@ pub struct Session {
     pub shaders: Option<Arc<ShaderSet>>,
     /// Errors of the newest edit, or warnings of the shaders in use.
     pub diagnostics: Vec<Diagnostic>,
-    /// How often the files that the settings name have changed.
+    /// Revisions of the files that the settings name.
     pub revisions: Revisions,
     model: Option<Arc<Model>>,
     /// The last scene, kept because a scene of a large model takes time to create.
@@ -39,7 +39,7 @@ impl Session {
         self.model.as_ref()
     }
 
-    /// The model where the settings place it.
+    /// The model at the place that the settings give it.
     pub fn placed_model(&self) -> Option<Arc<Model>> {
         self.scene().map(|scene| scene.model().clone())
     }
@@ -54,7 +54,7 @@ impl Session {
         self.shaders.as_ref()?.modes.iter().find(|mode| mode.slug == self.settings.mode)
     }
 
-    /// The model as the settings show it.
+    /// The model with the selected variant, materials and transform.
     pub fn scene(&self) -> Option<Scene> {
         let model = self.model.as_ref()?;
         let mut last = self.scene.borrow_mut();
@@ -75,12 +75,12 @@ impl Session {
         request.for_suns(self.revisions.suns_of(&self.settings))
     }
 
-    /// The picture that the settings describe; `None` without shaders.
+    /// The frame that the settings describe; `None` without shaders.
     pub fn frame_state(&self, clock: Clock, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
         self.shaders.as_ref().map(|shaders| self.frame_state_of(shaders, clock, size, target))
     }
 
-    /// The picture that the settings describe with these shaders.
+    /// The frame that the settings describe with these shaders.
     pub fn frame_state_of(
         &self,
         shaders: &Arc<ShaderSet>,
@@ -91,7 +91,7 @@ impl Session {
         FrameState::new(&self.inputs(shaders, self.scene().as_ref(), clock, size, target))
     }
 
-    /// The inputs of a picture of the settings with these shaders. `scene`: [`Session::scene`].
+    /// The inputs of a frame with these settings and shaders. `scene`: [`Session::scene`].
     pub fn inputs<'a>(
         &'a self,
         shaders: &'a Arc<ShaderSet>,

@@ -9,12 +9,12 @@ fn file(name: &str) -> Option<PathBuf> {
     Some(base.join("specula").join(name))
 }
 
-/// The text of a file, if it is there and can be read.
+/// The text of a file, if it exists and can be read.
 pub(crate) fn load(name: &str) -> Option<String> {
     std::fs::read_to_string(file(name)?).ok()
 }
 
-/// Writes a file. A failure costs only what the file remembers, so it is traced and not reported.
+/// Writes a file. A failure costs only what the file stores, so it is logged and not reported.
 pub(crate) fn save(name: &str, text: &str) {
     let Some(path) = file(name) else { return };
     let written = || -> std::io::Result<()> {

@@ -78,7 +78,7 @@ pub fn check_animation(path: &Path, fps: f32) -> Result<(), String> {
 }
 
 impl Animation {
-    /// Begins an animation of some `expected` frames: a video has its index at its beginning if it has no more.
+    /// Begins an animation of about `expected` frames: with no more than that, the index of a video is at its beginning.
     ///
     /// # Errors
     /// As [`check_animation`].
@@ -116,7 +116,7 @@ impl Animation {
                 if size.0.max(size.1) > u32::from(u16::MAX) {
                     return Err(cannot("a GIF has at most 65535 pixels a side".to_owned()));
                 }
-                // A GIF knows no partly transparent pixel.
+                // GIF has no partly transparent pixels.
                 frame.pixels_mut().for_each(|pixel| pixel.0[3] = if pixel[3] < 128 { 0 } else { 255 });
                 let frame = Frame::from_parts(frame, 0, 0, Delay::from_numer_denom_ms(ms, 1));
                 encoder.encode_frame(frame).map_err(|error| cannot(error.to_string()))

@@ -5,8 +5,8 @@ mod animation;
 mod label;
 mod modes;
 mod mp4;
-mod sheet;
 mod offscreen;
+mod sheet;
 mod turntable;
 mod webp;
 mod yuv;
@@ -26,9 +26,9 @@ use crate::shader::ShaderSet;
 
 pub use animation::{Animation, check_animation};
 pub use modes::modes_of;
-pub use sheet::SheetPlan;
 pub use offscreen::OffscreenCapture;
 pub(crate) use offscreen::VersionPicture;
+pub use sheet::SheetPlan;
 pub use turntable::{Turn, Turntable};
 
 /// Draws pictures of a session at any size.
@@ -73,13 +73,13 @@ impl Renderer for Headless {
     }
 }
 
-/// Why there is no file.
+/// Why no file was written.
 #[derive(Debug, thiserror::Error)]
 pub enum CaptureError {
     /// A picture cannot be drawn.
     #[error(transparent)]
     Render(#[from] HeadlessError),
-    /// A value that no picture can have.
+    /// A value that no capture can have.
     #[error("{0}")]
     Usage(String),
     /// The file cannot be written.
@@ -90,15 +90,15 @@ pub enum CaptureError {
     Canceled,
 }
 
-/// Is told how many pictures are done, and of how many. Returns whether to go on.
+/// Receives how many frames are done, and of how many. Returns whether to continue.
 pub type Tell<'a> = &'a mut dyn FnMut(u64, u64) -> bool;
 
-/// Tells, and ends the work if that is canceled.
+/// Reports progress, and ends the work if it is canceled.
 fn tell(tell: Tell<'_>, done: usize, of: usize) -> Result<(), CaptureError> {
     if tell(done as u64, of as u64) { Ok(()) } else { Err(CaptureError::Canceled) }
 }
 
-/// The display of a capture as an image.
+/// The LDR output of a capture as an image.
 fn image_of(capture: render::Capture) -> Result<RgbaImage, CaptureError> {
     let render::Capture { width, height, rgba8, .. } = capture;
     RgbaImage::from_raw(width, height, rgba8)

@@ -7,8 +7,8 @@ use crate::shader::Mode;
 /// Names that stand for several modes.
 const GROUPS: [&str; 3] = ["modes", "all", "paths"];
 
-/// The modes of these names: `modes` for all that have data in the model and take one frame, `all` for all but those of random paths,
-/// `paths` for these, or slugs; without a name, all but those of random paths. The order is that of the shader tree.
+/// The modes of these names: `modes` for all that have data in the model and take one frame, `all` for all but the path-traced
+/// ones, `paths` for those, or slugs; without a name, all but the path-traced ones. The order is that of the shader tree.
 ///
 /// # Errors
 /// A name that no mode has, with the nearest.

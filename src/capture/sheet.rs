@@ -44,13 +44,12 @@ impl SheetPlan {
     /// Width and height of the sheet, pixels.
     fn extent(&self) -> (u64, u64) {
         let (columns, rows) = self.grid();
-        // No size that can be asked for overflows 64 bits.
+        // No size that can be requested overflows 64 bits.
         let along = |count: u32, each: u64| u64::from(GAP) + u64::from(count) * (each + u64::from(GAP));
         (along(columns, self.size.0.into()), along(rows, u64::from(self.size.1) + u64::from(LINE)))
     }
 
-    /// Draws the sheet and writes it. `paths` is the number of frames of modes that average random paths. The settings are as before
-    /// afterwards.
+    /// Draws the sheet and writes it. `paths` is the number of frames of path-traced modes. Restores the settings afterwards.
     ///
     /// # Errors
     /// No modes, a sheet that is too large, a picture that cannot be drawn, a file that cannot be written.
@@ -93,7 +92,7 @@ impl SheetPlan {
             tell(progress, index, self.modes.len())?;
             let mut settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
             if mode.traces {
-                // A frame of random paths takes seconds on a software device.
+                // A path-traced frame takes seconds on a software device.
                 settings.view.frames = 1;
             }
             *renderer.settings() = settings;
@@ -105,7 +104,7 @@ impl SheetPlan {
             let at = (x, y + self.size.1 + 3);
             let name = labels.write(&mut sheet, at, (TEXT, room), NAME, &mode.name);
             let left = room - name - 12.0;
-            // The slug follows where it fits.
+            // The slug follows if it fits.
             if left > 40.0 && !mode.name.eq_ignore_ascii_case(&mode.slug) {
                 labels.write(&mut sheet, (x + name as u32 + 8, at.1), (TEXT, left), SLUG, &mode.slug);
             }

@@ -11,11 +11,12 @@ use crate::message::did_you_mean;
 use crate::scene::{Model, frame};
 use crate::settings::{CameraSettings, Settings, ViewRange};
 
-/// Pictures at equal angles that are drawn first to find one range for all frames, if a mode's range follows its values. Otherwise the
-/// brightness of the same value would change from frame to frame. Values that appear only between these angles may be clipped.
+/// Frames at equal angles that are drawn first to find one range for the whole animation, if a mode's range is automatic.
+/// Otherwise the brightness of the same value would change from frame to frame. Values that appear only between these angles may
+/// be clipped.
 const RANGE_SAMPLES: u32 = 8;
 
-/// Object that a turntable rotates.
+/// What a turntable rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Turn {
     /// The camera around the model.
@@ -23,15 +24,15 @@ pub enum Turn {
     Camera,
     /// Environment and orbiting lights around the model.
     Light,
-    /// The model in its light, as on a turntable.
+    /// The model, with fixed light, as on a turntable.
     Model,
 }
 
 impl Turn {
-    /// Its names.
+    /// Its names on the command line.
     pub const NAMES: [&str; 3] = ["camera", "light", "model"];
 
-    /// Returns the rotating object with this name.
+    /// The [`Turn`] with this name.
     ///
     /// # Errors
     /// A message with the names.
@@ -57,7 +58,7 @@ pub struct Turntable {
     pub fps: f32,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// Object that a turntable rotates.
+    /// What the turntable rotates.
     pub turn: Turn,
 }
 
@@ -65,8 +66,8 @@ impl Turntable {
     /// Most frames.
     pub const MOST_FRAMES: u32 = 10_000;
 
-    /// Draws all frames and writes the animation. The first frame is the picture of the settings, except that a framed model is framed so
-    /// that it fits at every angle. The settings are as before afterwards.
+    /// Draws all frames and writes the animation. The first frame is the one that the settings describe, except that a framed
+    /// model is framed so that it fits at every angle. Restores the settings afterwards.
     ///
     /// # Errors
     /// A number that is out of range, a picture that cannot be drawn, a file that cannot be written.
@@ -117,7 +118,7 @@ impl Turntable {
         animation.finish()
     }
 
-    /// The settings after a part of a turn.
+    /// The settings after a fraction of a turn.
     fn turned(&self, begin: &Settings, turn: f32) -> Settings {
         let mut settings = begin.clone();
         if self.turn != Turn::Light {
@@ -130,14 +131,14 @@ impl Turntable {
     }
 }
 
-/// Whether the range of each picture would follow its own values.
+/// Whether each frame would have an automatic range of its own.
 fn is_measured(renderer: &dyn Renderer, settings: &Settings) -> bool {
     let shaders = renderer.shaders();
     let mode = shaders.modes.iter().find(|mode| mode.slug == settings.mode);
     Display::new(&settings.view, mode).is_measured()
 }
 
-/// The range that holds both.
+/// The union of both ranges.
 fn union(a: Option<Limits>, b: Option<Limits>) -> Option<Limits> {
     match (a, b) {
         (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
@@ -145,7 +146,8 @@ fn union(a: Option<Limits>, b: Option<Limits>) -> Option<Limits> {
     }
 }
 
-/// A camera with an eye. A framed model is seen from so far that it fits at every angle, so that it does not seem to breathe.
+/// A camera with an eye. A framed model is seen from a distance at which it fits at every angle, so that its size does not
+/// pulsate.
 fn steady(camera: &CameraSettings, model: &Model, aspect: f32) -> CameraSettings {
     let bounds = &model.bounds;
     let at = |azimuth: f32| {
@@ -169,7 +171,7 @@ fn steady(camera: &CameraSettings, model: &Model, aspect: f32) -> CameraSettings
     CameraSettings { eye: Some(eye.into()), target: Some(target.into()), ..camera.clone() }
 }
 
-/// The camera after a part of a turn around the axis through its target.
+/// The camera after a fraction of a turn around the axis through its target.
 fn turned(camera: &CameraSettings, turn: f32) -> CameraSettings {
     let (Some(eye), Some(target)) = (camera.eye, camera.target) else { return camera.clone() };
     let target = Vec3::from(target);
@@ -177,7 +179,7 @@ fn turned(camera: &CameraSettings, turn: f32) -> CameraSettings {
     CameraSettings { eye: Some((target + offset).into()), ..camera.clone() }
 }
 
-/// Turns environment and orbiting lights with the camera, which makes the model seem to turn.
+/// Rotates environment and orbiting lights with the camera, so that the model seems to rotate.
 fn turn_light(settings: &mut Settings, turn: f32) {
     let wrapped = |degrees: f32| (degrees + 180.0).rem_euclid(360.0) - 180.0;
     let angle = turn * 360.0;

@@ -31,7 +31,7 @@ impl AnimatedWebP {
         let still = file.get(12..).ok_or("a frame was not encoded whole")?;
         let mut content = Vec::with_capacity(still.len() + 16);
         content.extend([u24(0), u24(0), u24(width - 1), u24(height - 1), u24(ms)].concat());
-        // The frame replaces all before it, also where it is transparent.
+        // The frame replaces all earlier ones, also where it is transparent.
         content.push(0b10);
         content.extend_from_slice(still);
         chunk(&mut self.frames, b"ANMF", &content)
@@ -45,7 +45,7 @@ impl AnimatedWebP {
         let flags = if self.has_alpha { ANIMATION | ALPHA } else { ANIMATION };
         let extended = [&[flags, 0, 0, 0][..], &u24(self.size.0 - 1), &u24(self.size.1 - 1)].concat();
         chunk(&mut body, b"VP8X", &extended)?;
-        // Background color, and how often it is repeated: 0 for ever.
+        // Background color, and the number of repetitions: 0 is forever.
         chunk(&mut body, b"ANIM", &[0; 6])?;
         body.extend(self.frames);
         let mut file = Vec::with_capacity(body.len() + 8);
@@ -54,7 +54,7 @@ impl AnimatedWebP {
     }
 }
 
-/// Adds a chunk: name, size, content, and a byte that makes the size even.
+/// Adds a chunk: name, size, content, and a padding byte for an odd size.
 fn chunk(to: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) -> Result<(), String> {
     let size = u32::try_from(content.len()).map_err(|_| "the animation is larger than 4 GiB")?;
     to.extend_from_slice(name);

@@ -28,7 +28,7 @@ impl Planes {
         self.size
     }
 
-    /// Converts an image. A column or row that an odd size lacks repeats the last one, and what is transparent shows black.
+    /// Converts an image. An odd size repeats its last column or row, and transparent pixels become black.
     pub(super) fn fill(&mut self, image: &RgbaImage) {
         let (right, bottom) = (image.width().saturating_sub(1), image.height().saturating_sub(1));
         let width = self.size.0 as usize;
@@ -42,7 +42,7 @@ impl Planes {
                     sum = std::array::from_fn(|channel| sum[channel] + color[channel] * 0.25);
                 }
                 let index = y as usize * width / 2 + x as usize;
-                // The difference to the luma is at most 1 - weight, which becomes half of 224 steps.
+                // The difference to the luma is at most 1 - weight, which maps to half of 224 steps.
                 let chroma = |channel: usize| 128.5 + 112.0 * (sum[channel] - luma(sum)) / (1.0 - LUMA[channel]);
                 self.blue[index] = chroma(2) as u8;
                 self.red[index] = chroma(0) as u8;

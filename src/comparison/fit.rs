@@ -19,7 +19,7 @@ pub(super) struct Fitted {
     pub(super) covered: Rect,
 }
 
-/// Scales `picture` to fit `size`. A picture of that size stays as it is, bit for bit.
+/// Scales `picture` to fit `size`. A picture of that size is returned unchanged, bit for bit.
 pub(super) fn fit(picture: &Picture, size: (u32, u32)) -> Fitted {
     let from = picture.size();
     let covered = covered(from, size);
@@ -33,7 +33,7 @@ pub(super) fn fit(picture: &Picture, size: (u32, u32)) -> Fitted {
         }
         Picture::Raw(image) => {
             let scaled = if to == from { image.clone() } else { scaled_raw(image, to) };
-            // Nothing covers the ground, as behind a model.
+            // Nothing covers the ground, like the area behind a model.
             let mut ground = Rgba32FImage::new(size.0, size.1);
             image::imageops::replace(&mut ground, &scaled, covered.x.into(), covered.y.into());
             Picture::Raw(ground)
@@ -79,7 +79,7 @@ struct Taps {
     weights: Vec<f32>,
 }
 
-/// A tent filter that spans at least one pixel of either picture on each side.
+/// A tent filter at least as wide as one pixel of either picture on each side.
 fn taps(from: u32, to: u32) -> Vec<Taps> {
     let scale = from as f32 / to as f32;
     let radius = scale.max(1.0);

@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 /// Bytes that a client may leave unread.
 const MOST_UNREAD: usize = 16 << 20;
-/// Commands of a client that may wait for their answers. The next is read only once one of them has been answered.
+/// Commands of a client that may be unanswered. The next one is read only once one of them has been answered.
 const MOST_OPEN: usize = 64;
 
 /// Ends the connection to a client.
 pub type HangUp = Box<dyn Fn() + Send + Sync>;
 
-/// A reader of lines.
+/// A client that reads lines.
 #[derive(Clone)]
 pub struct Client(Arc<Shared>);
 
@@ -34,8 +34,8 @@ struct Queue {
 }
 
 impl Client {
-    /// Starts the thread that writes to `writer`. A client that leaves too much unread is hung up on; without `hang_up`, it misses
-    /// lines until it reads again.
+    /// Starts the thread that writes to `writer`. A client that leaves too much unread is disconnected; without `hang_up`, it
+    /// misses lines until it reads again.
     pub fn start(writer: impl Write + Send + 'static, hang_up: Option<HangUp>) -> Self {
         let client = Self(Arc::new(Shared { queue: Mutex::default(), changed: Condvar::new(), hang_up }));
         let shared = client.0.clone();
@@ -76,12 +76,12 @@ impl Client {
         self.0.changed.notify_all();
     }
 
-    /// Whether nobody reads any more.
+    /// Whether the client no longer reads.
     pub fn is_closed(&self) -> bool {
         self.0.lock().is_closed
     }
 
-    /// Notes a command that is to be answered. Waits while too many are.
+    /// Counts a command that is to be answered. Blocks while too many are.
     pub(super) fn begin(&self) {
         let mut queue = self.0.lock();
         while queue.open >= MOST_OPEN && !queue.is_closed {
@@ -90,7 +90,7 @@ impl Client {
         queue.open += 1;
     }
 
-    /// Notes that a command has been answered.
+    /// Counts a command as answered.
     pub(super) fn end(&self) {
         let mut queue = self.0.lock();
         queue.open = queue.open.saturating_sub(1);
@@ -145,24 +145,24 @@ impl Shared {
     }
 }
 
-/// All readers of events.
+/// All subscribers of events.
 #[derive(Clone, Default)]
 pub struct Clients(Arc<Mutex<Vec<Client>>>);
 
 impl Clients {
-    /// Adds a reader.
+    /// Adds a subscriber.
     pub fn add(&self, client: Client) {
         let mut clients = self.lock();
         clients.retain(|client| !client.is_closed());
         clients.push(client);
     }
 
-    /// Whether nobody reads.
+    /// Whether there are no subscribers.
     pub fn is_empty(&self) -> bool {
         self.lock().is_empty()
     }
 
-    /// Sends a line to everybody.
+    /// Sends a line to all subscribers.
     pub fn send(&self, line: &str) {
         let line: Arc<str> = line.into();
         let mut clients = self.lock();
@@ -170,7 +170,7 @@ impl Clients {
         clients.iter().for_each(|client| client.send(&line));
     }
 
-    /// Waits until everybody has got all lines, at most for this long.
+    /// Waits until all subscribers have received all lines, at most for this long.
     pub fn flush(&self, most: Duration) {
         let clients = self.lock().clone();
         let deadline = Instant::now() + most;

@@ -18,7 +18,7 @@ enum Line {
     TooLong,
 }
 
-/// Reads commands until the input ends, and sends them on. Faulty ones are answered here.
+/// Reads commands until the input ends, and sends them on. Invalid ones are answered here.
 pub(super) fn read(input: impl Read, client: &Client, sender: &Sender<Asked>) {
     let mut lines = BufReader::new(input);
     while let Some(line) = next(&mut lines) {

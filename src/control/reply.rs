@@ -4,10 +4,10 @@ use serde_json::{Value, json};
 
 use super::Client;
 
-/// Takes the result of a command that the window has given itself.
+/// Receives the result of a command that the window itself issued.
 type Taken = Box<dyn FnOnce(Result<Value, String>) + Send>;
 
-/// Who waits for the answer to a command. Dropping it answers that the command was not carried out.
+/// The client that waits for the answer to a command. Dropping it answers that the command was not carried out.
 pub(crate) struct Reply {
     to: To,
     id: Value,
@@ -17,7 +17,7 @@ pub(crate) struct Reply {
 enum To {
     Client(Client),
     Window(Taken),
-    /// It has been answered.
+    /// The reply has been sent.
     Nobody,
 }
 
@@ -27,12 +27,12 @@ impl Reply {
         Self { to: To::Client(client.clone()), id, command }
     }
 
-    /// The answer to a command that the window has given itself.
+    /// A reply to a command that the window itself issued.
     pub(crate) fn to_window(take: impl FnOnce(Result<Value, String>) + Send + 'static) -> Self {
         Self { to: To::Window(Box::new(take)), id: Value::Null, command: String::new() }
     }
 
-    /// Answers that the command is done. `result` is what it asked for, or null.
+    /// Answers that the command is done. `result` is its result, or null.
     pub(crate) fn done(mut self, result: Value) {
         self.answer(Ok(result), Value::Null);
     }
@@ -42,12 +42,12 @@ impl Reply {
         self.answer(Err(message.into()), Value::Null);
     }
 
-    /// The same with more fields than a message.
+    /// [`Reply::error`] with more fields than a message.
     pub(crate) fn error_with(mut self, message: impl Into<String>, fields: Value) {
         self.answer(Err(message.into()), fields);
     }
 
-    /// Tells how far the command is.
+    /// Reports the progress of the command.
     pub(crate) fn progress(&self, done: u64, of: u64) {
         if let To::Client(client) = &self.to {
             let line = json!({ "event": "progress", "id": self.id, "command": self.command, "done": done, "of": of });

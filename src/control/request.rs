@@ -78,9 +78,9 @@ pub enum VersionsRequest {
 pub(super) struct Parsed {
     /// The line's own `id`; null without one.
     pub(super) id: Value,
-    /// The name as it stands there.
+    /// The command's name as it was sent.
     pub(super) command: String,
-    /// The command, or what is wrong.
+    /// The command, or the error.
     pub(super) request: Result<Request, String>,
 }
 
@@ -181,7 +181,7 @@ fn of<T: DeserializeOwned>(command: &str, mut fields: Map<String, Value>, requir
     if required.iter().any(|field| !fields.contains_key(*field)) {
         return Err(needs(command));
     }
-    // serde does not tell in which field a value is wrong, so each is tried alone.
+    // serde does not report which field is wrong, so each field is tried alone.
     for (field, value) in &fields {
         let alone = Map::from_iter([(field.clone(), value.clone())]);
         if let Err(error) = serde_json::from_value::<T>(Value::Object(alone)) {
@@ -202,7 +202,7 @@ fn needs(command: &str) -> String {
     format!("`{command}` needs {}", takes(command))
 }
 
-/// Takes a field that holds text.
+/// Takes a text field.
 fn text(fields: &mut Map<String, Value>, field: &str) -> Result<Option<String>, String> {
     match fields.remove(field) {
         None | Some(Value::Null) => Ok(None),

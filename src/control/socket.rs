@@ -18,8 +18,7 @@ pub struct Socket {
     listener: std::os::unix::net::UnixListener,
 }
 
-/// The path of the socket that the user calls `name`: a path, or a name without a slash, which lies in the user's folder for such
-/// files.
+/// The path of the socket `name`: a path, or a name without a slash, which lies in the user's folder for sockets.
 ///
 /// # Errors
 /// There is no such folder.
@@ -40,8 +39,8 @@ pub fn socket_path(name: &Path) -> Result<PathBuf, String> {
 
 #[cfg(unix)]
 impl Socket {
-    /// Creates the file of the socket, with mode 0600. The folder must be the user's alone. A file that an earlier process has left is
-    /// replaced.
+    /// Creates the socket's file with mode 0600. The folder must be accessible to the user only. A file that an earlier process
+    /// has left is replaced.
     ///
     /// # Errors
     /// The folder is not there or open to others, another process listens, or another file has the name.
@@ -92,13 +91,13 @@ impl Socket {
                     Ok(()) => {}
                     Err(error) => {
                         tracing::debug!("a client of the socket was not accepted: {error}");
-                        // For example too many open files, which takes a while to change.
+                        // For example, too many open files, which may last a while.
                         std::thread::sleep(std::time::Duration::from_millis(100));
                     }
                 }
             }
         };
-        // Without the thread nobody is answered, and the window works as ever.
+        // If the thread cannot start, remote control is unavailable.
         let _ = std::thread::Builder::new().name("specula-socket".to_owned()).spawn(work);
     }
 }
@@ -107,7 +106,7 @@ impl Socket {
 #[cfg(unix)]
 const MOST_ENDED: usize = 16;
 
-/// The clients whose commands have ended, the oldest first.
+/// The clients that have ended their commands, the oldest first.
 #[cfg(unix)]
 type Ended = Arc<Mutex<VecDeque<super::Client>>>;
 
@@ -124,8 +123,8 @@ fn connect(
     let client = Client::start(output, Some(Box::new(hang_up)));
     clients.add(client.clone());
     let sender = sender.clone();
-    // A client may end its commands and go on reading events, so the end of its input does not close it. Whether anybody reads is
-    // known only when a line is written to it, so just the newest of these stay open.
+    // A client may end its commands and continue to read events, so the end of its input does not close it. Whether it still
+    // reads is known only when a line is written to it, so only the newest of these clients stay open.
     let ended = ended.clone();
     let work = move || {
         reader::read(input, &client, &sender);

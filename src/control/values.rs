@@ -34,7 +34,7 @@ fn flatten(path: &str, value: &Value, found: &mut Vec<String>) -> Result<(), Str
     Ok(())
 }
 
-/// A JSON value as TOML, which settings take. `None` for null and for what holds it.
+/// A JSON value as the TOML that settings take. `None` for null and for anything that contains it.
 fn toml_of(value: &Value) -> Option<toml::Value> {
     Some(match value {
         Value::Bool(on) => toml::Value::Boolean(*on),

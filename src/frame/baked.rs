@@ -7,9 +7,9 @@ use crate::frame::stages::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES, TABL
 use crate::gpu::Specialization;
 use crate::shader::{ShaderSet, Stage};
 
-/// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver gets the
-/// same module, and if the parameters that it reads have the same values. So a constant that changes nothing in the module makes no
-/// difference, nor does an edit of a comment.
+/// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver gets
+/// the same module, and the parameters that it reads have the same values. So constants without effect on the module, and edits
+/// of comments, make no difference.
 #[derive(Clone, Debug)]
 pub struct BakeStage {
     pub(crate) stage: Arc<Stage>,
@@ -27,7 +27,7 @@ impl BakeStage {
         self.stage.reflection.params_read.iter().filter_map(of)
     }
 
-    /// Whether the stage reads parameters. Its results are then not kept on disk, where each step of a slider would leave them.
+    /// Whether the stage reads parameters. Its results are then not cached on disk, which every step of a slider would fill.
     pub(crate) fn reads_params(&self) -> bool {
         !self.stage.reflection.params_read.is_empty()
     }
@@ -48,7 +48,7 @@ pub struct BakeValues<'a> {
     pub params: &'a Arc<[u8]>,
 }
 
-/// The stages of `paths` with the constants that each declares. A tree without one of them has failed its check before.
+/// The stages of `paths` with the constants that each declares. A tree without one of them has already failed its check.
 fn stages(shaders: &ShaderSet, paths: &[&str], values: BakeValues<'_>) -> Vec<BakeStage> {
     let BakeValues { constants, params } = values;
     let stages = paths.iter().filter_map(|path| shaders.stages.get(*path));
@@ -65,7 +65,7 @@ fn stages(shaders: &ShaderSet, paths: &[&str], values: BakeValues<'_>) -> Vec<Ba
     bake.collect()
 }
 
-/// Identifies the tables of the BRDF: a stage for each.
+/// Identifies the BRDF lookup tables: a stage for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TablesKey(pub(crate) Vec<BakeStage>);
 
@@ -79,23 +79,23 @@ impl TablesKey {
         same_modules(&self.0, &other.0)
     }
 
-    /// Whether both are for the same choice of models, so that the tables differ by an edit of the shaders at most.
+    /// Whether both use the same choice of models, so that the tables differ by an edit of the shaders at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
         same_constants(&self.0, &other.0)
     }
 }
 
-/// Identifies a baked environment: its name, the revision of its file, what becomes of its suns, and the stages of each part.
+/// Identifies a baked environment: its name, the revision of its file, whether suns are separated, and the stages of each part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentKey {
     /// Built-in name or file.
     pub name: String,
     pub(crate) revision: u64,
-    /// Whether suns are taken out of the maps.
+    /// Whether suns are separated from the maps.
     pub(crate) suns: bool,
     /// The stages of the cube map and the irradiance, which depend on the map alone.
     pub(crate) radiance: Vec<BakeStage>,
-    /// Those of the prefilter, which depend on the selected NDF too.
+    /// The stages of the prefilter, which also depend on the selected NDF.
     pub(crate) prefilter: Vec<BakeStage>,
     /// The stage of the sheen's prefilter.
     pub(crate) sheen: Vec<BakeStage>,
@@ -132,7 +132,7 @@ impl EnvironmentKey {
             && same_modules(&self.sheen, &other.sheen)
     }
 
-    /// Whether both are for the same map, suns and models: they differ by an edit of the shaders or of the file at most.
+    /// Whether both use the same map, suns and models, so that they differ by an edit of the shaders or of the file at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
         (&self.name, self.suns) == (&other.name, other.suns)
             && same_constants(&self.prefilter, &other.prefilter)

@@ -10,12 +10,12 @@ pub struct TargetFormat {
     pub color: vk::Format,
     /// Samples per pixel.
     pub samples: u32,
-    /// Whether the samples of a pixel are weighed for the display (resolve.frag). Linear light for a file has their plain mean.
+    /// Whether `resolve.frag` weights the samples of a pixel for the display. Linear light for a file is their plain average.
     pub weighs: bool,
 }
 
 impl TargetFormat {
-    /// Half floats: precise enough for a picture, at half the bandwidth.
+    /// Half floats: precise enough for display, at half the bandwidth.
     pub fn half(samples: u32) -> Self {
         Self { color: vk::Format::R16G16B16A16_SFLOAT, samples, weighs: true }
     }
@@ -31,10 +31,10 @@ impl TargetFormat {
     }
 }
 
-/// Format of the mean of an accumulating mode.
+/// Format of the accumulation buffer.
 pub(crate) const MEAN_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Vulkan's name of the format of a pass.
+/// The Vulkan format of a pass's image.
 pub(crate) fn pass_format(format: PassFormat) -> vk::Format {
     match format {
         PassFormat::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,

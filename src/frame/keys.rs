@@ -89,7 +89,7 @@ impl Keys {
         self.down = Bits::default();
     }
 
-    /// The keys of the next frame if none goes down or up until then.
+    /// The keys of the next frame if none goes down or up in between.
     #[must_use]
     pub fn held(self) -> Self {
         Self { pressed: Bits::default(), ..self }

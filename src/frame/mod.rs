@@ -44,7 +44,7 @@ use crate::shader::{Mode, ShaderSet, values};
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
 
-/// Everything that a picture depends on.
+/// Everything that a frame depends on.
 #[derive(Clone, Copy)]
 pub struct FrameInputs<'a> {
     /// The user's settings. A mode that the tree lacks falls back to the tree's first mode. A value that does not fit its
@@ -54,7 +54,7 @@ pub struct FrameInputs<'a> {
     pub shaders: &'a Arc<ShaderSet>,
     /// The model as the settings show it; `None` draws the background alone.
     pub scene: Option<&'a Scene>,
-    /// How often the files of `settings.environment.name` and `settings.measured` have changed.
+    /// Revisions of the files of `settings.environment.name` and `settings.measured`.
     pub revisions: Revisions,
     /// The time, for animated shaders, and the input.
     pub clock: Clock,
@@ -103,21 +103,22 @@ impl Default for Clock {
     }
 }
 
-/// Counts the changes of watched files on disk, so that the same name is loaded again after a change. And what only a bake tells.
+/// Counts the changes of watched files, so that the same name is loaded again after a change. Also holds what is known only after
+/// a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Revisions {
     /// Changes of the environment map.
     pub environment: u64,
     /// Changes of the measured BRDF.
     pub measured: u64,
-    /// Suns of the environment that was baked last. Until a map is baked it counts as one without, so that pictures without suns have
-    /// no code for them; `Resources` binds no picture to an environment with more suns.
+    /// Suns of the environment that was baked last. Until a map is baked it counts as having none, so that frames without suns
+    /// contain no code for them; `Resources` binds no frame to an environment with more suns.
     pub suns: u32,
 }
 
 impl Revisions {
-    /// The suns of the environment that lights a picture of these settings, as far as is known. While the map of the settings is
-    /// baked, that is the one before it.
+    /// The suns of the environment that lights a frame with these settings, as far as known. While the map of the settings is
+    /// being baked, this is the previous environment.
     pub(crate) fn suns_of(self, settings: &Settings) -> u32 {
         let environment = &settings.environment;
         let exact = separates_suns(environment) && has_exact_sun(&environment.name);
@@ -133,7 +134,7 @@ pub struct MeasuredKey {
     revision: u64,
 }
 
-/// One picture. Immutable.
+/// One frame as an immutable value.
 #[derive(Clone, Debug)]
 pub struct FrameState {
     /// The shaders that draw it.
@@ -142,9 +143,9 @@ pub struct FrameState {
     pub pipelines: PipelineRequest,
     /// The model and its materials.
     pub scene: Option<Scene>,
-    /// Tables of the BRDF's albedo, for the selected models.
+    /// BRDF lookup tables, for the selected models.
     pub tables: TablesKey,
-    /// Image-based light. Without it, the settings' ambient light is used.
+    /// Image-based light. Without it, ambient light of the settings is used.
     pub environment: Option<EnvironmentKey>,
     /// Measured BRDF, for the modes that show one.
     pub measured: Option<MeasuredKey>,
@@ -166,13 +167,14 @@ pub struct FrameState {
 }
 
 impl FrameState {
-    /// The state of a picture. Pure: equal inputs give equal states.
+    /// Describes a frame. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         Self::with_pipelines(inputs, PipelineRequest::new(settings, shaders, scene, target))
     }
 
-    /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model but the tone map are left out.
+    /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model except the tone map are
+    /// left out.
     pub fn of_modes(inputs: &FrameInputs<'_>, modes: &[&Mode]) -> Self {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
@@ -256,7 +258,7 @@ impl FrameState {
         }
     }
 
-    /// The same picture for reading single pixels: modes that show a color for each number give the number.
+    /// The same frame for reading single pixels: modes that show a color for each number output the number.
     pub fn with_numbers(mut self) -> Self {
         self.constants.gives_numbers = 1;
         self
@@ -272,12 +274,12 @@ impl FrameState {
         self.constants.exposure
     }
 
-    /// Whether both states draw the same picture, bit for bit.
+    /// Whether both states draw the same frame, bit for bit.
     pub fn is_same(&self, other: &Self) -> bool {
         self.is_same_with(other, &self.constants, &other.constants) && self.pass_blocks == other.pass_blocks
     }
 
-    /// Whether nothing differs but the time, and the parameters of passes that follow the model.
+    /// Whether they differ only in the time and in the parameters of passes that follow the model.
     pub fn is_same_model(&self, other: &Self) -> bool {
         let timeless = |frame: &Frame| Frame {
             time_s: 0.0,
@@ -320,12 +322,12 @@ impl FrameState {
         &self.pass_blocks
     }
 
-    /// The same picture of an environment that has this many suns.
+    /// The same frame with an environment that has this many suns.
     pub(crate) fn for_suns(&self, suns: u32) -> Self {
         Self { pipelines: self.pipelines.clone().for_suns(suns), ..self.clone() }
     }
 
-    /// As many suns as the pipelines add, each with its light of this frame. Those that the environment does not have are dark. The
+    /// As many suns as the pipelines expect, each with its light in this frame. Suns that the environment lacks are dark. The
     /// environment's images hold radiance times `scale`.
     fn suns<'a>(&'a self, (scale, suns): (f32, &'a [Sun])) -> impl Iterator<Item = (Sun, Light)> + 'a {
         let factor = self.constants.environment_intensity / scale;
@@ -339,8 +341,8 @@ impl FrameState {
         self.lights.iter().copied().chain(self.suns(environment).map(|(_, light)| light)).collect()
     }
 
-    /// The frame constants for a picture at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
-    /// `sample_index` counts the frames of an accumulated picture from 0. `before`: `clip_from_world` of the frame before.
+    /// The frame constants for a frame at `rect` of the output. `environment`: as for [`FrameState::lights_and_suns`].
+    /// `sample_index` counts accumulated frames from 0. `before`: `clip_from_world` of the previous frame.
     pub(crate) fn constants(&self, rect: Rect, environment: (f32, &[Sun]), sample_index: u32, before: Mat4) -> Frame {
         let (scale, _) = environment;
         let mut frame = Frame {

@@ -15,10 +15,10 @@ pub struct SharedMode {
     pub encode: u32,
 }
 
-/// Splits modes into sets that are drawn at once: a draw processes the vertices once, and one pipeline computes up to `most` modes.
-/// The modes of a set share a stage, a group, the background and the kind of tone mapping, so that a set compiles little code that only
-/// one of its modes needs. Modes of random paths and images of passes have no thumbnail and are in no set. A mode that draws lines or layers
-/// and the final picture are sets of their own, drawn with the pipelines of the large picture.
+/// Splits modes into sets that are drawn at once: a draw processes the vertices once, and one pipeline computes up to `most`
+/// modes. The modes of a set share a stage, a group, the background and the kind of tone mapping, so that a set compiles little
+/// code that only one of its modes needs. Path-traced modes and images of passes have no thumbnail and are in no set. A mode that
+/// draws lines or layers, and the final picture, are sets of their own, drawn with the pipelines of the window's view.
 pub fn mode_sets<'a>(modes: impl IntoIterator<Item = &'a Mode>, most: usize) -> Vec<Vec<&'a Mode>> {
     let mut sets: Vec<Vec<&Mode>> = Vec::new();
     for mode in modes.into_iter().filter(|mode| has_thumbnail(mode)) {
@@ -57,7 +57,9 @@ impl PipelineRequest {
     ) -> Self {
         let mode = modes.first().map(|mode| mode.slug.clone()).unwrap_or_default();
         let mut request = Self::new(&Settings { mode, ..settings.clone() }, shaders, scene, target);
-        request.passes.retain(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
+        request
+            .passes
+            .retain(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
         (request.wireframe, request.wireframe_stage) = (None, String::new());
         if modes.len() > 1 {
             request.modes = modes.iter().map(|mode| SharedMode { id: mode.id, encode: mode.encode.id() }).collect();

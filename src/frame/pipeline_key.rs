@@ -9,7 +9,7 @@ use crate::shader::GraphPass;
 use crate::shader::spirv::primitive::Primitive;
 
 impl MaterialVariant {
-    /// Whether a pass draws the kind of primitive that the material is on.
+    /// Whether the pass accepts the kind of primitive that the material is on.
     pub(crate) fn is_taken_by(self, pass: &GraphPass) -> bool {
         match pass.pre_rasterization.takes {
             None => true,
@@ -21,7 +21,7 @@ impl MaterialVariant {
     }
 }
 
-/// A pass as the key of a pipeline: what its annotation says to people does not count.
+/// A pass as part of a pipeline key. Labels and docs of its annotation are ignored.
 #[derive(Clone, Debug)]
 pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 

@@ -28,16 +28,16 @@ pub struct MaterialVariant {
     pub class: PrimitiveClass,
 }
 
-/// Stands for a material in the pipelines of quads.
+/// The placeholder for a material in the pipelines of quads.
 pub(crate) const QUADS: MaterialVariant =
     MaterialVariant { alpha: interface::ALPHA_OPAQUE, features: 0, class: PrimitiveClass::Triangles };
 
-/// Everything that selects the pipelines of a picture.
+/// Everything that selects the pipelines of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PipelineRequest {
     /// Id of the debug mode.
     pub mode: u32,
-    /// How the mode draws the model.
+    /// Options of the mode for drawing the model.
     pub draw: DrawAs,
     /// Values of the author's specialization constants.
     pub constants: Specialization,
@@ -53,37 +53,37 @@ pub struct PipelineRequest {
     pub materials: BTreeSet<MaterialVariant>,
     /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
-    /// Features that the author's `user_surface` gives to all lit materials.
+    /// Features that the author's `user_surface` enables for all lit materials.
     pub hook_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
-    /// Number of suns of the environment that lighting adds: see [`Self::for_suns`].
+    /// Number of suns of the environment that the pipelines light with: see [`Self::for_suns`].
     pub sun_count: u32,
-    /// Whether the picture is the mean of all frames since it last changed.
+    /// Whether frames are accumulated until something changes.
     pub accumulates: bool,
     /// Path of the fragment stage that computes the mode.
     pub stage: String,
     /// Whether the mode traces rays through the model.
     pub traces: bool,
-    /// Whether the picture moves the model's vertices, by `user_vertex` or a stage after it, which the traced rays do not know.
+    /// Whether `user_vertex` or a later pre-rasterization stage moves the model's vertices, which traced rays ignore.
     pub moves_vertices: bool,
-    /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
+    /// Whether transmissive surfaces look up the opaque scene of the final picture instead of this mode's.
     pub through: bool,
     /// The declared passes to draw, in order.
     pub passes: Vec<Arc<GraphPass>>,
-    /// Whether the model and the environment are in the picture: no pass covers them.
+    /// Whether the model and the environment are drawn: no pass covers them.
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
-    /// The pass that draws the edges of triangles over the picture; `None` if they are not shown.
+    /// The pass that draws the wireframe over the picture; `None` if it is not shown.
     pub wireframe: Option<Arc<GraphPass>>,
-    /// The stage of that pass, which may be still to be compiled; empty if edges are not shown.
+    /// The stage of that pass, which may not be compiled yet; empty if no wireframe is shown.
     pub wireframe_stage: String,
     /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
     pub modes: Vec<SharedMode>,
 }
 
-/// The properties of the settings that select the passes of a picture.
+/// What the settings say about the passes of a frame.
 struct Selection<'a> {
     shaders: &'a ShaderSet,
     constants: &'a Specialization,
@@ -95,12 +95,12 @@ struct Selection<'a> {
     /// Whether transmissive surfaces look up the final picture in this mode.
     through: bool,
     accumulates: bool,
-    /// Whether the samples of a pixel are weighed by their brightness.
+    /// Whether the samples of a pixel are weighted by their brightness.
     weighs_samples: bool,
 }
 
 impl Selection<'_> {
-    /// Whether a pass is one of the built-in steps of this picture. Without `draws_model`, the model and the background are not.
+    /// Whether a pass is one of the built-in steps of this frame. Without `draws_model`, the model and the background are not.
     fn is_base(&self, pass: &GraphPass, draws_model: bool) -> bool {
         let graph = &self.shaders.graph;
         let wanted = |name: &str| graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
@@ -132,7 +132,7 @@ impl PipelineRequest {
         let graph = &shaders.graph;
         let stage = mode.map(|m| m.stage.clone()).unwrap_or_default();
         let constants = values::constants(&settings.shader, &shaders.constants);
-        // An image that is looked at needs what it reads, although the model needs none of it.
+        // The shown image of a pass needs its inputs, even if the model needs none of them.
         let looked_at = shown_pass.as_deref().map(|name| graph.needed_by(name)).unwrap_or_default();
         let is_on = |index: usize| {
             let pass = &graph.passes[index];
@@ -200,18 +200,18 @@ impl PipelineRequest {
         if self.shown_pass.is_some() { interface::MODE_FINAL } else { self.mode }
     }
 
-    /// The pass that draws the model in this mode. `None` if the model is not drawn, or its stage is still to be compiled.
+    /// The pass that draws the model in this mode. `None` if the model is not drawn, or its stage is not compiled yet.
     pub(crate) fn model_pass(&self) -> Option<&Arc<GraphPass>> {
         let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.is_built_in();
         self.passes.iter().filter(draws).find(|pass| pass.desc.stage == self.stage)
     }
 
-    /// Whether a pixel depends on what is drawn at that pixel alone. Other passes than the built-in ones may read any pixel.
+    /// Whether a pixel depends only on what is drawn at that pixel. Passes other than the built-in ones may read any pixel.
     pub(crate) fn is_local(&self) -> bool {
         self.passes.iter().all(|pass| pass.desc.is_built_in() || pass.desc.background)
     }
 
-    /// Whether a pass after the tone map is shown, so that the pixels are those of the display.
+    /// Whether a pass after the tone map is shown, so that the pixels are LDR output.
     pub(crate) fn shows_display(&self) -> bool {
         let is_shown = |pass: &&Arc<GraphPass>| self.shown_pass.as_deref().is_some_and(|name| pass.is_called(name));
         self.passes.iter().find(is_shown).is_some_and(|pass| pass.phase == RenderPhase::Display)
@@ -221,8 +221,8 @@ impl PipelineRequest {
         self.passes.iter().find(|pass| is_wanted(pass))
     }
 
-    /// Random paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a
-    /// frame has one path.
+    /// Paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a frame
+    /// has one path.
     pub fn paths_per_frame(&self) -> u32 {
         if self.traces { 1 } else { 8 }
     }
@@ -232,12 +232,12 @@ impl PipelineRequest {
         self.model_pass().is_some_and(|pass| pass.name() == MODEL)
     }
 
-    /// Whether the mode follows random paths, and so needs what they trace.
+    /// Whether the mode uses path tracing, and so needs its resources.
     pub(crate) fn follows_paths(&self) -> bool {
         self.stage == PATHS_STAGE
     }
 
-    /// Whether the mode shows all light: the final picture, or the same by random paths.
+    /// Whether the mode shows all light: the final picture, or its path-traced reference.
     fn shows_picture(&self) -> bool {
         self.is_picture_stage() || (self.traces && self.tonemap != TONEMAP_OFF)
     }
@@ -253,14 +253,14 @@ impl PipelineRequest {
         self.passes.iter().filter(|pass| pass.adds_to_model())
     }
 
-    /// Format of the HDR picture before the tone map.
+    /// Format of the HDR target before the tone map.
     pub(crate) fn picture_format(&self) -> vk::Format {
         if self.accumulates { MEAN_FORMAT } else { self.target.color }
     }
 
     /// The stages of the pipelines.
     pub fn stages(&self) -> BTreeSet<String> {
-        // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
+        // Without a model the stages of the mode count too, since the model is still loading. Its stage may not be compiled yet.
         let model = self.draws_model.then(|| self.stage.clone());
         let all = self.passes.iter().chain(&self.wireframe);
         let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
@@ -268,10 +268,10 @@ impl PipelineRequest {
         passes.chain(model).chain(wireframe).collect()
     }
 
-    /// Whether a picture needs stages that are still to be compiled.
+    /// Whether a frame needs stages that are not compiled yet.
     pub fn needs_pending(&self, shaders: &ShaderSet) -> bool {
         let is_pending = |path: &String| shaders.pending.contains(path);
-        // A step that has never compiled is not in the graph yet.
+        // A stage that has never compiled is not in the graph yet.
         !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
     }
 }
@@ -288,7 +288,7 @@ pub(super) fn shared_features(settings: &Settings) -> u32 {
     features
 }
 
-/// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
+/// The pass whose stage draws the wireframe: that of the mode which draws lines.
 fn wireframe(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
     let stage = wireframe_stage(settings, shaders)?;
     let draws = |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.stage == stage;
@@ -300,7 +300,7 @@ fn wireframe_stage(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
     settings.view.wireframe.then(|| lines.stage.clone())
 }
 
-/// Whether the constant is set that the annotation of the pass names.
+/// Whether the constant that the pass names in `when=` is on.
 fn is_switched_on(pass: &GraphPass, shaders: &ShaderSet, constants: &Specialization) -> bool {
     let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == pass.desc.when.as_ref());
     switch.is_none_or(|switch| constants.iter().any(|(id, value)| *id == switch.id && *value != 0))

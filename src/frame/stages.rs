@@ -12,14 +12,14 @@ pub(crate) const LOBE: &str = "ibl/lobe.comp";
 pub(crate) const RADIANCE_STAGES: [&str; 3] = [CUBE, DOWNSAMPLE, IRRADIANCE];
 pub(crate) const PREFILTER_STAGES: [&str; 2] = [LOBE, PREFILTER];
 pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
-/// The stages of the BRDF's tables.
+/// The stages of the BRDF lookup tables.
 pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/sheen_albedo.comp"];
 
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
 
-/// The stage that measures the BRDF over the hemisphere, for the window. A tree need not have it.
+/// The stage that measures the BRDF over the hemisphere, for the window. A tree may lack it.
 pub const HEMISPHERE_STAGE: &str = "measure/hemisphere.comp";
 
 /// The stages that a shader tree must have besides those of its passes.

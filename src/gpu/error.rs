@@ -19,13 +19,13 @@ pub enum GpuError {
         "the Vulkan validation layers are not installed; on Debian and Ubuntu: apt-get install vulkan-validationlayers"
     )]
     NoValidation,
-    /// The driver gave up on the device, with what Specula was doing.
+    /// The device was lost. Contains what Specula was doing.
     #[error(
         "the graphics device was lost while {0}. Usually an endless loop or a very long shader is the cause: the driver \
          stops it after a few seconds. Undo the last edit"
     )]
     DeviceLost(&'static str),
-    /// A loop of a compute shader used up its budget: the two words that name it, see `shader::spirv::loops`.
+    /// A loop of a compute shader exceeded its iteration limit: the two words that name it, see `shader::spirv::loops`.
     #[error("a loop of the shaders did not end")]
     EndlessLoop([u32; 2]),
     /// Out of memory on the device or the host, with what Specula was doing.
@@ -56,7 +56,7 @@ pub enum GpuError {
     /// A pipeline needs a stage that the shader tree does not have.
     #[error("the shader tree has no {0}")]
     NoStage(String),
-    /// A stage reads a resource that nothing binds for it. The contract check refuses such stages before, with their line.
+    /// A stage reads a resource that is not bound for it. The contract check refuses such stages earlier, with their line.
     #[error("{stage} reads what {role} does not have: {resource}")]
     Unbound {
         /// Path of the stage.
@@ -75,7 +75,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// Whether memory is lacking, so that smaller pictures or other shaders may still be drawn.
+    /// Whether memory is lacking, so that smaller frames or other shaders may still be drawn.
     pub fn is_shortage(&self) -> bool {
         matches!(self, Self::OutOfMemory(_) | Self::PassMemory(_))
     }
@@ -95,7 +95,7 @@ impl GpuError {
         match error {
             // Mapping fails only when the host lacks memory or address space.
             AllocationError::OutOfMemory | AllocationError::FailedToMap(_) => Self::OutOfMemory(action.to_owned()),
-            // gpu-allocator passes this result on as text only.
+            // gpu-allocator returns this result only as text.
             AllocationError::Internal(text) if text.contains("ERROR_OUT_OF_HOST_MEMORY") => {
                 Self::OutOfMemory(action.to_owned())
             }

@@ -60,14 +60,14 @@ pub(super) fn refuse(name: &str, action: &str) -> Result<(), GpuError> {
     if strikes(name) { Err(GpuError::OutOfMemory(action.to_owned())) } else { Ok(()) }
 }
 
-/// Sleeps for as many milliseconds as the fault `name` says, if it is there.
+/// Sleeps for the milliseconds that the fault `name` gives, if it is set.
 pub fn delay(name: &str) {
     if let Some(ms) = value(name) {
         std::thread::sleep(std::time::Duration::from_millis(ms));
     }
 }
 
-/// Whether the fault `by-name` has lost the device.
+/// Whether the fault `by-name` has triggered.
 static LOST: AtomicBool = AtomicBool::new(false);
 
 /// Carries out the fault `by-name` for a new shader module.
@@ -86,7 +86,7 @@ pub(crate) fn take_module(spirv: &[u32]) {
     }
 }
 
-/// Fails if the fault `by-name` has lost the device. `action` continues "the device was lost while".
+/// Fails once the fault `by-name` has triggered. `action` continues "the device was lost while".
 pub(super) fn lose(action: &'static str) -> Result<(), GpuError> {
     if LOST.load(Ordering::SeqCst) { Err(GpuError::DeviceLost(action)) } else { Ok(()) }
 }

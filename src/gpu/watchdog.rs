@@ -4,12 +4,12 @@
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often the thread looks at the clock.
+/// How often the watchdog thread looks at the clock.
 const TICK: Duration = Duration::from_millis(50);
 
 struct Watch {
     limit: Duration,
-    /// The work of the device, by number, with the time by which it must be done.
+    /// Tasks of the device, by number, with their deadlines.
     tasks: Mutex<Vec<(u64, Instant, String)>>,
 }
 
@@ -38,7 +38,7 @@ pub fn end_after(limit: Duration, end: fn(&str, Duration) -> !) {
             }
         }
     };
-    // Without the thread, waits still end after their own limit.
+    // If the thread cannot start, waits still end after their own limit.
     let _ = std::thread::Builder::new().name("specula-watchdog".to_owned()).spawn(look);
 }
 

@@ -7,19 +7,19 @@ use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, ProvideError, Redraw, View};
 
-/// How far a picture or a readout is.
+/// Progress of rendering or of a readout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// Frames, paths or modes that are drawn.
     pub done: u64,
-    /// How many there are in all.
+    /// The total.
     pub of: u64,
     /// Unit of the count, as shown to the user.
     pub unit: &'static str,
 }
 
 impl Headless {
-    /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
+    /// Paths per pixel that [`Headless::render`] traces; `None` if the mode does not accumulate.
     ///
     /// # Errors
     /// As [`Headless::frame_state`].
@@ -29,8 +29,8 @@ impl Headless {
         Ok(request.accumulates.then_some(paths))
     }
 
-    /// Renders the frames of the sequence from the beginning, and reads the last one back. In an accumulating mode that
-    /// is the mean of `view.frames` frames.
+    /// Renders the frames of the sequence from the beginning, and reads the last one back. In an accumulating mode that is the
+    /// average of `view.frames` frames.
     ///
     /// # Errors
     /// Settings that do not fit, a bad file, a device error.
@@ -38,7 +38,7 @@ impl Headless {
         self.render_with(|_| ())
     }
 
-    /// [`Headless::render`], which tells `progress` after each frame how far it is.
+    /// [`Headless::render`], with a report to `progress` after each frame.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -67,7 +67,7 @@ impl Headless {
         self.read_frame(&frame)
     }
 
-    /// Draws a frame and reads it back. If its range follows its values, it is tone mapped again once these are known.
+    /// Draws a frame and reads it back. With an automatic range, it is tone mapped again once its values are known.
     fn read_frame(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
         let mut readback = self.draw_frame(frame, Redraw::Always, View::read_back)?;
         if frame.state.display.is_measured() {
@@ -76,12 +76,12 @@ impl Headless {
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
-    /// The limits of the values in the last picture, if its range follows them.
+    /// The limits of the values in the last frame, if its range is automatic.
     pub fn measured_limits(&self) -> Option<Limits> {
         self.view.measured_limits()
     }
 
-    /// Renders the frame after the last one, from what passes have kept of that, and reads it back.
+    /// Renders the frame after the last one, with the images that passes have kept, and reads it back.
     ///
     /// # Errors
     /// As [`Headless::render`].

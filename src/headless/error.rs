@@ -1,7 +1,7 @@
 //! Why rendering failed.
 
 use crate::gpu::GpuError;
-use crate::render::{BakeError, ProvideError, PathTracingError, UploadError};
+use crate::render::{BakeError, PathTracingError, ProvideError, UploadError};
 use crate::scene::MeasuredError;
 use crate::shader::Diagnostic;
 

@@ -6,8 +6,8 @@ use crate::render::{PixelModes, Texel, Thumbnails, read_texels, texel_places};
 use crate::shader::{Mode, PixelValue};
 
 impl Headless {
-    /// The values of the pixel `at`, counted from the upper left corner, in each of `modes` that can be drawn together with others. The
-    /// order is that in which they are drawn. Unlike [`Headless::pixel`], this leaves out passes after the model, and transmissive
+    /// The values of the pixel `at`, counted from the upper left corner, in each of those `modes` that can be drawn together with
+    /// others, in the order of drawing. Unlike [`Headless::pixel`], this leaves out passes after the model, and transmissive
     /// surfaces show nothing behind them.
     ///
     /// # Errors

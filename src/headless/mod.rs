@@ -90,9 +90,9 @@ impl Headless {
         Ok(this)
     }
 
-    /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and
-    /// does not create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any
-    /// number of times before the first picture.
+    /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the frame needs, and does not
+    /// create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any number of times
+    /// before the first frame.
     ///
     /// # Errors
     /// Those of `read`, settings or a model that do not fit, a device error.
@@ -126,8 +126,8 @@ impl Headless {
         Ok((this, reload))
     }
 
-    /// Like [`Headless::new`], but compiles nothing. Call [`Headless::update`], which may fail any number of times
-    /// before the first picture.
+    /// Like [`Headless::new`], but compiles nothing. Call [`Headless::update`], which may fail any number of times before the
+    /// first frame.
     ///
     /// # Errors
     /// Settings or a model that do not fit, a device error.
@@ -162,14 +162,13 @@ impl Headless {
         Ok(this)
     }
 
-    /// Creates the environment, the measured BRDF and the pipelines that the next frame lacks. On failure those in use
-    /// stay.
+    /// Creates the environment, the measured BRDF and the pipelines that the next frame lacks. On failure the current ones stay.
     ///
     /// # Errors
     /// A bad file, or a device error.
     pub fn provide(&mut self) -> Result<(), HeadlessError> {
         self.bind()?;
-        // Decoding and compiling are done. Return the freed memory, which a software device needs for the frame.
+        // Decoding and compiling are done. Return the freed memory, which a software device needs for rendering.
         return_freed_memory();
         Ok(())
     }
@@ -195,7 +194,7 @@ impl Headless {
         self.session.revisions.measured += 1;
     }
 
-    /// Warnings about functions whose values the last bakes could not use.
+    /// Warnings about functions that returned invalid values in the last bakes.
     pub fn bake_warnings(&self) -> Vec<String> {
         let tables = self.resources.tables().map(|tables| tables.wrong.clone()).unwrap_or_default();
         let mut functions: BTreeSet<&str> = tables.into_iter().collect();
@@ -245,7 +244,7 @@ impl Headless {
         Ok(())
     }
 
-    /// Sets whether pictures are for files of linear light (EXR): their pixels are then plain means of the samples.
+    /// Sets whether captures are for files of linear light (EXR): their pixels are then plain averages of the samples.
     pub fn set_linear(&mut self, is_linear: bool) {
         self.is_linear = is_linear;
     }
@@ -284,7 +283,7 @@ impl Headless {
         Ok(())
     }
 
-    /// The picture that the settings describe.
+    /// The frame that the settings describe.
     ///
     /// # Errors
     /// Settings that do not fit, or no shaders yet.
@@ -307,7 +306,7 @@ impl Headless {
         self.session.problems(true).into_iter().next().map_or(Ok(()), |problem| Err(HeadlessError::Settings(problem)))
     }
 
-    /// Whether the picture changes while the time runs.
+    /// Whether the frame changes as time passes.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -338,7 +337,7 @@ impl Headless {
             return Err(HeadlessError::Shaders(vec![error]));
         }
         let bound = self.resources.provide(&Arc::new(state));
-        // Only now it is known how many suns the environment has.
+        // The number of suns is known only after the bake.
         let suns = self.resources.environment().sun_count();
         if suns == self.session.revisions.suns {
             return bound.map_err(|error| self.explained(error.into()));

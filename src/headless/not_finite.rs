@@ -9,23 +9,23 @@ use crate::render::{PixelModes, Resources};
 use crate::settings::Settings;
 use crate::shader::{Compiler, FirstNotFinite, Mode, Source, TracedShaders};
 
-/// Where to search: a pixel of a picture.
+/// Where to search: a pixel of a frame.
 pub struct Search<'a> {
-    /// The picture. Its mode and target do not count.
+    /// The frame. Its mode and target are ignored.
     pub picture: FrameInputs<'a>,
     /// The pixel, from the upper left corner.
     pub at: (u32, u32),
     /// The mode whose value is not finite.
     pub mode: &'a Mode,
-    /// The tree, which gives files their names.
+    /// The tree, for the display names of files.
     pub source: &'a Source,
     /// Whether the result is no longer needed.
     pub is_canceled: &'a dyn Fn() -> bool,
 }
 
-/// Compiles the stage of a mode with a text that traces its values, draws the pixel with it, and returns the first statement that made NaN
-/// or infinity. `None` if the stage makes neither there: a pass after the model does, a stage before it, or a mode of random paths.
-/// `frames` and `resources` are the caller's own, with all that the picture needs.
+/// Compiles the stage of a mode with a text that traces its values, draws the pixel with it, and returns the first statement that
+/// computes NaN or infinity. `None` if the stage computes neither there: a pass after the model does, an earlier stage, or a
+/// path-traced mode. `frames` and `resources` belong to the caller and have everything that the frame needs.
 ///
 /// # Errors
 /// A message if the stage cannot be traced or drawn.
@@ -68,7 +68,7 @@ pub fn first_not_finite(
 }
 
 impl Headless {
-    /// The first statement that makes NaN or infinity in a mode at a pixel: as [`first_not_finite`].
+    /// The first statement that computes NaN or infinity in a mode at a pixel: see [`first_not_finite`].
     ///
     /// # Errors
     /// As [`Headless::render`].

@@ -25,7 +25,7 @@ impl Headless {
         self.pixel_with(at, modes, |_| ())
     }
 
-    /// [`Headless::pixel`], which tells `progress` after each mode how far it is.
+    /// [`Headless::pixel`], with a report to `progress` after each mode.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -61,7 +61,7 @@ impl Headless {
             modes.iter().map(|mode| (mode, state_of(mode, self.clock))).collect();
         self.view.probe = Some(at);
         let mut values = Vec::new();
-        // A set keeps the pipelines of its newest requests only.
+        // A set keeps only the pipelines of its newest requests.
         for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
             if let Some(set) = self.resources.pipelines() {
                 // A driver compiles a pipeline on the calling thread.
@@ -70,7 +70,7 @@ impl Headless {
             for (mode, state) in states {
                 self.view.restart_passes();
                 let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
-                // A still picture needs no earlier frames.
+                // A frame without animation needs no earlier frames.
                 let earlier = if frame.is_animated() { sequence.frames.max(1) - 1 } else { 0 };
                 for index in 0..earlier {
                     let state = state_of(mode, sequence.clock(index));

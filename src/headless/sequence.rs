@@ -2,7 +2,7 @@
 
 use crate::frame::{Clock, Date, Keys};
 
-/// Frames at even distances in time.
+/// Frames at equal intervals of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sequence {
     /// Number of frames, at least 1.

@@ -6,7 +6,7 @@ use super::{Headless, HeadlessError};
 use crate::pipeline::StageReport;
 
 impl Headless {
-    /// All stages by path, with what is known of them in the pipelines of the picture. None before the first good shaders.
+    /// All stages by path, with their statistics in the pipelines of the frame. None before the first good shaders.
     ///
     /// # Errors
     /// As [`Headless::frame_state`].
@@ -15,8 +15,8 @@ impl Headless {
         Ok(self.resources.pipelines().map(|set| set.report(&request)).unwrap_or_default())
     }
 
-    /// Asks the driver about the machine code of the picture's pipelines, each of which is built once more. Returns how long that took,
-    /// in milliseconds; 0 if the driver tells nothing.
+    /// Queries the driver's statistics of the frame's pipelines, each of which is built once more. Returns how long that took, in
+    /// milliseconds; 0 if the driver reports none.
     ///
     /// # Errors
     /// As [`Headless::frame_state`], and a driver that does not answer.

@@ -20,7 +20,7 @@ pub struct Thumbnail {
 }
 
 impl Headless {
-    /// Draws a thumbnail of each of `modes` that can have one. The order is that in which they are drawn.
+    /// Draws a thumbnail of each of those `modes` that can have one, in the order of drawing.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -54,7 +54,7 @@ impl Headless {
         Ok(drawn)
     }
 
-    /// The frame that draws a set of modes at once, with its pipelines. `adapt` changes its state before.
+    /// The frame that draws a set of modes at once, with its pipelines. `adapt` changes its state first.
     pub(super) fn bind_modes(
         &mut self,
         set: &[&Mode],

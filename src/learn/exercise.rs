@@ -121,7 +121,7 @@ impl Exercise {
                 apply(edit, texts).map_err(&error)?;
             }
         }
-        // A file that the start changes is the shipped one when it is solved, unless the solution changes it too.
+        // In the solution, a file that the start changes is the shipped one, unless the solution changes it too.
         for path in start.keys() {
             if let Some(shipped) = shipped(path).filter(|_| !solved.contains_key(path)) {
                 solved.insert(path.clone(), shipped);

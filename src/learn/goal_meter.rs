@@ -29,10 +29,10 @@ pub enum LearnError {
     /// The exercise itself is wrong.
     #[error("{0}")]
     Exercise(String),
-    /// The device, or what an edit has made of a setting.
+    /// A device error, or an edit made a setting invalid.
     #[error(transparent)]
     Headless(HeadlessError),
-    /// A newer edit has come.
+    /// A newer edit has arrived.
     #[error("a newer edit has come")]
     Superseded,
 }
@@ -46,10 +46,10 @@ impl From<HeadlessError> for LearnError {
     }
 }
 
-/// A meter, with the shaders and the settings that it is of.
+/// A BRDF meter, with its shaders and settings.
 type Measuring = (Arc<ShaderSet>, Settings, BrdfMeter);
 
-/// A device that measures. It keeps what it has compiled, so the next measurement of the same exercise is faster.
+/// Measures goals on a device. It keeps what it has compiled, so the next measurement of the same exercise is faster.
 pub struct GoalMeter {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
@@ -64,14 +64,14 @@ pub struct GoalMeter {
 }
 
 impl GoalMeter {
-    /// A meter on this device.
+    /// A goal meter on this device.
     pub fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Self {
         let (gpu, compiler) = (gpu.clone(), compiler.clone());
         let (exercise, pictures) = (String::new(), BTreeMap::new());
         Self { gpu, compiler, exercise, own: None, solved: None, own_bench: None, solved_bench: None, pictures }
     }
 
-    /// Measures the tree of `source`, goal by goal. `superseded` returns whether the result is no longer wanted.
+    /// Measures the tree of `source`, goal by goal. `superseded` returns whether the result is obsolete.
     ///
     /// # Errors
     /// Shaders that do not compile, a device error, or the end by `superseded`.
@@ -98,11 +98,11 @@ impl GoalMeter {
         Ok(findings)
     }
 
-    /// Compiles the tree, or what has changed of it.
+    /// Compiles the tree, or only what has changed since the last call.
     fn open(&mut self, exercise: &Exercise, source: &Source) -> Result<(), LearnError> {
         let is_same = |known: &Source| known.location().is_some() && known.location() == source.location();
         if let Some((_, headless)) = self.own.as_mut().filter(|(known, _)| is_same(known)) {
-            // Files that are gone count as changed, too.
+            // Files that were removed count as changed, too.
             let mut paths: BTreeSet<TreePath> = source.list().into_iter().collect();
             paths.extend(headless.reloader().library().dependencies());
             let reload = headless.update(Change::Paths(paths));
@@ -126,7 +126,7 @@ impl GoalMeter {
         Ok(opened)
     }
 
-    /// The own tree and that of the solution, which is compiled once.
+    /// The student's tree and that of the solution, which is compiled once.
     fn both(&mut self, exercise: &Exercise) -> Result<(&mut Headless, &mut Headless), LearnError> {
         if self.solved.is_none() {
             self.solved = Some(self.headless(exercise, exercise.solved_tree())?);
@@ -186,7 +186,7 @@ impl GoalMeter {
         verdict.map_err(|error| HeadlessError::from(error).into())
     }
 
-    /// The picture of the own tree, and that of the solution.
+    /// The picture of the student's tree, and that of the solution.
     fn render(
         &mut self,
         exercise: &Exercise,
@@ -236,7 +236,7 @@ impl GoalMeter {
     }
 }
 
-/// The meter of shaders, which is made again for others.
+/// The BRDF meter of these shaders and settings, created again when they differ.
 fn meter<'a>(
     made: &'a mut Option<Measuring>,
     gpu: &Arc<Gpu>,

@@ -97,7 +97,7 @@ fn reciprocity(meter: &BrdfMeter, within: f64) -> Result<Verdict, GpuError> {
     Ok((is_good, says))
 }
 
-/// The place with the largest difference. NaN is the largest.
+/// The cell with the largest difference. NaN is the largest.
 fn worst(all: impl Iterator<Item = (usize, f64, f64)>) -> Option<(usize, f64, f64)> {
     let off = |(_, found, expected): &(usize, f64, f64)| {
         let difference = (found - expected).abs();
@@ -106,7 +106,7 @@ fn worst(all: impl Iterator<Item = (usize, f64, f64)>) -> Option<(usize, f64, f6
     all.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// A number as people read it.
+/// A number for messages.
 pub(super) fn number(value: f64) -> String {
     match value.abs() {
         _ if !value.is_finite() => "no finite number".to_owned(),
@@ -118,7 +118,7 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
-/// A measurement, with what was expected if that is something else.
+/// A measured value, with the expected one if it differs.
 pub(super) fn with_expected(says: String, is_good: bool, expected: f64) -> String {
     if is_good { says } else { format!("{says}; {} was expected", number(expected)) }
 }

@@ -33,7 +33,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The progress of the runs before. A file that cannot be read counts as none.
+    /// The stored progress. A file that cannot be read counts as no progress.
     pub fn load() -> Self {
         state::load(FILE).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
     }
@@ -44,7 +44,7 @@ impl Progress {
         self.save();
     }
 
-    /// Keeps it for the next run.
+    /// Stores the progress for the next run.
     pub fn save(&self) {
         match serde_json::to_string(self) {
             Ok(text) => state::save(FILE, &text),
@@ -57,7 +57,7 @@ impl Progress {
         self.records.get(&exercise.name).cloned().unwrap_or_default()
     }
 
-    /// Changes the record of an exercise, and keeps the progress if that changes anything.
+    /// Changes the record of an exercise, and stores the progress if that changes anything.
     pub fn update(&mut self, exercise: &Exercise, change: impl FnOnce(&mut Record)) {
         let before = self.of(exercise);
         let record = self.records.entry(exercise.name.clone()).or_default();

@@ -46,7 +46,7 @@ pub(super) fn pictures(found: &Capture, solved: &Capture, within: u8) -> Verdict
     (false, format!("{channel} is {f} of 255 {}; {s} was expected", place(found, index / 4)))
 }
 
-/// Looks for pixels that are no numbers.
+/// Looks for pixels that are NaN or infinite.
 pub(super) fn finite(found: &Capture) -> Verdict {
     let is_bad = |(raw, flag): (&[f32; 4], &bool)| *flag || raw.iter().any(|channel| !channel.is_finite());
     let all = found.raw.iter().zip(&found.not_finite);
@@ -62,7 +62,7 @@ pub(super) fn finite(found: &Capture) -> Verdict {
     }
 }
 
-/// By which factor a pass changes the light of a pixel. `without`: the picture without the pass.
+/// By which factor a pass changes the light of a pixel. `without`: the frame without the pass.
 pub(super) fn light(with: &Capture, without: &Capture, at: (f32, f32), factor: f64, within: f64) -> Verdict {
     let pixel = |part: f32, size: u32| ((part * size as f32) as u32).min(size.saturating_sub(1));
     let (x, y) = (pixel(at.0, with.width), pixel(at.1, with.height));
@@ -78,7 +78,7 @@ pub(super) fn light(with: &Capture, without: &Capture, at: (f32, f32), factor: f
     (is_good, with_expected(says, is_good, factor))
 }
 
-/// Where a pixel is.
+/// The position of a pixel.
 fn place(capture: &Capture, index: usize) -> String {
     let (x, y) = (index as u32 % capture.width.max(1), index as u32 / capture.width.max(1));
     let percent = |at: u32, size: u32| 100 * at / size.max(1);

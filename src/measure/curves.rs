@@ -22,7 +22,7 @@ const AZIMUTHS: u32 = 64;
 /// Angles from the normal of the lobe in space.
 const RINGS: u32 = 32;
 
-/// A material under a light. All properties that it does not have are glTF's defaults.
+/// A material under a light. Other properties have glTF's defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Linear RGB.
@@ -42,7 +42,7 @@ pub struct Curves {
     pub lobes: Vec<Lobe>,
     /// Albedo, linear RGB: see [`Curves::angle_deg`].
     pub albedo: Vec<[f32; 3]>,
-    /// The same with a base color of white: 1 is all of the light.
+    /// The same with a base color of white: 1 means that all light is reflected.
     pub furnace: Vec<[f32; 3]>,
     /// f NoV over the hemisphere. `None` if the tree lacks the stage that measures it.
     pub hemisphere: Option<Hemisphere>,
@@ -51,7 +51,7 @@ pub struct Curves {
 /// f NoV over the hemisphere of directions to the eye, in 1/sr, linear RGB.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hemisphere {
-    /// Azimuths of a ring, once around from that of the mirror direction.
+    /// Azimuths of a ring, once around from the azimuth of the mirror direction.
     pub azimuths: usize,
     /// The values, ring by ring from the normal to the horizon.
     pub values: Vec<[f32; 3]>,
@@ -92,7 +92,7 @@ impl Curves {
     }
 }
 
-/// Compiles what [`Curves::measure`] needs of the shaders `texts`, with the measuring stages and all else of `tree`.
+/// Compiles what [`Curves::measure`] needs of the shaders `texts`, with the measuring stages and the rest of `tree`.
 ///
 /// # Errors
 /// Why there is nothing to measure: a stage that the tree lacks or that does not compile, or a device error.
@@ -112,7 +112,7 @@ pub fn prepare(
             "the shader tree has no {missing}, which measures the BRDF; `specula new DIR` writes a tree with it"
         ));
     }
-    // Stages compile on a shared pool of threads, where an edit would wait for these.
+    // Stages compile on the shared thread pool, where an edit would have to wait for these.
     let own = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
     let mut library = Library::of_part(source, compiler.clone(), &stages);
     let shaders: Arc<ShaderSet> = match own.install(|| library.update(&Change::All)) {

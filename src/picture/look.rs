@@ -21,7 +21,7 @@ const FILES: &str = "specula-files";
 /// The content of a look file, or of the texts in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// The settings. Their files are where the picture found them.
+    /// The settings, with file paths as the picture found them.
     pub settings: Settings,
     /// The model's file, or the name of a built-in one. `None`: the file does not say.
     pub model: Option<PathBuf>,
@@ -34,7 +34,7 @@ pub struct Look {
 pub enum ReadError {
     /// The file cannot be read, or is a PNG without settings. The message names it.
     File(String),
-    /// Its text is no look.
+    /// Its text is not a look file.
     Text(LookError),
 }
 
@@ -62,9 +62,9 @@ impl Files {
         }
     }
 
-    /// The look of these files, seen from the picture's folder.
+    /// The look with these files, resolved from the picture's folder.
     fn look(self, mut settings: Settings, folder: &Path) -> Look {
-        // A file that is gone stays as it is named, and is an error of whoever opens it.
+        // A missing file keeps its name, and whoever opens it reports the error.
         let found = |path: PathBuf| Some(folder.join(&path)).filter(|there| there.exists()).unwrap_or(path);
         let put = |name: &mut String, path: Option<PathBuf>| {
             if let Some(there) = path.map(found).filter(|there| there.exists()) {
@@ -77,7 +77,7 @@ impl Files {
     }
 }
 
-/// The bytes of a PNG file in `folder` with a picture of `work`.
+/// The bytes of a PNG file in `folder`, with the settings and files of `work`.
 pub(super) fn encode(capture: &Capture, work: &SessionState, folder: &Path) -> Result<Vec<u8>, String> {
     let files = toml::to_string(&Files::of(work, folder)).unwrap_or_default();
     let mut bytes = Cursor::new(Vec::new());
@@ -96,7 +96,8 @@ pub(super) fn encode(capture: &Capture, work: &SessionState, folder: &Path) -> R
     Ok(bytes.into_inner())
 }
 
-/// The way from `folder` to a path: with `..` where they part, so that both can move together. As it is where there is none.
+/// The relative path from `folder` to a path, with `..` where they part, so that both can be moved together. Unchanged if there
+/// is none.
 fn from_folder(path: &Path, folder: &Path) -> PathBuf {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let (Ok(path_in_full), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else { return path.to_owned() };
@@ -122,12 +123,12 @@ pub fn read_look(path: &Path) -> Result<Look, ReadError> {
     }
     let (text, files) = decode(path).map_err(|why| ReadError::File(format!("{}: {why}", path.display())))?;
     let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
-    // Of another version, the files may be unreadable.
+    // The files of another version may be unreadable.
     let files: Files = files.and_then(|files| toml::from_str(&files).ok()).unwrap_or_default();
     Ok(files.look(settings, path.parent().unwrap_or(Path::new(""))))
 }
 
-/// The same with values in their ranges.
+/// The same look with values clamped to their ranges.
 ///
 /// # Errors
 /// A message with the position of what is wrong.
@@ -184,8 +185,11 @@ mod tests {
         for name in ["models/duck.glb", "models/sky.hdr"] {
             std::fs::write(first.join(name), b"").unwrap();
         }
-        let mut work =
-            SessionState { model: Some(first.join("models/duck.glb")), tree: Some(first.join("glsl")), ..SessionState::default() };
+        let mut work = SessionState {
+            model: Some(first.join("models/duck.glb")),
+            tree: Some(first.join("glsl")),
+            ..SessionState::default()
+        };
         work.settings.environment.name = first.join("models/sky.hdr").display().to_string();
         let bytes = encode(&capture(), &work, &first.join("pictures")).unwrap();
         std::fs::write(first.join("pictures/look.png"), bytes).unwrap();

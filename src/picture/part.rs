@@ -6,7 +6,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Temporary files of this process that exist at the moment. A signal has no other way to learn about them.
+/// Temporary files of this process that exist at the moment, for the signal handler.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// While this value lives, no thread of the process creates another temporary file.
@@ -18,13 +18,13 @@ pub struct Halt {
 pub fn remove_unfinished() -> Halt {
     let mut unfinished = lock();
     for path in std::mem::take(&mut *unfinished) {
-        // Its writer may have finished the file just now.
+        // Its writer may have just finished the file.
         let _ = fs::remove_file(path);
     }
     Halt { _unfinished: unfinished }
 }
 
-/// Gives the file `path` this content, all or nothing. The content is on the disk before the old file goes.
+/// Replaces the content of `path`, all or nothing. The content is on the disk before the old file is removed.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = PartFile::create(path)?;
     file.write_all(bytes)?;
@@ -48,7 +48,7 @@ impl PartFile {
     /// Renames the file to its name, once its content is on the disk.
     pub fn finish(self) -> io::Result<()> {
         match self.file.sync_all() {
-            // Some file systems cannot sync. Others report only now that the disk is full.
+            // Some file systems cannot sync. Others report only here that the disk is full.
             Err(error) if !matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
                 Err(error)
             }
@@ -79,7 +79,7 @@ struct Part(PathBuf);
 impl Part {
     fn create(path: &Path) -> io::Result<(Self, File)> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // The lock is held while the file is created, so that a signal comes before that or finds the file.
+        // The lock is held while the file is created, so that a signal comes before that or finds the file in the list.
         let mut unfinished = lock();
         let mut part = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
         // Another thread may be writing a file of the same name.

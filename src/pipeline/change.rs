@@ -34,8 +34,8 @@ impl Figure {
     }
 }
 
-/// The numbers of a stage in a line: words that the driver got, and the driver's registers, instructions, spills and size of the code,
-/// as far as it tells them. Spills are left out while there are none.
+/// The statistics of a stage in a line: words that the driver got, and its registers, instructions, spills and code size, as far
+/// as reported. Spills are left out while there are none.
 pub fn figures(now: &StageReport, before: Option<&StageReport>) -> Vec<Figure> {
     let of = |report: Option<&StageReport>| report.and_then(|report| report.largest.clone());
     let before = of(before);
@@ -67,7 +67,7 @@ pub fn figures(now: &StageReport, before: Option<&StageReport>) -> Vec<Figure> {
     std::iter::once(words).chain(told).collect()
 }
 
-/// All that the driver tells of a stage, each with its value before.
+/// All statistics of a stage, each with its previous value.
 pub fn all_statistics(now: &StageReport, before: Option<&StageReport>) -> Vec<(String, Vec<Figure>)> {
     let executables = |report: &StageReport| {
         report.largest.as_ref().and_then(|largest| largest.executables.clone()).unwrap_or_default()
@@ -117,7 +117,7 @@ impl Kind {
         }
     }
 
-    /// The number of this kind: the largest, where a driver has made several machine codes of a stage.
+    /// The statistic of this kind: the largest, where a driver has compiled a stage several times.
     fn of(self, executables: &[Executable]) -> Option<(&Statistic, f64)> {
         let named = |name: &&str| {
             let all = executables.iter().flat_map(|executable| &executable.statistics);
@@ -176,7 +176,7 @@ mod tests {
         let now = report(4469, Some(&[("Register Count", 96.0), ("Binary Size", 9216.0)]));
         let expected = ["4,469 words -212", "96 registers -8", "9,216 bytes of code"];
         assert_eq!(texts(&figures(&now, Some(&before))), expected);
-        // Nothing to compare with, or a driver that has not been asked.
+        // Nothing to compare with, or the driver has not been queried.
         assert_eq!(texts(&figures(&now, None)), ["4,469 words", "96 registers", "9,216 bytes of code"]);
         assert_eq!(texts(&figures(&report(4469, None), Some(&before))), ["4,469 words -212"]);
         // A stage without a pipeline.

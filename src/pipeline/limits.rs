@@ -7,7 +7,8 @@ use crate::shader::graph::stage_beside;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::{Diagnostic, ShaderSet, Source, Stage, StageKind};
 
-/// Passes whose images are too large for the device, stages that it lacks, and buffers that a stage cannot write. `source` is the tree of the shaders.
+/// Errors about passes whose images are too large for the device, stages that it lacks, and buffers that a stage cannot write.
+/// `source` is the tree of the shaders.
 pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     let graph = &shaders.graph;
     let most = gpu.max_image_size();
@@ -29,7 +30,7 @@ pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Dia
     out
 }
 
-/// Buffers without `readonly` in the stages of a device that lets only compute shaders write. `stores`: whether vertex stages and
+/// Errors about buffers without `readonly` on a device that lets only compute shaders write. `stores`: whether vertex stages and
 /// fragment stages can write.
 fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     let mut out = Vec::new();
@@ -50,7 +51,7 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
     out
 }
 
-/// Stages that the device lacks, and uses of `gl_PointSize` that it does not allow.
+/// Errors about stages that the device lacks, and about `gl_PointSize` where it is not allowed.
 fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     const TESSELLATION_POINT_SIZE: u32 = 23;
     const GEOMETRY_POINT_SIZE: u32 = 24;

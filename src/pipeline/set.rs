@@ -124,7 +124,7 @@ impl PipelineSet {
     pub const REQUESTS_KEPT: u64 = 64;
 
     /// Creates a set with the pipelines of `request`, all or nothing. `textures`: those of the shaders' graph. Pipelines of
-    /// `before` whose stages did not change are taken over.
+    /// `before` whose stages did not change are inherited.
     ///
     /// # Errors
     /// The driver rejects a stage or a pipeline.
@@ -167,7 +167,7 @@ impl PipelineSet {
         &self.textures
     }
 
-    /// Takes over the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
+    /// Inherits the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
     fn inherit(&self, before: &Self) {
         let is_same = |path: &str| match (before.shaders.stages.get(path), self.shaders.stages.get(path)) {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -186,8 +186,8 @@ impl PipelineSet {
         }
     }
 
-    /// Takes over the pipelines of `request` whose stages are new, but do the same with the constants of the pipeline: an edit
-    /// of a clear coat changes only materials that have one, and an edit of a model that is not selected changes none.
+    /// Inherits the pipelines of `request` whose stages are new but behave the same with the constants of the pipeline: an edit
+    /// of the clear coat changes only materials that have one, and an edit of a model that is not selected changes none.
     fn inherit_equivalent(&self, before: &Self, request: &PipelineRequest) {
         let is_same = |path: &str, constants: &[(u32, u32)]| {
             let stages = (before.shaders.stages.get(path), self.shaders.stages.get(path));
@@ -199,7 +199,7 @@ impl PipelineSet {
         keys.into_par_iter().for_each(|key| {
             let old = lock(&before.graphics).entries.get(&key).cloned();
             let Some(old) = old.filter(|_| !lock(&self.graphics).entries.contains_key(&key)) else { return };
-            // Its stages name loops by the module that they were compiled as.
+            // Its stages name loops by the module from which they were compiled.
             if old.0.names_loops() {
                 return;
             }
@@ -219,7 +219,7 @@ impl PipelineSet {
         self.build_as(number, request)
     }
 
-    /// [`PipelineSet::build`] for thumbnails, which does not count as a request of its own: it replaces no pipeline of a picture.
+    /// [`PipelineSet::build`] for thumbnails, which does not count as a request: it evicts no pipeline of a frame.
     ///
     /// # Errors
     /// As [`PipelineSet::build`].
@@ -244,7 +244,7 @@ impl PipelineSet {
         Ok(missing.len())
     }
 
-    /// Whether a stage of the pipeline is still to be compiled.
+    /// Whether a stage of the pipeline is not compiled yet.
     fn is_pending(&self, key: &PipelineKey) -> bool {
         key.stages().any(|path| self.is_pending_stage(path))
     }
@@ -330,7 +330,7 @@ impl PipelineSet {
         Ok(pipeline)
     }
 
-    /// Hands what the pipeline of `key` is made of to `then`.
+    /// Calls `then` with the create info of the pipeline of `key`.
     fn make<T>(
         &self,
         key: &PipelineKey,
@@ -339,7 +339,8 @@ impl PipelineSet {
         let pass = &key.pass.0;
         let is_on_display = matches!(pass.phase, RenderPhase::Tonemap | RenderPhase::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
-        let pre_rasterization = pass.pre_rasterization.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
+        let pre_rasterization =
+            pass.pre_rasterization.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
         let pre_rasterization = pre_rasterization.collect::<Result<Vec<_>, GpuError>>()?;
         let fragment = match &*key.modes {
             [] => module(&pass.desc.stage)?,
@@ -349,7 +350,8 @@ impl PipelineSet {
             }
         };
         let pre_rasterization: Vec<_> = pre_rasterization.iter().map(|(flag, module)| (*flag, &**module)).collect();
-        let modules: Vec<&ShaderModule> = pre_rasterization.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
+        let modules: Vec<&ShaderModule> =
+            pre_rasterization.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
         modules.iter().try_for_each(|module| check_bound(module, pass.role()))?;
         let layout = self.layout(&pass.inputs, &modules, pass.desc.draws_model());
         let layout = layout.map_err(|error| of_pass(pass, error))?;
@@ -384,7 +386,7 @@ fn flag_of(kind: StageKind) -> vk::ShaderStageFlags {
     }
 }
 
-/// Refuses a module that reads a resource which nothing binds: the driver would crash, or read 0.
+/// Refuses a module that reads an unbound resource: the driver would crash, or read 0.
 fn check_bound(module: &ShaderModule, role: StageRole) -> Result<(), GpuError> {
     match module.usage.resources.iter().find(|resource| !role.binds(**resource)) {
         None => Ok(()),
@@ -394,7 +396,7 @@ fn check_bound(module: &ShaderModule, role: StageRole) -> Result<(), GpuError> {
     }
 }
 
-/// Names the pass in an error about what it reads.
+/// Names the pass in an error about its inputs.
 fn of_pass(pass: &GraphPass, error: GpuError) -> GpuError {
     match error {
         GpuError::Texture(message) => GpuError::Texture(format!("the pass {} is too large: {message}", pass.name())),

@@ -9,9 +9,9 @@ use super::{Geometry, GoodTexts, RecoveryState, SessionState};
 use crate::message;
 use crate::shader::{ShaderSet, TreePath, text_hash};
 
-/// How often a moving camera and the place of the window are recorded.
+/// How often a moving camera and the window's position are recorded.
 const CAMERA_INTERVAL: Duration = Duration::from_millis(250);
-/// A process that has lived so long ends a row of losses.
+/// A process that has lived this long ends a row of losses.
 const LONG_LIFE: Duration = Duration::from_secs(60);
 
 /// Writes [`RecoveryState`] and [`GoodTexts`] into the folder of the session. Clones record the same session.
@@ -19,10 +19,10 @@ const LONG_LIFE: Duration = Duration::from_secs(60);
 pub struct Recorder(Arc<Mutex<Inner>>);
 
 struct Inner {
-    /// `None` if nobody would read the records.
+    /// `None` if there is no supervisor to read the records.
     folder: Option<PathBuf>,
     state: RecoveryState,
-    /// Number of the work in `state`, which increases with every change but one of the camera.
+    /// Number of the session state in `state`, which increases with every change except those of the camera.
     attempt: u64,
     /// The texts in `good.json`, and the generation of their set in this process.
     good: GoodTexts,
@@ -39,20 +39,24 @@ impl Recorder {
         Self(Arc::new(Mutex::new(Inner { folder, state, attempt: 0, good, generation: 0, start, checked })))
     }
 
-    /// Whether the process before was lost and no new text has been drawn since. Then nothing is done ahead of time, because no
-    /// text would be suspected.
+    /// Safe mode: the previous process was lost and no new text has been drawn since. Then nothing is built ahead of time,
+    /// because no text would be suspected.
     pub fn is_safe_mode(&self) -> bool {
         self.lock().state.losses > 0
     }
 
-    /// The record of the process before.
+    /// The record of the previous process.
     pub fn state(&self) -> RecoveryState {
         self.lock().state.clone()
     }
 
-    /// Records that these texts are about to be compiled and used, beside those that have been tried but not drawn. `refused`
-    /// texts are not used. Returns what had been tried before.
-    pub fn try_texts(&self, texts: BTreeMap<TreePath, u64>, quarantined: BTreeMap<TreePath, u64>) -> BTreeMap<String, u64> {
+    /// Records that these texts are about to be compiled and used, in addition to the current suspects. `quarantined` texts are
+    /// not used. Returns the previous suspects.
+    pub fn try_texts(
+        &self,
+        texts: BTreeMap<TreePath, u64>,
+        quarantined: BTreeMap<TreePath, u64>,
+    ) -> BTreeMap<String, u64> {
         let mut inner = self.lock();
         let before = inner.state.suspects.clone();
         inner.state.suspects.extend(texts.into_iter().map(|(path, hash)| (path.to_string(), hash)));
@@ -68,8 +72,8 @@ impl Recorder {
         inner.write();
     }
 
-    /// Records what the next frame shows, before it is submitted. Returns the number of this work for [`Recorder::drawn`]. A moving
-    /// camera and the `window` are recorded now and then.
+    /// Records the state that the next frame shows, before it is submitted. Returns its number for [`Recorder::drawn`]. A moving
+    /// camera and the `window` are recorded at intervals.
     pub fn begin(&self, work: &SessionState, window: impl FnOnce() -> Geometry) -> u64 {
         let mut inner = self.lock();
         let is_alike = inner.state.work.as_ref().is_some_and(|old| old.is_alike(work));
@@ -87,7 +91,7 @@ impl Recorder {
         inner.attempt
     }
 
-    /// Records that the device has drawn the work with this number.
+    /// Records that the device has drawn the state with this number.
     pub fn drawn(&self, attempt: u64) {
         let mut inner = self.lock();
         let is_new = match (&inner.state.work, &inner.state.good) {
@@ -144,7 +148,7 @@ impl Inner {
         }
     }
 
-    /// Stops recording: the window goes on, but nothing of it survives a loss.
+    /// Stops recording: the window continues, but nothing of it survives a loss.
     fn fail(&mut self, error: &std::io::Error) {
         // The folder is removed when the program ends.
         if self.folder.take().is_some_and(|folder| !folder.exists()) {

@@ -29,7 +29,7 @@ fn a_new_text_is_refused_and_the_settings_stay() {
     assert_eq!(next.work, Some(work));
     assert_eq!(next.losses, 1);
     assert!(next.suspects.is_empty());
-    // The same happens again with a second text: both are refused.
+    // The same happens again with a second text: both are quarantined.
     let again = RecoveryState { suspects: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
     let again = again.after_loss(CAUSE, &good);
     assert_eq!((again.quarantined.len(), again.losses), (2, 2));

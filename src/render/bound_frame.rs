@@ -28,7 +28,8 @@ pub struct BoundFrame {
 }
 
 impl BoundFrame {
-    /// The same pipelines and resources with another state. It must need the same ones: only camera, lights or time may differ.
+    /// The same pipelines and resources with another state, which must need the same ones: only camera, lights or time may
+    /// differ.
     #[must_use]
     pub fn with_state(&self, state: FrameState) -> Self {
         Self { state: Arc::new(state), ..self.clone() }
@@ -44,13 +45,13 @@ impl BoundFrame {
         self.state.lights_and_suns(self.environment.scale_and_suns())
     }
 
-    /// Whether both draw the same picture, bit for bit.
+    /// Whether both draw the same frame, bit for bit.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.has_same_resources(other) && self.state.is_same(&other.state)
     }
 
-    /// Whether the model looks the same in both: nothing differs but the time, and what passes after the model make of it. A
-    /// mean of many frames then goes on.
+    /// Whether the model looks the same in both: they differ only in the time and in what passes after the model do with it.
+    /// Accumulation then continues.
     pub(super) fn is_same_model(&self, other: &Self) -> bool {
         match self.has_animated_model() {
             true => self.is_same(other),
@@ -58,17 +59,17 @@ impl BoundFrame {
         }
     }
 
-    /// Whether the picture changes while the time runs: a stage reads the clock, or a pass what it drew before.
+    /// Whether the frame changes as time passes: a stage reads the clock, or a pass reads its previous output.
     pub fn is_animated(&self) -> bool {
         self.pipelines.read_frame(&CLOCK) || self.state.pipelines.passes.iter().any(|pass| pass.moves)
     }
 
-    /// Whether a stage asks for keys.
+    /// Whether a stage reads keys.
     pub fn reads_keys(&self) -> bool {
         self.pipelines.read_frame(std::slice::from_ref(&KEYS))
     }
 
-    /// Whether the model, or a pass that it reads, changes while the time runs.
+    /// Whether the model, or a pass that it reads, changes as time passes.
     fn has_animated_model(&self) -> bool {
         let request = &self.state.pipelines;
         let passes = || request.passes.iter().filter(|pass| pass.phase <= RenderPhase::Mean);
@@ -80,7 +81,7 @@ impl BoundFrame {
             || before().any(|pass| compute(&pass.desc.stage))
     }
 
-    /// Whether a stage asks how the camera has moved since the frame before.
+    /// Whether a stage reads the camera of the previous frame.
     pub(super) fn reads_motion(&self) -> bool {
         self.pipelines.read_frame(std::slice::from_ref(&MOTION))
     }

@@ -30,8 +30,8 @@ pub(crate) fn bindings(
     DescriptorSet::new(layouts, SET_TASK, more(writer))
 }
 
-/// Descriptor set 0 of a bake: the bytes of the block `Params`. Nothing else of the set has a meaning there, and the contract check
-/// refuses a stage that reads it.
+/// Descriptor set 0 of a bake: only the bytes of the block `Params`. The contract check refuses a stage that reads anything else
+/// in the set.
 pub(crate) fn frame_set(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,

@@ -11,23 +11,23 @@ use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
 use super::environment::bake::{BakeControl, BakeError};
 use super::environment::maps::GpuEnvironment;
-use super::paths::{PathTracingError, PathTracingKey, PathTracingRequest, PathTracing};
+use super::paths::{PathTracing, PathTracingError, PathTracingKey, PathTracingRequest};
 use super::scene::{GpuModel, GpuScene};
 use crate::frame::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
 use crate::pipeline::{BoundPipelines, PipelineSet};
 
-/// The resources of a state that [`Resources`] does not have yet.
+/// The resources that a state needs and that [`Resources`] does not have yet.
 #[derive(Clone, Debug, Default)]
 pub struct Missing {
     /// Whether the newest set lacks pipelines.
     pub pipelines: bool,
-    /// Tables of the BRDF to bake.
+    /// BRDF lookup tables to bake.
     pub tables: Option<TablesKey>,
     /// An environment to bake.
     pub environment: Option<EnvironmentKey>,
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
-    /// The request for what random paths trace. It depends on the environment, so it is missing only once that is there.
+    /// The request for path-tracing resources. They depend on the environment, so this is set only once the environment is there.
     pub path_tracing: Option<PathTracingRequest>,
 }
 
@@ -43,7 +43,7 @@ impl Missing {
 struct Slot<K, T> {
     made: Option<(K, Arc<T>)>,
     failed: Option<K>,
-    /// The resource of a state without a key, and of a failure before the first success.
+    /// The resource of a state without a key, and the fallback after a failure before the first success.
     none: Arc<T>,
 }
 
@@ -66,7 +66,7 @@ impl<K: PartialEq, T> Slot<K, T> {
         self.made.as_ref().map_or(&self.none, |(_, resource)| resource)
     }
 
-    /// The last good resource, if the wanted one differs from it only by an edit.
+    /// The last good resource, if it differs from the requested one only by an edit.
     fn before_edit(&self, is_edit: impl Fn(&K) -> bool) -> Option<&Arc<T>> {
         self.made.as_ref().filter(|(key, _)| is_edit(key)).map(|(_, resource)| resource)
     }
@@ -85,8 +85,8 @@ impl<K: Clone, T> Clone for Slot<K, T> {
     }
 }
 
-/// Pipelines, model, environment, measured BRDF and what random paths trace: the newest of each. A clone shares what is there, and
-/// then goes its own way.
+/// Pipelines, model, environment, measured BRDF and path-tracing resources: the newest of each. A clone shares all of them, and
+/// then changes independently.
 #[derive(Clone)]
 pub struct Resources {
     gpu: Arc<Gpu>,
@@ -101,7 +101,7 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// Resources without pipelines or model. `ambient` is the uniform radiance that stands for a missing environment.
+    /// Resources without pipelines or model. `ambient` is the uniform radiance that replaces a missing environment.
     ///
     /// # Errors
     /// No memory left.
@@ -145,7 +145,7 @@ impl Resources {
         self.model.as_ref()?.texture(source)
     }
 
-    /// Takes baked tables of the BRDF; `None` if the bake failed.
+    /// Stores baked BRDF tables; `None` if the bake failed.
     pub fn set_tables(&mut self, key: TablesKey, tables: Option<Arc<Tables>>) {
         self.tables.set(key, tables);
     }
@@ -155,17 +155,17 @@ impl Resources {
         self.tables.made.as_ref().map(|(_, tables)| tables)
     }
 
-    /// Takes a baked environment; `None` if the bake failed.
+    /// Stores a baked environment; `None` if the bake failed.
     pub fn set_environment(&mut self, key: EnvironmentKey, environment: Option<Arc<GpuEnvironment>>) {
         self.environment.set(key, environment);
     }
 
-    /// Takes a measured BRDF; `None` if it could not be read.
+    /// Stores a measured BRDF; `None` if it could not be read.
     pub fn set_measured(&mut self, key: MeasuredKey, buffer: Option<Arc<Buffer>>) {
         self.measured.set(key, buffer);
     }
 
-    /// Takes what random paths trace; `None` if it could not be built.
+    /// Stores path-tracing resources; `None` if they could not be built.
     pub fn set_path_tracing(&mut self, key: PathTracingKey, path_tracing: Option<Arc<PathTracing>>) {
         self.path_tracing.set(key, path_tracing);
     }
@@ -175,21 +175,21 @@ impl Resources {
         self.environment.last_good()
     }
 
-    /// The environment that was baked last, with its key: the next bake takes over the parts that are the same.
+    /// The environment that was baked last, with its key: the next bake reuses the parts that are unchanged.
     pub fn baked_environment(&self) -> Option<&(EnvironmentKey, Arc<GpuEnvironment>)> {
         self.environment.made.as_ref()
     }
 
-    /// The environment of `state`, or a stand-in for one that is still being baked. `None` while there is neither.
+    /// The environment of `state`, or a fallback while it is being baked. `None` while there is neither.
     fn environment_of(&self, state: &FrameState, is_first: bool) -> Option<&Arc<GpuEnvironment>> {
-        // An edit of the bake stages shows at once, in the light that the previous shaders baked.
+        // An edit of the bake stages appears at once, in the light that the previous shaders baked.
         let is_edit = |key: &EnvironmentKey| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
         let made = self.environment.get(state.environment.as_ref());
         let made = made.or_else(|| self.environment.before_edit(is_edit));
         made.or_else(|| is_first.then(|| self.environment.last_good()))
     }
 
-    /// Identifies what the paths of `state` trace; `None` for a mode without random paths.
+    /// Identifies the path-tracing resources of `state`; `None` for a mode without path tracing.
     fn path_tracing_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<PathTracingKey> {
         let scene = state.scene.clone().filter(|_| state.pipelines.traces);
         state.pipelines.follows_paths().then(|| PathTracingKey { scene, environment: environment.clone() })
@@ -200,10 +200,15 @@ impl Resources {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();
         let measured = state.measured.as_ref();
-        let path_tracing = self.environment_of(state, false).and_then(|environment| Self::path_tracing_key(state, environment));
+        let path_tracing =
+            self.environment_of(state, false).and_then(|environment| Self::path_tracing_key(state, environment));
         let path_tracing = path_tracing.filter(|key| self.path_tracing.get(Some(key)).is_none());
         Missing {
-            path_tracing: path_tracing.map(|key| PathTracingRequest { key, model: self.model.clone(), before: self.path_tracing.made.clone() }),
+            path_tracing: path_tracing.map(|key| PathTracingRequest {
+                key,
+                model: self.model.clone(),
+                before: self.path_tracing.made.clone(),
+            }),
             pipelines: !has_pipelines,
             tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
@@ -211,9 +216,9 @@ impl Resources {
         }
     }
 
-    /// Binds `state`, or returns `None` if a resource is missing. An edit of the shaders shows at once, in the light that the
-    /// previous shaders baked. With `is_first`, the last environment (at first the ambient light) may replace one that is still
-    /// being baked, so that the first picture appears early.
+    /// Binds `state`, or returns `None` if a resource is missing. An edit of the shaders appears at once, in the light that the
+    /// previous shaders baked. With `is_first`, the last environment (initially the ambient light) may replace one that is still
+    /// being baked, so that the first frame appears early.
     ///
     /// # Errors
     /// No memory left for the materials.
@@ -258,9 +263,9 @@ impl Resources {
         Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, path_tracing }))
     }
 
-    /// Binds `state`, whose shaders are older than the newest, to the pipelines of their own `set`. Its light and tables are those of
-    /// `like`, a frame with the same shaders, or the newest ones if these were baked by stages that are still the same. Returns
-    /// `None` if a resource is missing.
+    /// Binds `state`, whose shaders are older than the newest, to the pipelines of their own `set`. Light and tables are those of
+    /// `like`, a frame with the same shaders, or the newest ones if their bake stages are unchanged. Returns `None` if a resource
+    /// is missing.
     ///
     /// # Errors
     /// No memory left for the materials.
@@ -328,7 +333,7 @@ impl Resources {
     }
 
     /// Bakes all parts of an environment with the newest pipelines on this thread. `from_disk` allows a cached result. On failure
-    /// the last good environment stays.
+    /// the last good environment stays in use.
     ///
     /// # Errors
     /// As [`GpuEnvironment::bake`].
@@ -381,7 +386,7 @@ pub enum ProvideError {
     /// The measured BRDF could not be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),
-    /// The model cannot be traced.
+    /// The path-tracing resources could not be built.
     #[error(transparent)]
     Trace(#[from] PathTracingError),
     /// A device error.
@@ -392,7 +397,7 @@ pub enum ProvideError {
     Stale,
 }
 
-/// Whether the pipelines of `state` add all suns that the images of the environment leave out.
+/// Whether the pipelines of `state` light the model with every sun that the images of the environment leave out.
 fn adds_suns_of(state: &FrameState, environment: &GpuEnvironment) -> bool {
     state.environment.is_none() || state.pipelines.sun_count >= environment.sun_count()
 }

@@ -12,7 +12,7 @@ use crate::interface::{BvhNode, MAX_BVH_DEPTH};
 const BINS: usize = 12;
 /// A leaf has at most this many triangles. Nodes of so few are not split further, which halves the time to build.
 const LEAF: usize = 4;
-/// Below this depth, nodes are split in the middle of their list. 2^31 triangles then still stay above [`MAX_BVH_DEPTH`].
+/// Below this depth, nodes are split in the middle of their list, so that 2^31 triangles still stay above [`MAX_BVH_DEPTH`].
 const BALANCED_DEPTH: u32 = MAX_BVH_DEPTH - 32;
 
 /// The hierarchy.
@@ -171,7 +171,7 @@ fn build(items: &mut [Item], start: usize, depth: u32) -> Vec<BvhNode> {
 /// [`build`] without threads, and without copying nodes.
 fn build_on_one_thread(items: &mut [Item], start: usize, depth: u32) -> Vec<BvhNode> {
     let mut nodes = vec![BvhNode::default()];
-    // Nodes that have no content yet: index, range of items, depth.
+    // Nodes without content yet: index, range of items, depth.
     let mut waiting = vec![(0, 0..items.len(), depth)];
     while let Some((at, range, depth)) = waiting.pop() {
         let own = &mut items[range.clone()];

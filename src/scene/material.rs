@@ -14,7 +14,7 @@ pub enum AlphaMode {
     Opaque,
     /// Fragments below the cutoff are discarded.
     Mask,
-    /// Fragments are blended over the picture behind.
+    /// Fragments are blended over what lies behind them.
     Blend,
 }
 

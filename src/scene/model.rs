@@ -34,7 +34,7 @@ pub struct Model {
     pub cameras: Vec<Camera>,
     /// World bounds of all instances.
     pub bounds: Bounds,
-    /// The outermost vertices in world space, for framing. If empty, framing uses the corners of `bounds`.
+    /// The outermost vertices in world space (hull points), for framing. If empty, framing uses the corners of `bounds`.
     pub outline: Vec<Vec3>,
     /// Absolute paths of all files that were read. The window watches them.
     pub files: Vec<PathBuf>,

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::model::{Instance, Model, Primitive};
 
-/// Number of directions in which the farthest point is searched. More directions fit closer; these find the edge of a
-/// sphere to 1 %.
+/// Number of directions in which the outermost point is searched. More directions fit closer; this many find the edge of a sphere
+/// to 1 %.
 const DIRECTIONS: usize = 192;
 /// In a model with more instances than this, the corners of its bounds stand for each primitive. A box that is too
 /// large for its primitive hardly matters among so many.
@@ -18,9 +18,8 @@ const MOST_POINTS: usize = 1 << 21;
 /// Points that one task searches.
 const POINTS_A_TASK: usize = 4096;
 
-/// The model's outermost points, world space: the farthest point in each of many directions. They are vertices that
-/// some index refers to, as in the model's bounds. The work grows with the number of points and never faster than the
-/// number of instances.
+/// The model's hull points, world space: the farthest point in each of many directions. They are vertices that some index refers
+/// to, as in the model's bounds. The work grows with the number of points and never faster than the number of instances.
 pub fn outline(model: &Model) -> Vec<Vec3> {
     let directions = Directions::new();
     let mut points: Vec<Vec<Vec3>> = if model.instances.len() > MOST_INSTANCES {

@@ -5,10 +5,10 @@ use include_dir::{Dir, include_dir};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/gallery");
 
-/// Width and height of a picture, in pixels.
+/// Width and height of a preview, in pixels.
 pub const PICTURE_SIZE: (u32, u32) = (192, 144);
 
-/// All pictures in one image, side by side.
+/// All previews in one image, side by side.
 pub struct BuiltInPictures {
     /// The image.
     pub image: RgbaImage,
@@ -16,7 +16,7 @@ pub struct BuiltInPictures {
     pub names: Vec<String>,
 }
 
-/// Decodes the pictures, which takes some milliseconds. One that is damaged stays black.
+/// Decodes the previews, which takes some milliseconds. A damaged one stays black.
 pub fn built_in_pictures() -> BuiltInPictures {
     let files: Vec<_> = FILES.files().collect();
     let (width, height) = PICTURE_SIZE;

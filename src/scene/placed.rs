@@ -5,7 +5,7 @@ use glam::{Mat4, Vec3};
 use super::model::{Bounds, Model};
 
 impl Model {
-    /// The model moved by `transform`, which keeps angles, with its lights and cameras. It shares the geometry.
+    /// The model moved by `transform`, which preserves angles, with its lights and cameras. It shares the geometry.
     #[must_use]
     pub fn placed(&self, transform: Mat4) -> Self {
         let mut model = self.clone();
@@ -13,7 +13,7 @@ impl Model {
             instance.world_from_object = transform * instance.world_from_object;
         }
         model.bounds = model.instance_bounds();
-        // The outermost points stay the outermost.
+        // The hull points remain the hull points.
         let place = |point: &mut Vec3| *point = transform.transform_point3(*point);
         model.outline.iter_mut().for_each(place);
         let turn = |direction: Vec3| transform.transform_vector3(direction).normalize_or(direction);

@@ -18,14 +18,14 @@ pub fn override_material(settings: &MaterialOverride) -> Material {
     }
 }
 
-/// Replaces single channels of a material. The channels' textures read as 1 then.
+/// Replaces single channels of a material. The textures of these channels then read as 1.
 pub fn replace_channels(material: &mut Material, settings: &MaterialOverride) {
     let is_replaced = |channel| settings.channels.has(channel);
     material.constant = settings.channels;
     if is_replaced(MaterialChannel::BaseColor) {
         material.base_color_factor = Vec3::from(settings.base_color).extend(material.base_color_factor.w);
     }
-    // Specular-glossiness has neither: its metals are those with a bright specular color.
+    // Specular-glossiness has neither: its metals are materials with a bright specular color.
     if is_replaced(MaterialChannel::Metallic) && !material.specular_glossiness {
         material.metallic_factor = settings.metallic;
     }
@@ -36,7 +36,7 @@ pub fn replace_channels(material: &mut Material, settings: &MaterialOverride) {
     if is_replaced(MaterialChannel::Anisotropy) {
         let rotation = settings.anisotropy_rotation.to_radians();
         material.anisotropy = Anisotropy { strength: settings.anisotropy, rotation };
-        // The texture also has a direction.
+        // The texture also holds the direction.
         material.textures[TEXTURE_ANISOTROPY as usize] = None;
     }
 }

@@ -20,12 +20,12 @@ impl Model {
         Some(isolated.iter().zip(hidden).map(|(isolated, hidden)| *isolated && !hidden).collect())
     }
 
-    /// Whether each instance is one of those that `names` name.
+    /// Whether each instance is named in `names`.
     pub fn named(&self, names: &[String]) -> Vec<bool> {
         let is_named = |name: &str| names.iter().any(|named| named == name);
         let mut nodes = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            // A parent comes first.
+            // Parents come first.
             let is_below = node.parent.is_some_and(|parent| nodes[parent]);
             nodes.push(is_below || is_named(&node.name) || is_named(&number(node)));
         }
@@ -36,7 +36,7 @@ impl Model {
         self.instances.iter().map(is).collect()
     }
 
-    /// The name by which settings find a node and no other: its own, or its number.
+    /// The unique name by which settings refer to a node: its own, or its number.
     pub fn node_key(&self, at: usize) -> String {
         let Some(node) = self.nodes.get(at) else { return String::new() };
         let has = |other: &Node| other.name == node.name;
@@ -65,7 +65,7 @@ impl Model {
         self.nodes.iter().position(|node| node.index == instance.node)
     }
 
-    /// The name by which settings find a material: its own, or its number in the file.
+    /// The name by which settings refer to a material: its own, or its number in the file.
     pub fn material_key(&self, index: usize) -> String {
         match self.materials.get(index) {
             Some(material) if !material.name.is_empty() => material.name.clone(),
@@ -74,7 +74,7 @@ impl Model {
         }
     }
 
-    /// A sentence about the first name in `settings` that no node and no primitive has.
+    /// A sentence about the first name in `settings` that matches no node and no primitive.
     pub fn unknown_part(&self, settings: &SceneSettings) -> Option<String> {
         let of = |list: &'static str, names: &[String]| {
             let unknown = names.iter().find(|name| !self.has_part(name))?;
@@ -86,7 +86,7 @@ impl Model {
         of("hidden", &settings.hidden).or_else(|| of("isolated", &settings.isolated))
     }
 
-    /// A sentence about the first of these names that no material has.
+    /// A sentence about the first of these names that matches no material.
     pub fn unknown_material<'a>(&self, mut names: impl Iterator<Item = &'a String>) -> Option<String> {
         let known: Vec<String> = (0..self.materials.len()).map(|index| self.material_key(index)).collect();
         let unknown = names.find(|name| !known.contains(name))?;
@@ -102,7 +102,7 @@ impl Model {
     }
 }
 
-/// Whether a name can stand in a list of names.
+/// Whether a name can be used in a list of names.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && !name.contains(',') && !name.starts_with('#')
 }

@@ -10,7 +10,8 @@ use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::pipeline::PipelineSet;
 use crate::render::{
-    BakeControl, BakeError, GpuEnvironment, Resources, Tables, PathTracingKey, PathTracingRequest, PathTracing, read_measured,
+    BakeControl, BakeError, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables,
+    read_measured,
 };
 
 /// Messages of the baker.
@@ -19,11 +20,11 @@ pub(crate) enum BakeMessage {
     Progress(u64, f32, String),
     /// The result of a bake.
     Environment(u64, Result<Arc<GpuEnvironment>, BakeError>),
-    /// Tables of the BRDF.
+    /// BRDF lookup tables.
     Tables(TablesKey, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
-    /// The resources of random paths.
+    /// The resources for path tracing.
     PathTracing(PathTracingKey, Result<Arc<PathTracing>, String>),
 }
 
@@ -39,11 +40,11 @@ pub(crate) struct Baker {
     gpu: Arc<Gpu>,
     sender: MessageSender,
     bake: Option<Bake>,
-    /// The newest tables. The window takes them, and ignores older ones.
+    /// The newest tables. The window ignores results for older ones.
     tables: Option<TablesKey>,
-    /// The newest read. The window takes its result, and ignores those of older ones.
+    /// The newest read. The window ignores results of older ones.
     reading: Option<MeasuredKey>,
-    /// The newest hierarchy that is being built. The window takes its result, and ignores those of older ones.
+    /// The path-tracing resources being built. The window ignores results for older ones.
     tracing: Option<PathTracingKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
@@ -70,8 +71,9 @@ impl Baker {
         self.bake.as_ref().map(|bake| &bake.progress)
     }
 
-    /// Bakes `key` with `set` and cancels any other bake, except an earlier step of the same slider: that one ends and shows, and the
-    /// newest step follows. `None` only cancels. `resources` has the last bake, of which unchanged parts are taken over.
+    /// Bakes `key` with `set` and cancels any other bake, except that of an earlier step of the same slider: that one ends and
+    /// shows, and the newest step follows. `None` only cancels. `resources` has the last bake, of which unchanged parts are
+    /// reused.
     pub(crate) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
         let running = self.bake.as_ref().map(|bake| &bake.key);
         let is_step = running.zip(key.as_ref()).is_some_and(|(running, key)| key.is_step_of(running));
@@ -93,13 +95,13 @@ impl Baker {
             let superseded = || newest.load(Ordering::SeqCst) != number;
             let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
             let result = GpuEnvironment::bake(&set, &key, before.as_ref(), &control);
-            // Release them before the window takes the result.
+            // Release them before the window receives the result.
             drop((set, before));
             sender.send(Message::Bake(BakeMessage::Environment(number, result)));
         });
     }
 
-    /// Bakes the tables of `key` with `set`, unless they are being baked, or those of an earlier step of the same slider are.
+    /// Bakes the tables of `key` with `set`, unless they, or those of an earlier step of the same slider, are being baked.
     pub(crate) fn bake_tables(&mut self, set: &Arc<PipelineSet>, key: Option<TablesKey>, resources: &Resources) {
         let is_running = |key: &TablesKey| self.tables.as_ref().is_some_and(|running| key.is_step_of(running));
         let Some(key) = key.filter(|key| !is_running(key)) else { return };
@@ -124,7 +126,7 @@ impl Baker {
         });
     }
 
-    /// Builds what random paths trace, unless it is being built.
+    /// Builds the path-tracing resources, unless they are being built.
     pub(crate) fn build_path_tracing(&mut self, request: Option<PathTracingRequest>) {
         let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
         self.tracing = Some(request.key().clone());
@@ -132,7 +134,7 @@ impl Baker {
         self.spawn(TaskKind::PathTracing(request.key().clone()), move |sender| {
             let result = PathTracing::new(&gpu, &request).map_err(|error| error.to_string());
             let key = request.key().clone();
-            // Release the device objects before the window takes the result.
+            // Release the device objects before the window receives the result.
             drop((gpu, request));
             return_freed_memory();
             sender.send(Message::Bake(BakeMessage::PathTracing(key, result)));
@@ -156,7 +158,7 @@ impl Baker {
         self.tables.take_if(|tables| tables == key).is_some()
     }
 
-    /// Marks a hierarchy as built. Returns whether it is the newest.
+    /// Marks path-tracing resources as built. Returns whether they are the newest.
     pub(crate) fn has_path_tracing(&mut self, key: &PathTracingKey) -> bool {
         self.tracing.take_if(|tracing| tracing == key).is_some()
     }

@@ -16,7 +16,7 @@ use crate::shader::{Compiler, Source};
 pub(crate) struct Checked {
     /// Number of the request.
     pub(crate) number: u64,
-    /// A finding for each goal, or why there are none.
+    /// A finding for each goal, or the reason why there are none.
     pub(crate) result: Result<Vec<Finding>, String>,
 }
 
@@ -26,7 +26,7 @@ struct Request {
     source: Source,
 }
 
-/// The thread, which starts with the first request. Dropping this waits for the goal that is being measured.
+/// The checker's thread, which starts with the first request. Dropping this waits for the goal that is being measured.
 pub(crate) struct Checker {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
@@ -68,12 +68,12 @@ impl Checker {
         number
     }
 
-    /// Ends the measurement that is under way. Returns the number of the next request.
+    /// Cancels the measurement that is under way. Returns the number of the next request.
     pub(crate) fn supersede(&self) -> u64 {
         self.newest.fetch_add(1, Ordering::Relaxed) + 1
     }
 
-    /// Ends the measurement that is under way, from another thread.
+    /// Cancels the measurement that is under way, from another thread.
     pub(crate) fn superseding(&self) -> impl Fn() + Send + 'static {
         let newest = self.newest.clone();
         move || _ = newest.fetch_add(1, Ordering::Relaxed)

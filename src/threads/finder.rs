@@ -15,7 +15,7 @@ use crate::settings::Settings;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Compiler, FirstNotFinite, Mode, ShaderSet, Source};
 
-/// Copies of what a picture is drawn with, the pixel, and the mode whose value is not finite there.
+/// Copies of what a frame is drawn with, the pixel, and the mode whose value is not finite there.
 pub(crate) struct FindRequest {
     pub(crate) compiler: Arc<Compiler>,
     pub(crate) settings: Settings,
@@ -29,7 +29,7 @@ pub(crate) struct FindRequest {
     pub(crate) source: Source,
 }
 
-/// The window's end of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
+/// The window's handle of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
 pub(crate) struct Finder {
     gpu: Arc<Gpu>,
     sender: MessageSender,
@@ -44,7 +44,7 @@ impl Finder {
         Self { gpu: gpu.clone(), sender: sender.clone(), jobs: None, newest: Arc::default(), thread: None }
     }
 
-    /// Looks for the statement, instead of what was requested before. Returns the number of the request.
+    /// Searches for the statement and drops the previous request. Returns the number of the request.
     pub(crate) fn find(&mut self, request: FindRequest) -> u64 {
         let number = self.cancel();
         let is_over = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
@@ -61,7 +61,7 @@ impl Finder {
         number
     }
 
-    /// Ends the work of the last request before its next step. Returns a new number.
+    /// Cancels the last request before its next step. Returns a new number.
     pub(crate) fn cancel(&mut self) -> u64 {
         self.newest.fetch_add(1, Ordering::SeqCst) + 1
     }

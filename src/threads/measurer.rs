@@ -17,7 +17,7 @@ use crate::shader::{Compiler, ShaderSet, Source};
 /// Request for curves.
 #[derive(Clone)]
 pub(crate) struct CurvesRequest {
-    /// The newest shaders, and those before the last edit.
+    /// The newest shaders, and the previous ones.
     pub(crate) shaders: [Option<Arc<ShaderSet>>; 2],
     /// The tree that the measuring stages come from.
     pub(crate) tree: Source,
@@ -29,14 +29,14 @@ pub(crate) struct CurvesRequest {
 pub(crate) struct Measured {
     /// The number of the request.
     pub(crate) number: u64,
-    /// The curves of the newest shaders, or why there are none.
+    /// The curves of the newest shaders, or the reason why there are none.
     pub(crate) now: Result<Curves, String>,
-    /// Those before the last edit, if they could be measured.
+    /// The curves of the previous shaders, if they could be measured.
     pub(crate) before: Option<Curves>,
     pub(crate) ms: f64,
 }
 
-/// The window's end of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
+/// The window's handle of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
 pub(crate) struct Measurer {
     gpu: Arc<Gpu>,
     sender: MessageSender,
@@ -51,7 +51,7 @@ impl Measurer {
         Self { gpu: gpu.clone(), sender: sender.clone(), jobs: None, newest: Arc::default(), thread: None }
     }
 
-    /// Measures, instead of what was requested before. Returns the number of the request.
+    /// Starts a measurement and drops the previous request. Returns the number of the request.
     pub(crate) fn measure(&mut self, compiler: &Arc<Compiler>, request: CurvesRequest) -> u64 {
         let number = self.cancel();
         let is_over = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
@@ -59,7 +59,8 @@ impl Measurer {
             let (sender, inbox) = unbounded();
             let meters = BrdfMeters { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
             let newest = self.newest.clone();
-            self.thread = Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(meters, &inbox, &newest, sender)));
+            self.thread =
+                Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(meters, &inbox, &newest, sender)));
             self.jobs = Some(sender);
         }
         if let Some(jobs) = &self.jobs {
@@ -69,7 +70,7 @@ impl Measurer {
         number
     }
 
-    /// Ends the work of the last request before its next step. Returns a new number.
+    /// Cancels the last request before its next step. Returns a new number.
     pub(crate) fn cancel(&mut self) -> u64 {
         self.newest.fetch_add(1, Ordering::SeqCst) + 1
     }
@@ -107,7 +108,7 @@ fn run(mut meters: BrdfMeters, inbox: &Receiver<(u64, CurvesRequest)>, newest: &
     }
 }
 
-/// The compiled measuring stages of the newest shaders and of those before.
+/// The compiled measuring stages of the newest shaders and of the previous ones.
 struct BrdfMeters {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,

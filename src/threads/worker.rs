@@ -20,7 +20,7 @@ use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source, TreePath};
 use thread::Thread;
 
-/// The settings, scene and target that the window draws now. A reload builds their pipelines.
+/// The settings, scene and target of the window's current frame. A reload builds their pipelines.
 #[derive(Clone)]
 pub(crate) struct Snapshot {
     pub(crate) settings: Settings,
@@ -31,7 +31,7 @@ pub(crate) struct Snapshot {
 }
 
 impl Snapshot {
-    /// The pipelines that the picture needs from `shaders`.
+    /// The pipelines that the frame needs from `shaders`.
     pub(super) fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
         let request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
         let mut request = request.for_suns(self.suns);
@@ -54,13 +54,13 @@ pub(crate) enum WorkerMessage {
         /// The tree that was compiled.
         source: Source,
     },
-    /// The stages of the last reload that the picture did not need have been compiled.
+    /// The stages of the last reload that the frame did not need have been compiled.
     Completed(Box<Reload>),
     /// The result of the last [`Worker::build`].
     Built(Result<(), String>),
-    /// The pipelines of some thumbnails are there, or cannot be built.
+    /// The pipelines of some thumbnails have been built, or cannot be.
     ThumbnailsBuilt,
-    /// The driver has told of a pipeline, after [`Worker::ask_driver`].
+    /// Statistics of a pipeline have been queried, after [`Worker::ask_driver`].
     DriverTold,
 }
 
@@ -85,11 +85,11 @@ enum Job {
     /// Reads the same tree from another source, which changes these files.
     Read(Source, BTreeSet<TreePath>),
     Build(Build),
-    /// Pipelines of thumbnails: what is built when there is nothing else to do. Replaces an earlier job of this kind.
+    /// Builds pipelines of thumbnails when idle. Replaces an earlier job of this kind.
     Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
-    /// The same of the modes that the inspector reads, which come before thumbnails.
+    /// Builds pipelines of the inspector's modes when idle, before thumbnails. Replaces an earlier job of this kind.
     Inspected(Arc<PipelineSet>, VecDeque<PipelineRequest>),
-    /// Questions to the driver about the pipelines of a picture, when there is nothing else to do. Replaces an earlier job of this kind.
+    /// Queries the driver's statistics of a frame's pipelines when idle. Replaces an earlier job of this kind.
     AskDriver(Build),
     /// The first frame of the last reload is on screen.
     Shown,
@@ -121,14 +121,14 @@ impl Jobs {
     }
 }
 
-/// Most build requests that are remembered, so that a failed one is not sent again with every frame.
+/// Most build requests that are remembered, so that a failed one is not sent again in every frame.
 const MOST_ASKED: usize = 16;
 
-/// The window's end of the worker. Dropping it ends the thread and waits for it.
+/// The window's handle of the worker. Dropping it ends the thread and waits for it.
 pub(crate) struct Worker {
     jobs: Option<Jobs>,
     snapshot: Arc<Mutex<Snapshot>>,
-    /// The build requests since the last success, the newest first: as many as modes can lie side by side.
+    /// The build requests since the last success, the newest first: as many as the grid can show modes.
     asked: VecDeque<Build>,
     thread: Option<JoinHandle<()>>,
 }
@@ -165,7 +165,12 @@ impl Worker {
             sender: sender.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
-        Self { jobs: Some(Jobs { sender: jobs, edits, reloaded }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
+        Self {
+            jobs: Some(Jobs { sender: jobs, edits, reloaded }),
+            snapshot,
+            asked: VecDeque::new(),
+            thread: Some(thread),
+        }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -178,7 +183,7 @@ impl Worker {
         self.send(Job::Edit(Edit::new(change, since)));
     }
 
-    /// Whether an edit waits or is being compiled. Its message comes before the answer is no.
+    /// Whether an edit waits or is being compiled. Its message arrives before this turns false.
     pub(crate) fn is_compiling(&self) -> bool {
         let count = |edits: &AtomicU64| edits.load(Ordering::SeqCst);
         self.jobs.as_ref().is_some_and(|jobs| count(&jobs.edits) > count(&jobs.reloaded))
@@ -200,7 +205,7 @@ impl Worker {
         }
     }
 
-    /// Builds pipelines of thumbnails, one request after the other, as long as no other work waits. Replaces the requests before.
+    /// Builds pipelines of thumbnails, one request after the other, while idle. Replaces earlier requests.
     pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
         self.send(Job::Thumbnails(set.clone(), requests));
     }
@@ -210,18 +215,17 @@ impl Worker {
         self.send(Job::Inspected(set.clone(), requests));
     }
 
-    /// Asks the driver about the pipelines of a picture, one after the other, as long as no other work waits. Each is built once more for
-    /// it.
+    /// Queries the driver's statistics of a frame's pipelines, one after the other, while idle. Each is built once more for that.
     pub(crate) fn ask_driver(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
         self.send(Job::AskDriver((set.clone(), request.clone())));
     }
 
-    /// Notes that a build has succeeded, or lets failed ones be tried again.
+    /// Records that a build has succeeded, or that failed ones may be tried again.
     pub(crate) fn built(&mut self) {
         self.asked.clear();
     }
 
-    /// Tells the worker that the first frame of a reload is on screen, so that it compiles the stages that are not.
+    /// Tells the worker that the first frame of a reload is on screen, so that it compiles the remaining stages.
     pub(crate) fn shown(&self) {
         self.send(Job::Shown);
     }
@@ -231,7 +235,7 @@ impl Worker {
         self.send(Job::OpenTree(source));
     }
 
-    /// Reads the same tree from another source, in which these files have other texts.
+    /// Reads the same tree from another source, which changes the texts of these files.
     pub(crate) fn read_from(&self, source: Source, changed: BTreeSet<TreePath>) {
         self.send(Job::Read(source, changed));
     }

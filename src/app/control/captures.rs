@@ -11,8 +11,8 @@ use super::files::write_capture;
 use super::requests::{path_text, short};
 use crate::app::viewer::Viewer;
 use crate::capture::{
-    Animation, CaptureError, Renderer as _, SheetPlan, OffscreenCapture, Turn, Turntable, VersionPicture, check_animation,
-    modes_of,
+    Animation, CaptureError, OffscreenCapture, Renderer as _, SheetPlan, Turn, Turntable, VersionPicture,
+    check_animation, modes_of,
 };
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;

@@ -37,7 +37,8 @@ impl Pointed {
         let is_of_model = mode.pass.is_none() && mode.id != MODE_FINAL && !mode.is_displayed;
         let is_opaque = mode.draw == DrawAs::Surfaces && !mode.through && !mode.follows_paths();
         let mut passes = state.pipelines.passes.iter();
-        let has_no_others = passes.all(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
+        let has_no_others = passes
+            .all(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
         let is_same = is_number || is_of_model && is_opaque && has_no_others;
         is_same.then(|| Self { mode: mode.slug.clone(), at: [at.0, at.1], size: state.size, is_number })
     }

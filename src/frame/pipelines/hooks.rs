@@ -5,7 +5,7 @@ use crate::interface;
 use crate::shader::{ShaderSet, StageKind};
 
 impl PipelineRequest {
-    /// The `FEATURE_*` bits that a material has in this picture, without those of the frame.
+    /// The `FEATURE_*` bits of a material in this frame, without those of the frame itself.
     pub(super) fn features(&self, material: MaterialVariant) -> u32 {
         let is_unlit = material.features & interface::FEATURE_UNLIT != 0;
         material.features | if is_unlit { 0 } else { self.hook_features }
@@ -21,7 +21,7 @@ impl PipelineRequest {
         self.materials.iter().any(|material| self.is_transmissive(*material))
     }
 
-    /// A sentence about what the mode leaves out of the picture; `None` if it leaves out nothing.
+    /// A sentence about what the mode ignores; `None` if it ignores nothing.
     pub fn limit(&self) -> Option<&'static str> {
         let is_other_mesh = self.traces && self.moves_vertices;
         is_other_mesh
@@ -29,10 +29,11 @@ impl PipelineRequest {
     }
 }
 
-/// Whether the stages before the fragment stage `stage` move the vertices of the model.
+/// Whether the pre-rasterization stages of the fragment stage `stage` move the vertices of the model.
 pub(super) fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
     let pass = shaders.graph.passes.iter().find(|pass| pass.desc.stage == stage && pass.desc.draws_model());
-    let stages = pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages()).filter_map(|path| shaders.stages.get(path));
+    let stages =
+        pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages()).filter_map(|path| shaders.stages.get(path));
     let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
     stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
 }

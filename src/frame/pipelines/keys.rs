@@ -31,7 +31,7 @@ impl PipelineRequest {
         Some(self.key_with_model(pass, material, raster))
     }
 
-    /// A pipeline that draws a material to the multisampled picture.
+    /// The key of a pipeline that draws a material to the multisampled HDR target.
     fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
         PipelineKey {
             pass: KeyPass(pass.clone()),
@@ -56,7 +56,7 @@ impl PipelineRequest {
         own.iter().chain(&self.constants).copied().collect()
     }
 
-    /// The pipeline that draws the edges of a material's triangles over the picture.
+    /// The pipeline that draws the wireframe of a material over the picture.
     pub(crate) fn wireframe_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
         let pass = self.wireframe.as_ref().filter(|pass| material.is_taken_by(pass))?;
         if material.class != PrimitiveClass::Triangles {
@@ -69,7 +69,7 @@ impl PipelineRequest {
         Some(PipelineKey { specialization: own.into_iter().chain(rest).collect(), modes: Vec::new(), ..key })
     }
 
-    /// The pipeline that draws a material in the pass `behind`.
+    /// The pipeline that draws a material into the opaque scene color.
     pub(crate) fn opaque_scene_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
         let is_opaque = material.alpha != interface::ALPHA_BLEND && !self.is_transmissive(material);
         if !is_opaque || !self.draws_opaque_twice() {
@@ -121,7 +121,7 @@ impl PipelineRequest {
         Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
     }
 
-    /// The pipelines of what lies behind the model, in the order in which it is drawn: what blends lies over the rest.
+    /// The background pipelines in drawing order: blended ones after the others.
     pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
         let passes = |blend| {
             let is_drawn = move |pass: &&Arc<GraphPass>| pass.phase == RenderPhase::Model && pass.desc.background;
@@ -134,14 +134,14 @@ impl PipelineRequest {
         })
     }
 
-    /// The pipeline that makes one color from a pixel's samples, if their mean is not a plain one.
+    /// The pipeline that resolves a pixel's samples, unless their plain average is used.
     pub(crate) fn resolve_key(&self) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.phase == RenderPhase::Resolve)?;
         let specialization = [&[(SPEC_SAMPLES, self.target.samples)], &*self.constants].concat();
         Some(self.triangle_key(pass, Raster::Solid, self.target.color, specialization))
     }
 
-    /// The pipeline that adds a frame to the mean, in an accumulating mode.
+    /// The pipeline that adds a frame to the accumulation buffer, in an accumulating mode.
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.phase == RenderPhase::Mean)?;
         Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, self.constants.clone()))
@@ -175,7 +175,7 @@ impl PipelineRequest {
         shared.chain(self.constants.iter().copied()).collect()
     }
 
-    /// The pipeline with which a pass that is not the model's own draws a material of the model, or [`QUADS`].
+    /// The pipeline with which a pass other than the model's own draws a material of the model, or [`QUADS`].
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
         let raster = if pass.desc.blend { Raster::Blended } else { Raster::Solid };
         let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };
@@ -185,7 +185,7 @@ impl PipelineRequest {
         }
     }
 
-    /// The pipelines of the model, of what is drawn with it, of the resolve and of the mean.
+    /// The pipelines of the model, of everything drawn with it, of the resolve and of the accumulation.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
         let of = |m: &MaterialVariant| [self.model_key(*m), self.opaque_scene_key(*m), self.wireframe_key(*m)];
         let model = self.materials.iter().flat_map(of).flatten();

@@ -69,7 +69,7 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_clear_color_image(self.raw, image.raw, layout, &zero, &[range]) };
     }
 
-    /// Sets all bytes of a buffer to 0, after what earlier shaders do with it. Its usage must include `TRANSFER_DST`.
+    /// Sets all bytes of a buffer to 0, after earlier shaders have used it. Its usage must include `TRANSFER_DST`.
     pub fn clear_buffer(&mut self, buffer: &Arc<Buffer>) {
         use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
         self.keep(buffer);

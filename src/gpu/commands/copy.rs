@@ -17,7 +17,7 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }
 
-    /// Fills the buffer that names loops with its first words: 0, 0, 1.
+    /// Resets the loop report buffer: its first words become 0, 0, 1.
     pub(in crate::gpu) fn clear_loops(&mut self, buffer: &Arc<Buffer>) {
         self.keep(buffer);
         // SAFETY: this encoder records the command buffer; the buffer is kept and has three words.
@@ -27,8 +27,8 @@ impl Encoder {
         }
     }
 
-    /// Copies what shaders wrote to the buffer that names loops, and clears it for the next submission.
-    /// SYNC: after all earlier commands, and before all later ones and the CPU's read after the fence.
+    /// Copies the loop report that shaders wrote, and clears the buffer for the next submission. SYNC: after all earlier
+    /// commands, and before all later ones and the CPU's read after the fence.
     pub(in crate::gpu) fn take_loops(&mut self, from: &Arc<Buffer>, to: &Arc<Buffer>) {
         use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
         self.order(

@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct DrawCounts {
     /// Draws.
     pub draws: u64,
-    /// Triangles in them; those of all instances, before any stage that makes others.
+    /// Triangles in them, all instances counted, before any stage that amplifies them.
     pub triangles: u64,
 }
 
@@ -20,12 +20,12 @@ pub(in crate::gpu) struct Counter {
 }
 
 impl Counter {
-    /// Notes the topology of later draws with indices.
+    /// Sets the topology of later indexed draws.
     pub(super) fn set_topology(&mut self, topology: vk::PrimitiveTopology) {
         self.topology = Some(topology);
     }
 
-    /// Counts a draw without indices, which is one of triangles.
+    /// Counts a non-indexed draw, which is always of triangles.
     pub(super) fn draw(&mut self, vertices: u32) {
         self.counts.draws += 1;
         self.counts.triangles += u64::from(vertices / 3);

@@ -71,7 +71,7 @@ pub struct Encoder {
     pub(in crate::gpu) timer: Option<PassTimer>,
     pub(in crate::gpu) is_rendering: bool,
     pub(in crate::gpu) counter: Counter,
-    /// The buffer that stages write when a loop does not end, if a pipeline has such loops.
+    /// The loop report buffer, if a pipeline has loops that may not end.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
 }
 
@@ -206,7 +206,7 @@ impl Encoder {
         }
     }
 
-    /// Maps later draws to a picture of this size, of which the targets hold a part that begins at `origin`. The scissor stays.
+    /// Maps later draws to a frame of this size, of which the targets hold the part that begins at `origin`. The scissor stays.
     pub fn set_part_of_picture(&mut self, origin: (u32, u32), size: (u32, u32)) {
         let viewport = vk::Viewport {
             x: -(origin.0 as f32),
@@ -264,7 +264,7 @@ impl Encoder {
         self.bind(vk::PipelineBindPoint::GRAPHICS, layouts.pipeline, set);
     }
 
-    /// Binds the own set of a declared pass for drawing.
+    /// Binds the pass set of a declared pass (`SET_PASS`) for drawing.
     pub fn bind_pass_set(&mut self, layout: &Arc<PassLayout>, set: &Arc<DescriptorSet>) {
         self.bind(vk::PipelineBindPoint::GRAPHICS, layout.pipeline, set);
     }

@@ -53,14 +53,13 @@ impl Frames {
         self.slots.get(slot).is_some_and(Slot::has_loops)
     }
 
-    /// The words that name a loop which did not end in the last frame of `slot`; `None` if all ended. SYNC: after that frame's
+    /// The words that name a loop that did not end in the last frame of `slot`; `None` if all ended. SYNC: after that frame's
     /// fence.
     pub fn endless_loop(&self, slot: usize) -> Option<[u32; 2]> {
         self.slots.get(slot).and_then(Slot::endless_loop)
     }
 
-    /// Device time, in milliseconds, of the newest frame that a wait has found finished. `None` before the first, or without
-    /// timestamps.
+    /// Device time, in milliseconds, of the newest frame known to have finished. `None` before the first, or without timestamps.
     pub fn last_device_ms(&self) -> Option<f64> {
         self.times.as_ref().map(|times| times.ms)
     }

@@ -15,9 +15,9 @@ pub(in crate::gpu) const MAX_TIMESTAMPS: u32 = 2 + 2 * MAX_TIMED_PASSES;
 pub struct PassTime {
     /// The pass's name.
     pub name: String,
-    /// Milliseconds from the end of all earlier commands to the end of the pass; 0 if it is kept.
+    /// Milliseconds from the end of all earlier commands to the end of the pass; 0 if its image is reused.
     pub ms: f64,
-    /// Whether its image is that of an earlier frame, since it would be the same.
+    /// Whether the pass reused its image of an earlier frame, since it would be unchanged.
     pub kept: bool,
 }
 
@@ -75,7 +75,7 @@ impl Encoder {
         result
     }
 
-    /// Records that the pass `name` keeps its image, so that it has no commands.
+    /// Records that the pass `name` reuses its image, so it has no commands.
     pub fn kept_pass(&mut self, name: &str) {
         if let Some((queries, first)) = self.timer.as_mut().and_then(|timer| timer.reserve(name, true)) {
             self.write_timestamp(queries, first);

@@ -47,7 +47,7 @@ pub(in crate::gpu) struct Slot {
     passes: Option<Vec<TimedPass>>,
     counts: DrawCounts,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
-    /// The words that the stages of the last submission wrote about loops that did not end, and whether they have such loops.
+    /// The loop report of the last submission, and whether its stages have loops that may not end.
     loops: (Option<Arc<Buffer>>, bool),
 }
 
@@ -92,7 +92,7 @@ impl Slot {
     /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
     pub(in crate::gpu) fn wait(&mut self) -> Result<(), GpuError> {
         if self.pending {
-            // Only a wait is watched: nobody waits for the last frame of a window that rests.
+            // Arm the watchdog only while blocking. Nobody waits for the last frame of an idle window.
             let _watched = watch(self.passes.as_deref());
             fault::delay("frame-hang-ms");
             // A watchdog ends the process at its limit, before this wait ends.
@@ -187,7 +187,7 @@ impl Slot {
         if sync.signal.is_some() {
             fault::refuse("frame-submit", "submitting a frame")?;
         }
-        // A driver may wait for a hung device here.
+        // A driver may block here on a hung device.
         let _watched = watch(passes.as_deref());
         let queue = self.gpu.lock_queue();
         // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
@@ -220,7 +220,7 @@ impl Slot {
     }
 }
 
-/// Watches what the device does with a submission that has these passes.
+/// Watches the device while it runs a submission with these passes.
 fn watch(passes: Option<&[TimedPass]>) -> Option<Watched> {
     Watched::begin(|| match passes {
         Some(passes @ [_, ..]) => {

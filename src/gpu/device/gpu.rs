@@ -27,7 +27,7 @@ pub struct GpuOptions {
     pub pipelines: Option<&'static dyn PipelineStore>,
 }
 
-/// Stages before the rasterizer, and features of them, that not every device has. Each device that Specula takes has geometry stages.
+/// Optional pre-rasterization stages, and their features. Every device that Specula accepts has geometry stages.
 #[derive(Clone, Copy, Debug)]
 pub struct OptionalStages {
     /// Whether there are tessellation stages.
@@ -52,7 +52,7 @@ pub struct Gpu {
     /// Draws with mesh stages, where the device has them.
     pub(in crate::gpu) mesh_shader: Option<ext::mesh_shader::Device>,
     pub(in crate::gpu) debug_utils: Option<ext::debug_utils::Device>,
-    /// Asks the driver about pipelines, where it tells anything.
+    /// Queries pipeline statistics, where the driver offers any.
     pub(in crate::gpu) executables: Option<khr::pipeline_executable_properties::Device>,
     pub(in crate::gpu) pipeline_cache: PipelineCache,
     pub(in crate::gpu) properties: vk::PhysicalDeviceProperties,
@@ -152,7 +152,7 @@ impl Gpu {
         counts.contains(vk::SampleCountFlags::from_raw(samples))
     }
 
-    /// Whether shaders can blend texels of this format. Devices need not blend full floats.
+    /// Whether shaders can filter texels of this format. Devices need not support that for full floats.
     pub fn blends_texels(&self, format: vk::Format) -> bool {
         // SAFETY: the instance is live, and the device belongs to it.
         let properties = unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) };
@@ -164,7 +164,7 @@ impl Gpu {
         self.optional_stages
     }
 
-    /// Whether the driver tells numbers of compiled pipelines: [`crate::gpu::CompileInfo::statistics`].
+    /// Whether the driver reports pipeline statistics: [`crate::gpu::CompileInfo::statistics`].
     pub fn tells_statistics(&self) -> bool {
         self.executables.is_some()
     }
@@ -214,7 +214,7 @@ impl Gpu {
     pub(in crate::gpu) fn ticks_to_ms(&self, begin: u64, end: u64) -> f64 {
         let mask = u64::MAX >> (64 - self.timestamp_bits.clamp(1, 64));
         let ticks = end.wrapping_sub(begin) & mask;
-        // More than half the counter's range means that `end` came first by a few ticks.
+        // More than half the counter's range means that `end` precedes `start` by a few ticks.
         let ticks = if ticks > mask / 2 { 0 } else { ticks };
         ticks as f64 * f64::from(self.properties.limits.timestamp_period) * 1e-6
     }

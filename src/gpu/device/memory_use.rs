@@ -12,8 +12,8 @@ pub struct Heap {
     pub size: u64,
     /// Whether it is memory of the device itself.
     pub is_device: bool,
-    /// Bytes that this process has allocated in it, as the driver counts, and that it may allocate (VK_EXT_memory_budget); `None` if
-    /// the driver does not tell.
+    /// Bytes that this process has allocated in it, as the driver counts, and its budget (VK_EXT_memory_budget); `None` if the
+    /// driver does not report them.
     pub used_of: Option<[u64; 2]>,
 }
 

@@ -4,27 +4,27 @@ use std::ffi::{CStr, c_char};
 
 use ash::{ext, khr, vk};
 
-/// Which of them a device has.
+/// The optional extensions that a device has.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::gpu) struct Optional {
-    /// The driver tells numbers of compiled pipelines.
+    /// The driver reports pipeline statistics.
     pub(in crate::gpu) executables: bool,
-    /// The driver tells how much memory the process may use.
+    /// The driver reports a memory budget.
     pub(in crate::gpu) memory_budget: bool,
     /// Task and mesh stages.
     pub(in crate::gpu) mesh: Option<MeshLimits>,
 }
 
-/// The largest numbers that task and mesh stages can have.
+/// The limits of task and mesh stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshLimits {
     /// Invocations of a workgroup of a task stage.
     pub task_invocations: u32,
     /// Invocations of a workgroup of a mesh stage.
     pub mesh_invocations: u32,
-    /// Vertices that a workgroup of a mesh stage gives.
+    /// Vertices that a workgroup of a mesh stage may output.
     pub vertices: u32,
-    /// Primitives that a workgroup of a mesh stage gives.
+    /// Primitives that a workgroup of a mesh stage may output.
     pub primitives: u32,
 }
 

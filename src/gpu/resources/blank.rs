@@ -9,7 +9,7 @@ use super::image::{Image, ImageDesc};
 use super::sampler::{Sampler, SamplerDesc};
 use crate::gpu::{Gpu, GpuError, Use, one_shot};
 
-/// Bytes of [`Blank::loops`]: two words that name a loop, and one that is 0 once a budget was used up.
+/// Bytes of [`Blank::loops`]: two words that name a loop, and one that is 0 once an iteration limit was exceeded.
 pub(in crate::gpu) const LOOP_WORDS_BYTES: u64 = 12;
 
 /// One placeholder of each kind of descriptor. lavapipe reads every descriptor of a bound set, used or not, and crashes on
@@ -20,7 +20,7 @@ pub(in crate::gpu) struct Blank {
     pub(in crate::gpu) cube: Arc<Image>,
     pub(in crate::gpu) sampler: Arc<Sampler>,
     pub(in crate::gpu) buffer: Arc<Buffer>,
-    /// The buffer that stages write when one of their loops does not end. Every submission leaves it cleared.
+    /// The loop report buffer, which stages write when one of their loops does not end. Every submission leaves it cleared.
     pub(in crate::gpu) loops: Arc<Buffer>,
 }
 

@@ -99,8 +99,7 @@ impl Buffer {
         self.content().to_vec()
     }
 
-    /// The content itself; empty where the CPU cannot see it. For `Memory::Readback`, after the writing submission's
-    /// fence.
+    /// The mapped content; empty where the CPU cannot see it. For `Memory::Readback`, after the writing submission's fence.
     pub fn content(&self) -> &[u8] {
         let mapped = self.allocation.as_ref().and_then(Allocation::mapped_slice);
         mapped.map(|m| &m[..self.size as usize]).unwrap_or_default()

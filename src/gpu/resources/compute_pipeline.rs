@@ -9,8 +9,8 @@ use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
 use super::pipeline::{CAPTURE, MAIN, ShaderModule};
-use super::statistics::{self, Executable, CompileInfo, feedback_ms};
 use super::resource_usage::ResourceUsage;
+use super::statistics::{self, CompileInfo, Executable, feedback_ms};
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
@@ -24,7 +24,7 @@ pub struct ComputePipeline {
     pub usage: ResourceUsage,
     /// Information about the compiled code.
     pub compile_info: CompileInfo,
-    /// The buffer that its stages write when a loop does not end, if they have such loops.
+    /// The loop report buffer, if its stages have loops that may not end.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
 }
@@ -45,14 +45,15 @@ impl ComputePipeline {
         module: &ShaderModule,
         layout: Option<Arc<PassLayout>>,
     ) -> Result<Arc<Self>, GpuError> {
-        let (raw, compile_info) = Self::create(gpu, layouts, module, layout.as_deref(), vk::PipelineCreateFlags::empty())?;
+        let (raw, compile_info) =
+            Self::create(gpu, layouts, module, layout.as_deref(), vk::PipelineCreateFlags::empty())?;
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
         let usage = module.usage.clone();
         Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, usage, compile_info, loops, raw }))
     }
 
-    /// Builds a pipeline once more to ask the driver about it.
+    /// Builds a pipeline once more to query its statistics.
     ///
     /// # Errors
     /// As [`ComputePipeline::new`].
@@ -92,7 +93,11 @@ impl ComputePipeline {
         let name = format!("`{}`", module.name);
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
-        let compile_info = CompileInfo::new(vec![module.stage_info(feedback_ms(&whole))], start.elapsed().as_secs_f64() * 1e3, is_cached);
+        let compile_info = CompileInfo::new(
+            vec![module.stage_info(feedback_ms(&whole))],
+            start.elapsed().as_secs_f64() * 1e3,
+            is_cached,
+        );
         Ok((raw, compile_info))
     }
 }

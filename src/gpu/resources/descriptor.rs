@@ -22,14 +22,14 @@ const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::COMPUTE.as_raw(),
 );
 
-/// The stages of the device.
+/// The stages that the device supports.
 pub(super) fn stages(gpu: &Gpu) -> vk::ShaderStageFlags {
     let mesh = vk::ShaderStageFlags::TASK_EXT | vk::ShaderStageFlags::MESH_EXT;
     if gpu.mesh_shader.is_some() { STAGES | mesh } else { STAGES }
 }
 
 /// The stages that may read a set. A device need not offer more than 32 samplers to one stage (lavapipe 22.3 does not), and all
-/// sets together have more.
+/// sets together contain more.
 fn stages_of(gpu: &Gpu, set: u32) -> vk::ShaderStageFlags {
     match set {
         interface::SET_TASK => vk::ShaderStageFlags::COMPUTE,
@@ -102,7 +102,7 @@ impl Drop for SetLayouts {
     }
 }
 
-/// The debug name of a descriptor set that was given none.
+/// The debug name of a descriptor set without a name.
 fn set_name(set: u32) -> &'static str {
     match set {
         interface::SET_FRAME => "frame set",

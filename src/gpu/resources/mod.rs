@@ -8,6 +8,6 @@ pub(in crate::gpu) mod image;
 pub(in crate::gpu) mod memory;
 pub(in crate::gpu) mod pass_layout;
 pub(in crate::gpu) mod pipeline;
+pub(in crate::gpu) mod resource_usage;
 pub(in crate::gpu) mod sampler;
 pub(in crate::gpu) mod statistics;
-pub(in crate::gpu) mod resource_usage;

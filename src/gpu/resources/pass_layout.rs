@@ -124,17 +124,17 @@ impl PassLayout {
         Ok(Arc::new(this))
     }
 
-    /// Whether the layout has no descriptors of its own, so that no set needs to be bound.
+    /// Whether the pass has no descriptors of its own, so that no set needs to be bound.
     pub fn is_empty(&self) -> bool {
         self.bindings.is_empty()
     }
 
-    /// The bindings of its own set.
+    /// The bindings of the pass set.
     pub fn bindings(&self) -> impl Iterator<Item = u32> {
         self.bindings.keys().copied()
     }
 
-    /// Creates the pass's own set, with a resource for each binding.
+    /// Creates the pass set, with a resource for each binding.
     ///
     /// # Errors
     /// The device is out of memory.

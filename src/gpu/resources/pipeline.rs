@@ -9,8 +9,8 @@ use ash::vk;
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
-use super::statistics::{self, Executable, CompileInfo, PipelineStage, feedback_ms};
 use super::resource_usage::ResourceUsage;
+use super::statistics::{self, CompileInfo, Executable, PipelineStage, feedback_ms};
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
@@ -47,7 +47,7 @@ impl ShaderModule {
         Self::optimized(gpu, name, (spirv, spirv.len()), names_loops, usage)
     }
 
-    /// The same of a module that had `words_before` words before it was optimized.
+    /// [`ShaderModule::new`] for an optimized module that had `words_before` words before.
     ///
     /// # Errors
     /// As [`ShaderModule::new`].
@@ -80,7 +80,7 @@ impl Drop for ShaderModule {
     }
 }
 
-/// Keeps what [`statistics::read`] asks for. A driver may compile the pipeline anew for it.
+/// Flag for pipelines whose statistics [`statistics::read`] queries. A driver may compile such a pipeline again.
 pub(super) const CAPTURE: vk::PipelineCreateFlags = vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
 
 /// Control points of a patch: a triangle of the model.
@@ -113,7 +113,7 @@ pub enum Raster {
     Replaced,
     /// As [`Raster::Solid`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     Lines,
-    /// The edges of triangles, a little nearer than the surfaces that they lie on, without depth writes.
+    /// Wireframe: the edges of triangles, slightly nearer than their surfaces, without depth writes.
     Edges,
     /// As [`Raster::Blended`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     BlendedLines,
@@ -126,7 +126,7 @@ pub enum Raster {
 
 /// Stages and fixed state of a graphics pipeline.
 pub struct PipelineDesc<'a> {
-    /// The stages before the rasterizer, in the order in which they run. With tessellation, the primitives are patches of three
+    /// The pre-rasterization stages, in the order in which they run. With tessellation, the primitives are patches of three
     /// vertices. With a mesh stage, there is no vertex stage.
     pub pre_rasterization: &'a [(vk::ShaderStageFlags, &'a ShaderModule)],
     /// Fragment stage.
@@ -141,7 +141,7 @@ pub struct PipelineDesc<'a> {
     pub samples: u32,
     /// Class of primitives.
     pub class: PrimitiveClass,
-    /// The layout, with what the stages read by name.
+    /// The pipeline layout, with what the stages read by name.
     pub layout: Arc<PassLayout>,
 }
 
@@ -172,13 +172,13 @@ pub struct Pipeline {
     pub usage: ResourceUsage,
     /// Information about the compiled code.
     pub compile_info: CompileInfo,
-    /// The buffer that its stages write when a loop does not end, if they have such loops.
+    /// The loop report buffer, if its stages have loops that may not end.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
 }
 
 impl Pipeline {
-    /// Whether a stage writes a buffer when a loop does not end.
+    /// Whether a stage writes the loop report buffer.
     pub fn names_loops(&self) -> bool {
         self.loops.is_some()
     }
@@ -196,7 +196,7 @@ impl Pipeline {
         Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), usage, compile_info, loops, raw }))
     }
 
-    /// Builds a pipeline once more to ask the driver about it, since drivers keep such numbers only where they are told to.
+    /// Builds a pipeline once more to query its statistics, which drivers keep only if the flag asks for them.
     ///
     /// # Errors
     /// As [`Pipeline::new`].
@@ -226,7 +226,7 @@ impl Pipeline {
             PrimitiveClass::Lines => vk::PrimitiveTopology::LINE_LIST,
             PrimitiveClass::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
         });
-        // With this origin, triangles of the default order `ccw` face where the patch does.
+        // With this origin, triangles of the default order `ccw` face the same way as the patch.
         let mut origin = vk::PipelineTessellationDomainOriginStateCreateInfo::default()
             .domain_origin(vk::TessellationDomainOrigin::LOWER_LEFT);
         let tessellation = vk::PipelineTessellationStateCreateInfo::default()
@@ -254,7 +254,7 @@ impl Pipeline {
         let mut dynamic_states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         if desc.depth {
             dynamic_states.extend([vk::DynamicState::CULL_MODE, vk::DynamicState::FRONT_FACE]);
-            // A mesh stage says which primitives it gives.
+            // The mesh stage declares its output primitive.
             if !desc.has(vk::ShaderStageFlags::MESH_EXT) {
                 dynamic_states.push(vk::DynamicState::PRIMITIVE_TOPOLOGY);
             }

@@ -20,7 +20,7 @@ pub struct ResourceUsage {
 }
 
 impl ResourceUsage {
-    /// Everything that one of the two uses.
+    /// The union of both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {

@@ -74,8 +74,8 @@ impl Sampler {
             .address_mode_w(desc.wrap_w)
             .anisotropy_enable(gpu.anisotropy && anisotropy > 1.0)
             .max_anisotropy(anisotropy.max(1.0))
-            // With 0 the magnification filter would apply everywhere. The Vulkan specification gives 0.25 for OpenGL's
-            // filters without mip levels.
+            // With 0, the magnification filter would apply everywhere. The Vulkan specification gives 0.25 for OpenGL's filters
+            // without mip levels.
             .max_lod(if desc.mips { vk::LOD_CLAMP_NONE } else { 0.25 });
         // SAFETY: the device is live.
         let raw = unsafe { gpu.device.create_sampler(&info, None) }.context("creating a sampler")?;

@@ -74,7 +74,7 @@ impl UiRenderer {
         Ok(UiImage { texture: self.inner.add_user_texture(set.set), set })
     }
 
-    /// Ends the use of an image. The caller must have waited for every frame that draws it, and egui must draw it no more.
+    /// Ends the use of an image. The caller must have waited for every frame that draws it, and egui must not draw it again.
     pub fn remove_image(&mut self, image: UiImage) {
         self.inner.remove_user_texture(image.texture);
     }

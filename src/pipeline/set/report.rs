@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{PipelineSet, lock};
 use crate::frame::{PipelineKey, PipelineRequest};
-use crate::gpu::{ComputePipeline, Executable, CompileInfo, GpuError, Pipeline, Specialization};
+use crate::gpu::{CompileInfo, ComputePipeline, Executable, GpuError, Pipeline, Specialization};
 use crate::pipeline::bounds::shader_module;
 use crate::shader::{GraphPass, StageKind};
 
@@ -18,28 +18,28 @@ pub struct InPipeline {
     pub words_before: usize,
     /// Words that the driver got.
     pub words: usize,
-    /// The driver's time for the stage, milliseconds, if it tells.
+    /// The driver's time for the stage, milliseconds, if it reports that.
     pub driver_ms: Option<f64>,
     /// Time of the call that created the whole pipeline, milliseconds.
     pub pipeline_ms: f64,
     /// Whether the driver took the pipeline from a cache.
     pub is_cached: bool,
-    /// The driver's statistics of the stage's machine code; `None` until they are requested.
+    /// The driver's statistics of the stage's machine code; `None` until they are queried.
     pub executables: Option<Vec<Executable>>,
 }
 
 /// A stage of a shader set.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StageReport {
-    /// Words of its module as compiled, with all that constants may switch off.
+    /// Words of its module as compiled, including the code that constants may switch off.
     pub compiled: usize,
-    /// Number of its pipelines in the picture: one for each kind of material, for example.
+    /// Number of its pipelines in the frame: one for each kind of material, for example.
     pub pipelines: usize,
-    /// It in the largest of these pipelines; `None` if the picture has none of the stage, or it is being built.
+    /// Its values in the largest of these pipelines; `None` if the frame does not use the stage, or it is being built.
     pub largest: Option<InPipeline>,
 }
 
-/// A pipeline of a picture.
+/// A pipeline of a frame.
 enum Found {
     Graphics(PipelineKey, Arc<Pipeline>),
     Compute(Arc<GraphPass>, Arc<ComputePipeline>),
@@ -64,7 +64,7 @@ impl PipelineSet {
         lock(&self.graphics).entries.len() + lock(&self.computes).entries.len()
     }
 
-    /// All stages by path, with what is known of them in the pipelines of `request`.
+    /// All stages by path, with their statistics in the pipelines of `request`.
     pub fn report(&self, request: &PipelineRequest) -> BTreeMap<String, StageReport> {
         let new = |words: usize| StageReport { compiled: words, ..StageReport::default() };
         let mut all: BTreeMap<String, StageReport> =
@@ -74,7 +74,7 @@ impl PipelineSet {
             for stage in &compile_info.stages {
                 let Some(report) = all.get_mut(&stage.stage) else { continue };
                 report.pipelines += 1;
-                // The first of several equal ones, so that the same picture always tells the same.
+                // The first of several equal ones, so that the same frame always gives the same report.
                 if report.largest.as_ref().is_some_and(|known| known.words >= stage.words) {
                     continue;
                 }
@@ -94,8 +94,8 @@ impl PipelineSet {
         all
     }
 
-    /// Asks the driver about the next pipeline of `request` that it has not told of, which builds that pipeline once more. Returns
-    /// how long that took in milliseconds, or `None` if no question is left.
+    /// Queries the statistics of the next pipeline of `request` that lacks them, which builds that pipeline once more. Returns
+    /// how long that took in milliseconds, or `None` if none is left.
     ///
     /// # Errors
     /// The driver rejects the pipeline, or does not answer.
@@ -103,7 +103,7 @@ impl PipelineSet {
         if !self.gpu.tells_statistics() {
             return Ok(None);
         }
-        // The report shows the largest pipeline of each stage; the others need not be asked about.
+        // The report shows the largest pipeline of each stage; the others need no query.
         let mut found = self.found(request);
         found.sort_by_key(|found| std::cmp::Reverse(found.words()));
         let mut stages: Vec<&str> = Vec::new();
@@ -122,7 +122,7 @@ impl PipelineSet {
             Found::Graphics(key, _) => self.make(key, |desc| Pipeline::statistics(&self.gpu, desc)),
             Found::Compute(pass, _) => self.ask_about(pass, &request.pass_constants()),
         };
-        // A driver that refuses is not asked again.
+        // A driver that refuses is not queried again.
         next.compile_info().set_statistics(told.as_ref().ok().cloned().unwrap_or_default());
         told.map(|_| Some(start.elapsed().as_secs_f64() * 1e3))
     }

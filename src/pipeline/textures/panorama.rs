@@ -9,18 +9,18 @@ use crate::scene::environment::uv_from_direction;
 use crate::scene::mips::encode_srgb;
 use crate::settings::linear_from_srgb;
 
-/// Points along a side of a texel whose mean the texel is.
+/// Samples along each side of a texel, which are averaged.
 const POINTS: u32 = 2;
 
-/// Light at the texels of a picture.
+/// Linear light at the texels of an image.
 struct Panorama {
     width: u32,
     height: u32,
     texels: Vec<[f32; 4]>,
 }
 
-/// The faces of `picture` in the order +X -X +Y -Y +Z -Z, each `side` texels wide: floats of floats, 8 bits of other pictures.
-/// With `srgb`, the colors of the latter are sRGB-encoded, and blended as light.
+/// The faces of `picture` in the order +X -X +Y -Y +Z -Z, each `side` texels wide: floats for float images, 8 bits for others.
+/// With `srgb`, the colors of the latter are sRGB-encoded, and filtered as linear light.
 pub(super) fn faces(picture: &DynamicImage, side: u32, srgb: bool) -> Vec<DynamicImage> {
     let is_float = super::is_float(picture);
     let mut texels: Vec<[f32; 4]> = picture.to_rgba32f().pixels().map(|pixel| pixel.0).collect();
@@ -56,7 +56,7 @@ impl Panorama {
         points.map(|st| self.at(direction(face, st))).sum::<Vec4>() / (POINTS * POINTS) as f32
     }
 
-    /// Blends the four texels around a direction. The left and the right edge are neighbors.
+    /// Filters the four texels around a direction. The left and right edges are neighbors.
     fn at(&self, direction: Vec3) -> Vec4 {
         let at = uv_from_direction(direction) * Vec2::new(self.width as f32, self.height as f32) - 0.5;
         let (corner, part) = (at.floor(), at - at.floor());

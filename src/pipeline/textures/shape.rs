@@ -13,7 +13,7 @@ pub(super) enum Cut {
     Files,
     /// Each layer is a tile of the only file, at this column and row of tiles.
     Tiles(Vec<[u32; 2]>),
-    /// As tiles, but the last layer stands on its head: the face -Z of a vertical cross.
+    /// As tiles, but the last layer is upside down: the face -Z of a vertical cross.
     VerticalCross(Vec<[u32; 2]>),
     /// The only file is an equirectangular picture.
     Panorama,
@@ -66,7 +66,7 @@ impl Shape {
             TextureKind::Volume | TextureKind::Array if sizes.len() > 1 || texture.desc.image.contains('*') => {
                 Ok(whole)
             }
-            // Without a number, a table's slices are as many as they are wide.
+            // Without a number, a table has as many slices as they are wide.
             TextureKind::Volume | TextureKind::Array => {
                 let layers = texture.desc.layers.unwrap_or(width.min(height));
                 if texture.desc.layers.is_none() && width.max(height) != layers.saturating_mul(layers) {
@@ -112,11 +112,11 @@ impl Shape {
     }
 }
 
-/// The pictures that a cube map can be cut out of.
+/// The layouts that a cube map can be cut out of.
 const FACES: &str = "six squares (6:1 or 1:6), a cross of squares (4:3 or 3:4), an equirectangular picture (2:1), \
                      or six files with a `*` in their name";
 
-/// The six faces in a picture of this size, in the order +X -X +Y -Y +Z -Z. `None` if the size is that of no such picture.
+/// The six faces in an image of this size, in the order +X -X +Y -Y +Z -Z. `None` if no layout has this size.
 fn faces_of(width: u32, height: u32) -> Option<Shape> {
     let (columns, rows) = [(6, 1), (1, 6), (4, 3), (3, 4), (2, 1)]
         .into_iter()
@@ -135,14 +135,14 @@ fn faces_of(width: u32, height: u32) -> Option<Shape> {
     (side > 0).then_some(Shape { width: side, height: side, layers: 6, cut })
 }
 
-/// The direction in which layers follow each other in a picture.
+/// The direction in which layers follow each other in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Strip {
     Across,
     Down,
 }
 
-/// The direction in which `layers` layers lie in a picture: the one that the size allows, or else the one with square layers.
+/// The direction in which `layers` layers lie in an image: the one that the size allows, or else the one with square layers.
 fn strip(width: u32, height: u32, layers: u32) -> Result<Strip, String> {
     let found = pixels((width, height));
     let (across, down) = (width.is_multiple_of(layers), height.is_multiple_of(layers));

@@ -18,7 +18,7 @@ struct Table {
     slices: u32,
     samples: u32,
     groups: [u32; 3],
-    /// The slice and channel of a texel that says which functions returned wrong values, with their files by bit.
+    /// The slice and channel of the texel that flags the functions which returned invalid values, with their files by bit.
     flags: Option<(u32, usize, &'static [&'static str])>,
 }
 
@@ -49,7 +49,7 @@ impl Table {
         ImageDesc::new(self.side, self.side * self.slices, FORMAT, usage)
     }
 
-    /// The functions that returned wrong values, from the flags in `texels`.
+    /// The functions that returned invalid values, from the flags in `texels`.
     fn wrong(&self, texels: &[u8]) -> Vec<&'static str> {
         let Some((slice, channel, names)) = self.flags else { return Vec::new() };
         let map = (self.side * self.side) as usize * 4;
@@ -64,7 +64,7 @@ impl Table {
 pub struct Tables {
     /// Moments of the specular lobe: see brdf/energy/dfg.glsl.
     pub(crate) dfg: Arc<Image>,
-    /// The two of them that lamps need (`dfg_towards_lamp` in brdf/energy/albedo.glsl).
+    /// The two moments that punctual lights need (`dfg_towards_lamp` in brdf/energy/albedo.glsl).
     pub(crate) lamp_dfg: Arc<Image>,
     /// Albedo of the diffuse lobe.
     pub(crate) diffuse_albedo: Arc<Image>,
@@ -76,7 +76,7 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Computes the tables of `key`, or loads them from the disk cache. Those of `before` whose stages are the same are shared.
+    /// Computes the tables of `key`, or loads them from the disk cache. Tables of `before` whose stages are unchanged are shared.
     ///
     /// # Errors
     /// A device error.
@@ -86,7 +86,7 @@ impl Tables {
         let mut lamp_dfg = before.map(|before| before.lamp_dfg.clone());
         for (table, stage) in TABLES.iter().zip(&key.0) {
             let known = before.and_then(|before| before.image_of(stage));
-            // A table with wrong values is baked again, so that the warning comes again.
+            // A table with invalid values is baked again each time, so that the warning is repeated.
             match known.filter(|_| before.is_some_and(|before| before.wrong.is_empty())) {
                 Some(image) => images.push(image),
                 None => {
@@ -107,7 +107,7 @@ impl Tables {
         Ok(Arc::new(Self { dfg, lamp_dfg, diffuse_albedo, sheen_albedo, wrong, stages: key.0.clone() }))
     }
 
-    /// Tables of one texel, for a mirror: what a picture is drawn with when no tables could be baked.
+    /// Tables of one texel, for a mirror: the fallback when no tables could be baked.
     pub(crate) fn of_mirror(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let filled = |name: &str, value: [f32; 4], desc: ImageDesc| {
@@ -167,7 +167,7 @@ fn with_fine_rows(dfg: &Table, texels: &[u8]) -> Vec<u8> {
     halves.into_iter().flat_map(half::f16::to_ne_bytes).collect()
 }
 
-/// B and `lost` of the directions of the DFG table: channels 1 and 3 of its first slice.
+/// B and the energy deficit (`lost`) of the directions of the DFG table: channels 1 and 3 of its first slice.
 fn table_of_lamps(gpu: &Arc<Gpu>, dfg: &Table, texels: &[u8]) -> Result<Arc<Image>, GpuError> {
     let slice = texels.chunks_exact(8).take((dfg.side * dfg.side) as usize);
     let both: Vec<u8> = slice.flat_map(|texel| [&texel[2..4], &texel[6..8]].concat()).collect();

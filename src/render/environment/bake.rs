@@ -28,12 +28,14 @@ const CUBE_LEVELS: u32 = 10;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
-/// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
+/// Largest factor by which a map is scaled down to fit half floats; what is brighter is clipped. Scaling further would lose the
+/// dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 
 /// Width and height of the image of all specular levels.
 const SPECULAR_SIZE: [u32; 2] = [SPECULAR_WIDTH, SPECULAR_HEIGHT];
-/// Samples per texel of the mirror and of each pair of levels that share their samples. Rougher lobes need more samples and have fewer texels.
+/// Samples per texel of the mirror and of each pair of levels that share samples. Rougher lobes need more samples but have fewer
+/// texels.
 const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 56, 104, 136, 168, 208, 288, 400];
 
 /// Why a bake failed.
@@ -64,8 +66,8 @@ pub struct BakeControl<'a> {
 }
 
 impl GpuEnvironment {
-    /// Bakes the environment of `key`, built-in or a file, with the stages of `set`. A part is taken from `before` if its stages
-    /// and its map are the same, else from the disk cache; else it is computed. Any thread may call this.
+    /// Bakes the environment of `key`, built-in or a file, with the stages of `set`. A part comes from `before` if its stages and
+    /// its map are unchanged, otherwise from the disk cache, and otherwise it is computed. Any thread may call this.
     ///
     /// # Errors
     /// A bad map, a device error, or `control` has canceled the bake.
@@ -129,7 +131,7 @@ impl Bake<'_> {
         Passes { gpu: self.gpu, layouts: &self.set.layouts, set: self.set, radiance, frame: &self.frame, small_lights }
     }
 
-    /// Creates the pipelines of these stages, which counts as a time of its own.
+    /// Creates the pipelines of these stages, and times this as a step of its own.
     fn pipelines(&mut self, stages: &[BakeStage]) -> Result<(), BakeError> {
         let time = Instant::now();
         let create = |stage: &BakeStage| self.set.compute(stage.stage.path.as_str(), &stage.constants).map(drop);
@@ -139,7 +141,7 @@ impl Bake<'_> {
         Ok(())
     }
 
-    /// A part in the disk cache. `None` in place of a key stands for a part that is not kept there.
+    /// A part in the disk cache. Without a key, the part is not cached.
     fn cached(&self, key: Option<&String>, bytes: u64) -> Option<Vec<u8>> {
         disk_cache::load(key?, bytes).filter(|_| self.control.from_disk)
     }
@@ -182,7 +184,7 @@ impl Bake<'_> {
         key(&[map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES, self.key.suns.into()])
     }
 
-    /// The stages of all parts that have to be computed for a map whose radiance is not in the cache.
+    /// The stages of all parts that must be computed for a map whose radiance is not in the cache.
     fn stages_to_run(&self, map: u128) -> Vec<BakeStage> {
         let is_cached = |key: Option<String>, desc: ImageDesc| {
             self.control.from_disk && key.is_some_and(|key| disk_cache::contains(&key, desc.bytes()))

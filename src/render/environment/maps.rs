@@ -42,7 +42,7 @@ pub(crate) struct Radiance {
 pub(crate) struct Prefiltered {
     /// Octahedral maps of all levels, side by side (ibl/maps/levels.glsl).
     pub(crate) levels: Arc<Image>,
-    /// Whether D or V returned values that are no densities. They count as 0.
+    /// Whether D or V returned values that are not valid densities. They count as 0.
     pub(super) wrong: bool,
 }
 
@@ -80,7 +80,7 @@ impl GpuEnvironment {
         Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
     }
 
-    /// Number of suns that its images leave out, which lighting must add.
+    /// Number of suns that the images leave out and that lighting must add.
     pub fn sun_count(&self) -> u32 {
         self.radiance.suns.len().min(MAX_SUNS) as u32
     }
@@ -90,7 +90,7 @@ impl GpuEnvironment {
         (self.radiance.scale, &self.radiance.suns)
     }
 
-    /// The functions that returned values which are no densities, and count as 0 in this light.
+    /// The functions whose return values are not valid densities. They count as 0 in this light.
     pub fn wrong(&self) -> Option<&'static str> {
         self.prefiltered.wrong.then_some("D or V in brdf/ndf.glsl or brdf/visibility.glsl")
     }
@@ -105,7 +105,7 @@ pub struct BakeReport {
     pub cached: bool,
     /// Looking into the cache, then decoding the file or computing the built-in map.
     pub decode_ms: f64,
-    /// Creating the compute pipelines, on another thread than the one that decodes.
+    /// Creating the compute pipelines, in parallel with decoding.
     pub pipeline_ms: f64,
     /// Copying the map, or the cached result, to the device.
     pub upload_ms: f64,
@@ -117,6 +117,6 @@ pub struct BakeReport {
     pub prefilter_ms: f64,
     /// Sheen prefilter of all levels.
     pub sheen_ms: f64,
-    /// From the file to the last pass, without writing the cache.
+    /// From the file to the last pass, excluding the cache write.
     pub total_ms: f64,
 }

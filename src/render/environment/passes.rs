@@ -41,7 +41,7 @@ pub(crate) fn suns_of(list: &[u8]) -> Vec<Sun> {
     suns.map(bytemuck::pod_read_unaligned).collect()
 }
 
-/// Replaces them by as many others.
+/// Replaces the suns with the same number of others.
 pub(crate) fn set_suns(list: &mut [u8], suns: &[Sun]) {
     let bytes = bytemuck::cast_slice(suns);
     if let Some(place) = list.get_mut(size_of::<u32>()..size_of::<u32>() + bytes.len()) {
@@ -83,7 +83,8 @@ pub(crate) struct Lobes<'a> {
 }
 
 impl<'a> Lobes<'a> {
-    /// Cells of ibl/lobe.comp. A driver that knew the number would unroll the loops over them: on NVIDIA that took a second.
+    /// Cells of ibl/lobe.comp, passed as a parameter: if the driver knew the number, it would unroll the loops over them, which
+    /// took a second on NVIDIA.
     const CELLS: u32 = 1024;
 
     pub(crate) fn new(set: &PipelineSet, stage: &BakeStage, samples: &'a [u32]) -> Result<Self, GpuError> {
@@ -132,8 +133,8 @@ impl Passes<'_> {
     ) -> Result<(), GpuError> {
         let desc = *cube.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
-        // At the center of a face, a texel of the cube spans 2 / side radians; the map has width / 2 pi texels per radian.
-        // At least 2 x 2 samples: with one, the energy of a small lamp is off by 0.6 %.
+        // At the center of a face, a texel of the cube spans 2 / side radians; the map has width / 2 pi texels per radian. At
+        // least 2 x 2 samples: with one, the energy of a small light is off by 0.6 %.
         let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(2.0);
         let first = Task {
             size: [desc.width; 2],
@@ -191,7 +192,7 @@ impl Passes<'_> {
         })
     }
 
-    /// Chooses the samples of every pair but the first, which is a mirror.
+    /// Generates the samples of every pair but the first, which is a mirror.
     pub(crate) fn lobes(&self, stage: &BakeStage, lobes: &Lobes<'_>, cube: &Arc<Image>) -> Result<(), GpuError> {
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
@@ -242,7 +243,7 @@ impl Passes<'_> {
         })
     }
 
-    /// Copies the texels of all levels to their image, and leaves it in [`Use::Sampled`]. Returns whether D or V returned wrong
+    /// Copies the texels of all levels to their image, and leaves it in [`Use::Sampled`]. Returns whether D or V returned invalid
     /// values for one of the pairs.
     pub(crate) fn finish_specular(
         &self,

@@ -9,11 +9,11 @@ use crate::interface::{ATTRIBUTE_COLOR, BvhNode, TracedCorners, TracedTriangle, 
 use crate::render::scene::normals_from;
 use crate::scene::{Bvh, Instance, Material, triangles};
 
-/// At most this many triangles are traced. Then nodes, triangles and corners take up to 128 MiB each, which is the largest
-/// storage buffer that every Vulkan device has.
+/// Most triangles that can be traced. Nodes, triangles and corners then take up to 128 MiB each, the largest storage buffer that
+/// every Vulkan device supports.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
-/// The geometry that a shader traces.
+/// The geometry that path tracing intersects.
 #[derive(Default)]
 pub(super) struct Geometry {
     pub(super) nodes: Vec<BvhNode>,

@@ -14,16 +14,16 @@ use crate::render::scene::GpuModel;
 use crate::scene::{AlphaMode, Material, TextureSource};
 use crate::settings::MaterialChannel;
 
-/// Width and height of a layer, texels. What a path sees after its first hit is blurred by the next one, so detail is lost.
+/// Width and height of a layer, texels. Materials after the first hit are blurred by the next bounce, so lower detail is enough.
 const SIDE: u32 = 256;
 /// Layers at most: 64 MiB, and as many as every Vulkan device has. Textures beyond them are left out.
 const MOST_LAYERS: usize = 256;
 
-/// The textures that paths read, in the order of `TracedMaterial::layers`.
+/// The textures that path tracing reads, in the order of `TracedMaterial::layers`.
 const SLOTS: [u32; 3] = [TEXTURE_BASE_COLOR, TEXTURE_METALLIC_ROUGHNESS, TEXTURE_EMISSIVE];
 
-/// The TEXCOORD set of a material's textures: that of base color, or else of the first that there is. Textures that use the
-/// other set are left out.
+/// The TEXCOORD set of a material's textures: the set of its base color, or of its first texture. Textures that use the other set
+/// are left out.
 pub(super) fn uv_set(material: &Material) -> u32 {
     SLOTS.iter().find_map(|slot| material.textures[*slot as usize]).map_or(0, |used| used.uv_set)
 }
@@ -54,7 +54,7 @@ impl<'a> Materials<'a> {
         let uses = SLOTS.map(|slot| material.textures[slot as usize].filter(|used| used.uv_set == uv_set(material)));
         let mut layers = [NO_TEXTURE; 3];
         for ((layer, slot), used) in layers.iter_mut().zip(SLOTS).zip(uses) {
-            // With specular-glossiness the slot of metallic-roughness holds something else.
+            // With specular-glossiness, the metallic-roughness slot holds other data.
             let is_other = material.specular_glossiness && slot == TEXTURE_METALLIC_ROUGHNESS;
             if used.is_some() && !is_other && !is_constant(material, slot) {
                 *layer = self.layer(material, slot);
@@ -105,8 +105,8 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// Scales textures to the layers of one array. All layers are sRGB-encoded, whatever they hold: the copy encodes and the
-/// sampler decodes, so shaders read linear values.
+/// Scales textures to the layers of one array. All layers are stored as sRGB whatever they hold: the copy encodes and the sampler
+/// decodes, so shaders read linear values.
 pub(super) fn layers(gpu: &Arc<Gpu>, textures: &[Arc<Image>]) -> Result<Arc<Image>, GpuError> {
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
     let side = if textures.is_empty() { 1 } else { SIDE };
@@ -132,7 +132,8 @@ fn level_above(image: &Image, side: u32) -> u32 {
     (0..desc.mips).take_while(|level| longer >> level >= side).last().unwrap_or(0)
 }
 
-/// Whether a texture reads as 1 in all channels that paths see. Of metallic and roughness alone, the texture still multiplies the value.
+/// Whether a texture reads as 1 in all channels that path tracing uses. If it replaces metallic or roughness alone, the texture
+/// still multiplies the other value.
 fn is_constant(material: &Material, slot: u32) -> bool {
     let has = |channel| material.constant.has(channel);
     match slot {

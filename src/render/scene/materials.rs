@@ -23,8 +23,8 @@ pub(super) struct MaterialSets<'a> {
 }
 
 impl MaterialSets<'_> {
-    /// The descriptor set of a material, which may differ from the model's material with this index. A texture that reads as 1 in some
-    /// of its channels is a view of the same image.
+    /// The descriptor set of a material, which may differ from the model's material with this index. A texture that must read as
+    /// 1 in some channels becomes a view of the same image.
     pub(super) fn set(&mut self, material: &Material, id: u32) -> Result<Arc<DescriptorSet>, GpuError> {
         let Self { gpu, layouts, model, textures, samplers } = self;
         let packed = pack_material(material, id);
@@ -68,8 +68,8 @@ fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>
         model::Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
         model::Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };
-    // On a software device every texel costs time, so it reads only the nearest mip level and takes no anisotropic samples.
-    // On a GPU both are nearly free.
+    // On a software device every texel costs time, so only the nearest mip level is read, without anisotropy. On a GPU both are
+    // nearly free.
     let software = gpu.info().kind == "cpu";
     let smooth = sampler.mag_linear && sampler.min_linear && sampler.mip == model::Mip::Linear;
     let anisotropy = if smooth && !software { 8 } else { 1 };

@@ -63,7 +63,8 @@ pub struct GpuModel {
 }
 
 impl GpuModel {
-    /// Uploads a model and waits until that is done. Any thread may call this. The model keeps all but the pixels of its images.
+    /// Uploads a model and waits until that is done. Any thread may call this. The model keeps everything but the pixels of its
+    /// images.
     ///
     /// # Errors
     /// An image that exceeds the device's limit, or no memory left.
@@ -170,10 +171,10 @@ pub(crate) fn normals_from(linear: Mat3) -> Mat3 {
     Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
-/// Makes a list of a strip or a fan of triangles: a tessellation stage takes triangles one by one.
+/// Turns a strip or fan of triangles into a list, since a tessellation stage takes triangles one by one.
 fn list_triangles(primitive: &mut Primitive) {
     let list = triangles(primitive.topology, &primitive.indices);
-    // A strip may have no triangle with an area.
+    // A strip may have no triangle with a non-zero area.
     if primitive.topology != Topology::Triangles && !list.is_empty() {
         primitive.indices = list.as_flattened().to_vec();
         primitive.topology = Topology::Triangles;

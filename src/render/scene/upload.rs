@@ -37,7 +37,7 @@ const ALIGNMENT: u64 = 16;
 /// a single image is split into tasks.
 const BYTES_A_TASK: usize = 1 << 20;
 
-/// Random paths copy textures from the device, since the pixels have left the CPU.
+/// Path tracing copies textures from the device, since the pixels have left the CPU.
 const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
     vk::ImageUsageFlags::SAMPLED.as_raw()
         | vk::ImageUsageFlags::TRANSFER_SRC.as_raw()
@@ -83,7 +83,7 @@ fn check_sizes(gpu: &Gpu, model: &Model, sources: &[TextureSource]) -> Result<()
     }
 }
 
-/// A buffer that the CPU fills and the device copies from, as often as needed.
+/// A buffer that the CPU fills and the device copies from, reused as often as needed.
 struct Staging<'a> {
     gpu: &'a Arc<Gpu>,
     buffer: Arc<Buffer>,

@@ -8,8 +8,8 @@ use std::mem::offset_of;
 use std::sync::Arc;
 
 use crate::gpu::{
-    Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts,
-    ShaderModule, Swapchain, ResourceUsage, vk,
+    Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster,
+    ResourceUsage, SetLayouts, ShaderModule, Swapchain, vk,
 };
 use crate::interface::Vertex;
 use crate::shader::{Compiler, StageKind};

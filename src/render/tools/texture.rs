@@ -12,7 +12,7 @@ use crate::gpu::{
 };
 use crate::render::BoundFrame;
 
-/// Format of the pictures. It encodes sRGB.
+/// Format of the previews. It encodes sRGB.
 pub const PREVIEW_FORMAT: vk::Format = vk::Format::B8G8R8A8_SRGB;
 
 /// A part of a texture.
@@ -66,7 +66,7 @@ struct UvPush {
 }
 
 impl Tools {
-    /// Creates an image for pictures of textures, at most as large as itself.
+    /// Creates an image for previews of textures.
     ///
     /// # Errors
     /// Out of memory.
@@ -81,7 +81,7 @@ impl Tools {
     /// # Errors
     /// Out of memory.
     pub fn texture_set(&self, texture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
-        // Magnified texels stay squares.
+        // Magnified texels stay square.
         let desc = SamplerDesc {
             mag: vk::Filter::NEAREST,
             wrap_u: vk::SamplerAddressMode::REPEAT,

@@ -13,7 +13,7 @@ pub struct Capture {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// The picture: RGBA, 8 bits, straight alpha, rows from the top.
+    /// The LDR output: RGBA, 8 bits, straight alpha, rows from the top.
     pub rgba8: Vec<u8>,
     /// The values before exposure, tone map and encoding: RGBA, premultiplied alpha, rows from the top.
     pub raw: Vec<[f32; 4]>,
@@ -64,7 +64,7 @@ impl Readback {
         Ok(this)
     }
 
-    /// Width, height and picture alone, as in [`Capture::rgba8`]. SYNC: after the fence of the submission.
+    /// Width, height and LDR output alone, as in [`Capture::rgba8`]. SYNC: after the fence of the submission.
     pub fn finish_display(self) -> (u32, u32, Vec<u8>) {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
@@ -98,7 +98,7 @@ impl PixelReadback {
         Ok(Self { buffer, copied: None })
     }
 
-    /// Records the copy of a pixel of an HDR image, or of a displayed picture. The image is in [`Use::Sampled`] before and after.
+    /// Records the copy of a pixel of an HDR image, or of the LDR output. The image is in [`Use::Sampled`] before and after.
     pub(super) fn record(&mut self, encoder: &mut Encoder, image: &Arc<Image>, at: Option<(u32, u32)>, picture: u64) {
         let desc = image.desc();
         let at = at.filter(|(x, y)| *x < desc.width && *y < desc.height);
@@ -115,7 +115,7 @@ impl PixelReadback {
     pub(super) fn read(&self) -> Option<PixelAt> {
         let (at, format, picture) = self.copied?;
         let value = match (format, self.buffer.content()) {
-            // The displayed picture has no flags in alpha.
+            // The LDR output has no flags in alpha.
             (Swapchain::FORMAT, [blue, green, red, alpha, ..]) => {
                 let value = [red, green, blue, alpha].map(|byte| f32::from(*byte) / 255.0);
                 PixelValue { value, ..PixelValue::default() }

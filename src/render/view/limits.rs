@@ -7,8 +7,7 @@ use crate::frame::Limits;
 use crate::render::BoundFrame;
 
 impl View {
-    /// The limits of the values that the display shows of `frame`. Until samples of this mode are there, they are those of its last
-    /// picture.
+    /// The display limits of `frame`. Until samples of this mode arrive, the limits of its last frame are used.
     pub(super) fn limits_of(&mut self, frame: &BoundFrame) -> Option<Limits> {
         let state = &frame.state;
         if let Some(limits) = self.followed {
@@ -41,7 +40,7 @@ impl View {
         limits
     }
 
-    /// Whether the range of `frame` follows the values of its mode, and none of them are known yet.
+    /// Whether `frame` has an automatic range, and no samples of its mode have arrived yet.
     pub fn lacks_limits(&self, frame: &BoundFrame) -> bool {
         let mode = frame.state.pipelines.mode;
         let since = self.mode_since.filter(|(last, _)| *last == mode).map(|(_, since)| since);
@@ -62,7 +61,7 @@ impl View {
         has_values.then(|| limits.unwrap_or(unit))
     }
 
-    /// Forgets the limits of earlier pictures, so that the next one depends on its own values alone.
+    /// Forgets the limits of earlier frames, so that the next one depends on its own values alone.
     pub fn forget_limits(&mut self) {
         self.known_limits.clear();
     }
@@ -70,25 +69,27 @@ impl View {
     /// Takes the samples of slot `slot`. SYNC: after the fence of its last frame.
     pub fn take_range_sample(&mut self, slot: usize) {
         let taken = self.in_flight.get_mut(slot).and_then(|in_flight| in_flight.range_sample.take());
-        if let Some(range_sample) = taken.filter(|taken| self.range_sample.as_ref().is_none_or(|old| old.picture < taken.picture)) {
+        if let Some(range_sample) =
+            taken.filter(|taken| self.range_sample.as_ref().is_none_or(|old| old.picture < taken.picture))
+        {
             self.range_sample = Some(Arc::new(range_sample));
         }
     }
 
-    /// The newest samples of the picture's values.
+    /// The newest samples of the frame's values.
     pub fn range_sample(&self) -> Option<&Arc<RangeSample>> {
         self.range_sample.as_ref()
     }
 
-    /// Shows values between these limits, those of a picture that this view's is compared with. `None`: between the limits of its own
-    /// values.
+    /// Uses these display limits, those of the frame that this view is compared with. `None`: the limits of its own values.
     pub fn follow_limits(&mut self, limits: Option<Option<Limits>>) {
         self.followed = limits;
     }
 
-    /// Whether samples of the picture are on their way, or the last frame showed new limits, which a legend does not know yet.
+    /// Whether samples of the frame are in flight, or the last frame showed new limits that the legend does not know yet.
     pub fn awaits_range_sample(&self) -> bool {
         self.limits_changed
-            || self.range_sampled != 0 && self.range_sample.as_ref().map(|range_sample| range_sample.picture) != Some(self.range_sampled)
+            || self.range_sampled != 0
+                && self.range_sample.as_ref().map(|range_sample| range_sample.picture) != Some(self.range_sampled)
     }
 }

@@ -8,17 +8,17 @@ use crate::frame::Limits;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Use, vk};
 use crate::shader::PixelValue;
 
-/// Most samples of a picture: enough for a hundredth of it to be more than a hundred samples.
+/// Most samples of a frame: enough for a hundredth of them to be more than a hundred.
 const SAMPLES: u32 = 1 << 14;
-/// The part of the values beyond each end of [`RangeSample::limits`].
+/// The fraction of the values beyond each end of [`RangeSample::limits`].
 const BEYOND: f32 = 0.01;
 
 /// Values of a picture at the points of a grid.
 #[derive(Clone, Debug, Default)]
 pub struct RangeSample {
-    /// [`super::View::picture`] of the picture.
+    /// [`super::View::picture`] of the sampled picture.
     pub picture: u64,
-    /// Raw values where the picture has one, without coverage.
+    /// Raw values where the frame has any, without coverage.
     pub values: Vec<[f32; 3]>,
 }
 
@@ -79,7 +79,7 @@ impl RangeSampleReadback {
         Ok(())
     }
 
-    /// The grid for pictures like this one, and the buffer for its values.
+    /// The grid for frames of this size, and the buffer for its values.
     fn provide(&mut self, gpu: &Arc<Gpu>, hdr: &Arc<Image>) -> Result<(Arc<Image>, Arc<Buffer>), GpuError> {
         let (width, height, format) = (hdr.desc().width, hdr.desc().height, hdr.desc().format);
         let step = (width * height).div_ceil(SAMPLES).max(1).isqrt() + 1;
@@ -89,7 +89,7 @@ impl RangeSampleReadback {
         if let Some((image, buffer)) = self.image.as_ref().filter(|(image, _)| fits(image)) {
             return Ok((image.clone(), buffer.clone()));
         }
-        // Nothing samples the image, but every image has a view.
+        // Nothing samples this image, but every image has a view.
         let copies = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         let usage = copies | vk::ImageUsageFlags::SAMPLED;
         let image = Image::new(gpu, "range_sample", ImageDesc::new(size.0, size.1, format, usage))?;

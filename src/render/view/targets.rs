@@ -7,7 +7,7 @@ use crate::frame::TargetFormat;
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, vk};
 use crate::scene::mips;
 
-/// The properties of a picture that determine its targets.
+/// The properties of a frame that determine its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TargetDesc {
     /// Width and height, pixels.
@@ -33,9 +33,9 @@ pub(super) struct Targets {
     pub(super) depth: Arc<Image>,
     /// Depth of the first sample of each pixel, if a pass reads it and there is more than one.
     pub(super) resolved_depth: Option<Arc<Image>>,
-    /// The opaque surfaces with mip levels, for transmissive surfaces to look up.
+    /// The opaque scene color, with mip levels, for transmissive surfaces to look up.
     pub(super) opaque_scene: Option<Arc<Image>>,
-    /// Mean of the frames so far.
+    /// The accumulation buffer: the mean of the frames so far.
     pub(super) mean: Option<Arc<Image>>,
 }
 
@@ -86,7 +86,7 @@ impl Targets {
         self.desc.reads_depth.then(|| self.resolved_depth.as_ref().unwrap_or(&self.depth))
     }
 
-    /// The image that the tone map reads: the mean of an accumulating mode, otherwise the newest frame.
+    /// The image that the tone map reads: the accumulation buffer of an accumulating mode, otherwise the newest frame.
     pub(super) fn picture(&self) -> &Arc<Image> {
         self.mean.as_ref().unwrap_or(&self.color)
     }

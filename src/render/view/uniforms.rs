@@ -13,7 +13,7 @@ use crate::render::compute;
 use crate::render::environment::maps::GpuEnvironment;
 use crate::render::paths::PathTracing;
 
-/// The resources in set 0 that are replaced at times.
+/// The resources in set 0 that change.
 #[derive(Clone)]
 pub(crate) struct Sources {
     pub(crate) environment: Arc<GpuEnvironment>,

@@ -43,8 +43,8 @@ impl CubeLuminance {
         (side, alias_table(&weights, total, side))
     }
 
-    /// Mean luminance of a cell, with the linear interpolation of the sampler. So a cell that a bright neighbor shines into
-    /// is not drawn too rarely, which would cause fireflies.
+    /// Mean luminance of a cell, with the linear interpolation of the sampler. So a cell next to a bright texel is not sampled
+    /// too rarely, which would cause fireflies.
     fn mean(&self, face: usize, cells: usize, [column, row]: [usize; 2]) -> f32 {
         // The integral of linear interpolation over two texels, of which the neighbors reach into an eighth each.
         const WEIGHTS: [f32; 4] = [1.0 / 16.0, 7.0 / 16.0, 7.0 / 16.0, 1.0 / 16.0];
@@ -62,7 +62,7 @@ impl CubeLuminance {
         sum
     }
 
-    /// A texel, at most one outside the face: then of the face that continues there, as a seamless sampler reads it.
+    /// A texel, at most one outside the face: read from the adjacent face, as a seamless sampler does.
     fn texel(&self, face: usize, x: isize, y: isize) -> f32 {
         let side = self.side as isize;
         let (face, x, y) = match (0..side).contains(&x) && (0..side).contains(&y) {
@@ -119,7 +119,7 @@ fn solid_angle(side: usize, [column, row]: [usize; 2]) -> f32 {
     (1.0 + at(column).powi(2) + at(row).powi(2)).powf(-1.5)
 }
 
-/// Vose 1991, "A Linear Algorithm For Generating Random Numbers With a Given Distribution": each cell keeps a part of its own
+/// Vose 1991, "A Linear Algorithm For Generating Random Numbers With a Given Distribution": each cell keeps a part of its
 /// probability of being chosen uniformly and gives the rest to one that needs more.
 fn alias_table(weights: &[f32], total: f64, side: usize) -> Vec<EnvironmentCell> {
     let count = weights.len() as f64;

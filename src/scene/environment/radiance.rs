@@ -36,8 +36,8 @@ pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
 
 /// Decodes flat pixels, old run lengths, and what is damaged, for which the decoder has the error.
 fn decode_unusual(bytes: &[u8], pixels: &mut [[f32; 4]]) -> Result<(), Problem> {
-    // The decoder writes three floats a pixel. They go to the front of the final buffer and are spread out in place
-    // from the back: a second buffer for the largest image would take 1.5 GiB.
+    // The decoder writes three floats a pixel. They go to the start of the final buffer and are expanded in place from the back:
+    // a second buffer for the largest image would take 1.5 GiB.
     let count = pixels.len();
     let floats: &mut [f32] = pixels.as_flattened_mut();
     let decoder = HdrDecoder::new_nonstrict(bytes).map_err(problem)?;

@@ -44,8 +44,8 @@ pub fn has_exact_sun(name: &str) -> bool {
     name == "sky"
 }
 
-/// Whether the bake of this environment takes suns out of its maps, and lighting adds them. The other built-in environments have
-/// none; of a file this is not known before it is decoded.
+/// Whether the bake of this environment separates suns, which lighting then adds. The other built-in environments have none; for
+/// a file this is unknown until it is decoded.
 pub fn separates_suns(settings: &EnvironmentSettings) -> bool {
     let has_none = BUILT_IN.contains(&settings.name.as_str()) && !has_exact_sun(&settings.name);
     settings.suns && settings.is_lit() && !has_none
@@ -55,7 +55,7 @@ pub fn separates_suns(settings: &EnvironmentSettings) -> bool {
 const REACH: f32 = 0.02;
 
 /// Gives suns the light that the images lack because half floats end at `limit`, after the map's values are multiplied by
-/// `scale`. A sun is then so bright that the light around it makes no difference.
+/// `scale`. Such a sun is so bright that the light around it makes no difference.
 pub fn restore_clipped(suns: &mut [Sun], map: &Environment, scale: f32, limit: f32) {
     if map.peak * scale <= limit {
         return;

@@ -33,7 +33,7 @@ use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
 use crate::message::panic_text;
 
-/// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is still finite in `f32`.
+/// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is then still finite in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
 /// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.

@@ -1,6 +1,6 @@
 //! Options of a `//@pass` that contradict each other, or do not apply to its kind of stage.
 
-use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassFormat, PassDesc, PassSize, Target};
+use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassDesc, PassFormat, PassSize, Target};
 use crate::shader::compile::StageKind;
 
 /// The word of the annotation that is wrong, and a message.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
 use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::message::did_you_mean;
-use crate::shader::annotation::pass::{PassFormat, PassDesc, Target};
+use crate::shader::annotation::pass::{PassDesc, PassFormat, Target};
 use crate::shader::annotation::texture::TextureDesc;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;

@@ -27,7 +27,15 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
         return Err(too_early);
     }
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
-    for phase in [RenderPhase::BeforeModel, RenderPhase::Model, RenderPhase::Resolve, RenderPhase::Mean, RenderPhase::Light, RenderPhase::Tonemap, RenderPhase::Display] {
+    for phase in [
+        RenderPhase::BeforeModel,
+        RenderPhase::Model,
+        RenderPhase::Resolve,
+        RenderPhase::Mean,
+        RenderPhase::Light,
+        RenderPhase::Tonemap,
+        RenderPhase::Display,
+    ] {
         let in_phase = |at: &usize| passes[*at].phase == phase;
         let (makers, others): (Vec<usize>, Vec<usize>) =
             (0..passes.len()).filter(in_phase).partition(|at| passes[*at].desc.to_picture());
@@ -50,8 +58,9 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let mut changed = true;
     while std::mem::take(&mut changed) {
         for at in 0..passes.len() {
-            let follows =
-                |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].phase == RenderPhase::Display);
+            let follows = |name: &str| {
+                name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].phase == RenderPhase::Display)
+            };
             let reads = images(&passes[at].inputs).any(follows);
             let after = passes[at].desc.after.as_deref().is_some_and(follows);
             if (reads || after) && passes[at].phase == RenderPhase::Light {
@@ -65,7 +74,9 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
 /// The passes whose images the model or the background reads are drawn before the model, and so are those that they read in turn.
 fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
-    let is_reader = |pass: &&GraphPass| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap);
+    let is_reader = |pass: &&GraphPass| {
+        matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean | RenderPhase::Tonemap)
+    };
     let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
     for reader in readers {
         let is_model = reader.phase <= RenderPhase::Mean;
@@ -101,7 +112,9 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
 /// unless one of them reads the picture of this frame: then the model reads what they wrote in the frame before.
 fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let is_read = |at: &usize| {
-        let mut readers = passes.iter().filter(|pass| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean));
+        let mut readers = passes
+            .iter()
+            .filter(|pass| matches!(pass.phase, RenderPhase::Model | RenderPhase::Resolve | RenderPhase::Mean));
         readers.any(|reader| writes_buffer_of(&passes[*at], reader))
     };
     let writers: Vec<usize> = (0..passes.len()).filter(is_read).collect();
@@ -118,7 +131,8 @@ fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, u
         let can_be_first = |at: &usize| {
             let pass = &passes[*at];
             let reads_picture = pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth));
-            pass.phase == RenderPhase::BeforeModel || (pass.phase == RenderPhase::Light && !pass.desc.to_picture() && !reads_picture)
+            pass.phase == RenderPhase::BeforeModel
+                || (pass.phase == RenderPhase::Light && !pass.desc.to_picture() && !reads_picture)
         };
         if needed.iter().all(can_be_first) {
             needed.into_iter().for_each(|at| passes[at].phase = RenderPhase::BeforeModel);

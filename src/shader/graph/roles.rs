@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{RenderPhase, PassStage};
+use super::{PassStage, RenderPhase};
 use crate::message::did_you_mean;
 use crate::shader::annotation::Annotations;
 use crate::shader::annotation::pass::{MODEL, PassDesc, TONEMAP, Target};

@@ -3,8 +3,8 @@
 pub(super) mod directory;
 pub mod draft;
 pub mod embedded;
-pub mod quarantine;
 pub mod pattern;
+pub mod quarantine;
 mod read;
 pub mod snapshot;
 pub(super) mod text;

@@ -24,7 +24,12 @@ pub struct Quarantine {
 impl Source {
     /// The `tree`, in which each file that differs from its text in `good` has that text. [`Source::released`] then returns to the
     /// files on disk, except those in `quarantined`, by path and [`text_hash`]. `cause` is the reason that diagnostics give.
-    pub fn quarantined(tree: Self, good: &BTreeMap<TreePath, String>, quarantined: BTreeMap<TreePath, u64>, cause: &str) -> Self {
+    pub fn quarantined(
+        tree: Self,
+        good: &BTreeMap<TreePath, String>,
+        quarantined: BTreeMap<TreePath, u64>,
+        cause: &str,
+    ) -> Self {
         let differs = |(path, text): &(&TreePath, &String)| tree.read(path).as_ref() != Ok(*text);
         let texts = good.iter().filter(differs).map(|(path, text)| (path.clone(), text.clone())).collect();
         Self::Quarantined(Arc::new(Quarantine { tree, texts, files: quarantined, cause: cause.to_owned() }))
@@ -49,7 +54,11 @@ impl Source {
 
     /// The quarantined files, with the hashes of their texts.
     pub fn quarantined_files(&self) -> BTreeMap<TreePath, u64> {
-        if let Self::Quarantined(quarantine) = self.without_draft() { quarantine.files.clone() } else { BTreeMap::new() }
+        if let Self::Quarantined(quarantine) = self.without_draft() {
+            quarantine.files.clone()
+        } else {
+            BTreeMap::new()
+        }
     }
 
     /// An error for each quarantined file.
@@ -98,7 +107,8 @@ mod tests {
         let hash = text_hash(&Ok("new".to_owned()));
         // `c` is a new file, which has no last good text.
         let quarantined = BTreeMap::from([(a.clone(), hash), (c.clone(), hash)]);
-        let quarantine = Source::quarantined(Source::Disk(directory.path().to_owned()), &BTreeMap::from(good), quarantined, "lost");
+        let quarantine =
+            Source::quarantined(Source::Disk(directory.path().to_owned()), &BTreeMap::from(good), quarantined, "lost");
         let read = |source: &Source| paths.each_ref().map(|path| source.read(path).unwrap());
         assert_eq!(read(&quarantine), ["old a", "old b", "new", "new"]);
 

@@ -47,15 +47,15 @@ pub(super) struct Thread {
     pub(super) reloaded: Arc<AtomicU64>,
     /// Whether the first reload has begun.
     pub(super) has_compiled: bool,
-    /// Panics since the last reload that ended.
+    /// Panics since the last completed reload.
     pub(super) panics: u32,
-    /// The thumbnails whose pipelines are still to be built, and the set that gets them.
+    /// The thumbnails whose pipelines have not been built yet, and their set.
     pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
-    /// The same for the inspector.
+    /// The inspector's modes whose pipelines have not been built yet, and their set.
     pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
-    /// The build of a thumbnail's pipelines that runs, or was the last to run.
+    /// The latest build of a thumbnail's pipelines, which may still run.
     pub(super) low_priority: Option<JoinHandle<()>>,
-    /// The picture about whose pipelines the driver is asked.
+    /// The frame whose pipelines the driver is queried about.
     pub(super) questions: Option<Build>,
     /// Whether the last reload has left stages to [`Thread::finish`].
     pub(super) unfinished: bool,
@@ -84,12 +84,11 @@ impl Thread {
         let mut build: Option<Build> = None;
         loop {
             if edit.is_none() && self.has_compiled && !self.unfinished && self.holds_back() {
-                // All stages of the last good texts are compiled. The texts on disk that differ follow as an edit.
+                // All stages of the last good texts are compiled. Differing texts on disk follow as an edit.
                 edit = Some(Edit::new(Change::Paths(BTreeSet::new()), Instant::now()));
             }
             let mut waiting = Vec::new();
-            // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is
-            // closing.
+            // Nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
             let has_more = build.is_some() || (self.unfinished && self.is_shown) || self.has_idle_work();
             if edit.is_none() && (self.is_stale() || !has_more) {
                 match self.next_job() {
@@ -123,20 +122,20 @@ impl Thread {
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
                 (self.thumbnails, self.inspected, self.questions) = (None, None, None);
             } else if self.is_stale() {
-                // The edit goes first.
+                // Edits go first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
                 self.finish();
             } else if let Some((set, request)) = build.take() {
                 let pending = request.needs_pending(&set.shaders);
                 let newest = self.reloader.library().set();
                 if pending && !newest.is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
-                    // The window does not know yet that these stages have been compiled. It will ask again.
+                    // The window does not know yet that these stages have been compiled, and asks again.
                     continue;
                 }
                 let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.sender.send(Message::Worker(WorkerMessage::Built(built)));
-                // A comparison asks for pipelines of older sets, whose neighboring modes nobody needs.
+                // A comparison requests pipelines of older sets, whose neighboring modes are not needed.
                 if self.reloader.library().set().is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
                     self.build_ahead(&set);
                 }
@@ -188,13 +187,12 @@ impl Thread {
         set
     }
 
-    /// Whether texts are held back that [`Thread::release`] would release.
+    /// Whether there are quarantined texts that [`Thread::release`] would release.
     fn holds_back(&self) -> bool {
         self.reloader.library().source().released().is_some()
     }
 
-    /// Releases held texts ([`Source::released`]) with a change, unless it is the first, which shows the last good
-    /// texts.
+    /// Releases quarantined texts ([`Source::released`]) with a change, unless it is the first, which shows the last good texts.
     fn release(&mut self, change: Change) -> Change {
         if !self.has_compiled {
             self.has_compiled = true;
@@ -230,7 +228,8 @@ impl Thread {
             Change::All if matches!(source, Source::Quarantined(_)) => BTreeSet::new(),
             Change::All => source.list().into_iter().collect(),
         };
-        // A new file may be included only now. Editors save other files beside, with names and endings of their own.
+        // A new file may be one that was missing until now. Editors also save other files, with names and extensions of their
+        // own.
         let is_shader = |path: &TreePath| {
             let is_hidden = path.as_str().split('/').any(|name| name.starts_with('.'));
             FileKind::of(Path::new(path.as_str())) == FileKind::Shader && !is_hidden
@@ -267,12 +266,12 @@ impl Thread {
         }
     }
 
-    /// Whether there is work that waits until nothing else does.
+    /// Whether there is work for idle times.
     fn has_idle_work(&self) -> bool {
         self.has_thumbnails() || (!self.unfinished && self.questions.is_some())
     }
 
-    /// Asks the driver about the next pipeline. Returns whether there was a question.
+    /// Queries the statistics of the next pipeline. Returns whether there was one left.
     fn ask_driver(&mut self) -> bool {
         let Some((set, request)) = self.questions.as_ref().filter(|_| !self.unfinished) else { return false };
         match set.ask_driver(request) {
@@ -302,7 +301,7 @@ impl Thread {
         }
         let waiting = [&mut self.inspected, &mut self.thumbnails].into_iter().flatten();
         let Some((set, requests)) = waiting.into_iter().find(|(_, requests)| !requests.is_empty()) else { return };
-        // The window shows no thumbnail, or no values, where this fails.
+        // On failure the window shows no thumbnail, or no values.
         let Some((set, request)) = requests.pop_front().map(|request| (set.clone(), request)) else { return };
         self.join_aside();
         let sender = self.sender.clone();
@@ -314,7 +313,7 @@ impl Thread {
             sender.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
             drop(done);
         }));
-        // A driver takes tens of milliseconds, for which a save need not wait.
+        // The driver takes tens of milliseconds, for which an edit need not wait.
         while !self.is_stale() && self.inbox.is_empty() {
             if ended.recv_timeout(Duration::from_millis(1)) != Err(RecvTimeoutError::Timeout) {
                 break;
@@ -322,14 +321,14 @@ impl Thread {
         }
     }
 
-    /// Waits for the build of a thumbnail's pipelines that runs. After a panic of that thread the thumbnail is missing.
+    /// Waits for the running build of a thumbnail's pipelines. After a panic of that thread the thumbnail is missing.
     fn join_aside(&mut self) {
         if let Some(Err(panic)) = self.low_priority.take().map(JoinHandle::join) {
             tracing::debug!("no thumbnails: {}", panic_text(&*panic));
         }
     }
 
-    /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
+    /// Builds the previous and the next mode, which `[` and `]` select, unless other work waits.
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
         let snapshot = self.snapshot();
         // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.

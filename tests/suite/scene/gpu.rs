@@ -8,8 +8,8 @@ use crate::support::process::{PATIENCE, finish, specula};
 use crate::support::{assert_validated, gpu};
 use specula::gpu::{
     Attachments, Buffer, DescriptorSet, Encoder, Frames, Gpu, GpuError, GpuOptions, Image, ImageDesc, Memory,
-    PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, Rect, Sampler, SamplerDesc, SetLayouts,
-    SetWriter, ShaderModule, Submission, Use, ResourceUsage, fault, one_shot, vk,
+    PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, Rect, ResourceUsage, Sampler,
+    SamplerDesc, SetLayouts, SetWriter, ShaderModule, Submission, Use, fault, one_shot, vk,
 };
 use specula::interface::SET_FRAME;
 

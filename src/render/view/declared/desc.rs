@@ -30,7 +30,7 @@ pub(super) struct ScratchDesc {
 }
 
 impl PassDesc {
-    /// `picture`: the size of the picture, in pixels.
+    /// `picture`: size of the frame, in pixels.
     pub(super) fn new(pass: &GraphPass, (name, format): (&str, PassFormat), picture: (u32, u32)) -> Self {
         let size = pass.desc.size.pixels(picture);
         let place = pass.desc.images().position(|(image, _)| pass.desc.mips && image == name);
@@ -46,7 +46,7 @@ impl PassDesc {
         }
     }
 
-    /// Number of texels in all levels, of the frame before too.
+    /// Number of texels in all levels, the previous frame's image included.
     pub(super) fn texels(&self) -> u64 {
         let level = |level: u32| u64::from((self.size.0 >> level).max(1)) * u64::from((self.size.1 >> level).max(1));
         (0..self.mips).map(level).sum::<u64>() * if self.keeps { 2 } else { 1 }

@@ -20,7 +20,8 @@ struct PassImages {
     is_shared: bool,
     /// One image, or two if the image of the previous frame is kept.
     images: Vec<Arc<Image>>,
-    /// The image that the pass draws to, if mip levels are made from it. Passes that need the same share it, and the depth.
+    /// The image that the pass draws to, if mip levels are made from it. Passes with the same requirements share it, and the
+    /// depth.
     first_level: Option<Arc<Image>>,
     /// The depth of the model, if the pass draws it.
     depth: Option<Arc<Image>>,
@@ -30,11 +31,11 @@ struct PassImages {
     is_drawn: bool,
     /// The number of the drawing that the newest image holds; 0: it was cleared.
     drawing: u64,
-    /// The sources of that drawing, if the next frame may keep it.
+    /// What that drawing depends on, if the next frame may reuse it.
     cache_key: Option<PassCacheKey>,
 }
 
-/// The needs of a frame. If they are unchanged, all images and buffers are kept.
+/// The requirements of a frame. If they are unchanged, all images and buffers are kept.
 #[derive(Clone, Default, PartialEq)]
 struct Key {
     size: (u32, u32),
@@ -52,9 +53,9 @@ pub(super) struct Images {
     /// By the names of the images.
     passes: BTreeMap<String, PassImages>,
     buffers: BTreeMap<String, Arc<Buffer>>,
-    /// The images for the HDR picture between passes, at most two.
+    /// The images that hold the HDR picture between passes, at most two.
     pictures: Vec<Arc<Image>>,
-    /// Two images for the displayed picture between passes after the tone map. Empty if there are no such passes.
+    /// Two images that hold the LDR picture between passes after the tone map. Empty if there are no such passes.
     pub(super) displays: Vec<Arc<Image>>,
     /// The image of the shown pass, scaled to the size of the picture.
     shown: Option<Arc<Image>>,
@@ -86,7 +87,7 @@ pub(super) fn blank(gpu: &Arc<Gpu>, kind: TextureKind) -> Result<Arc<Image>, Gpu
 }
 
 impl Images {
-    /// The images for `frame`. Those of `self` that fit are reused. `None` if the needs are the same as before.
+    /// The images for `frame`. Those of `self` that fit are reused. `None` if the requirements are unchanged.
     pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
         let request = &frame.state.pipelines;
         let key = Key {
@@ -133,7 +134,8 @@ impl Images {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
-        let makers = request.passes.iter().filter(|pass| pass.desc.to_picture() && pass.phase == RenderPhase::Light).count();
+        let makers =
+            request.passes.iter().filter(|pass| pass.desc.to_picture() && pass.phase == RenderPhase::Light).count();
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let (width, height) = frame.state.size;
@@ -161,7 +163,7 @@ impl Images {
     }
 
     /// The images with this name and these properties: those of `last` if they fit. `shared`: the image that other passes have
-    /// drawn to before, or `None` if this is the first.
+    /// drawn to, or `None` if this is the first.
     fn images_of(
         &mut self,
         gpu: &Arc<Gpu>,
@@ -226,7 +228,7 @@ impl Images {
         self.passes.values().flat_map(|pass| &pass.images).any(|used| Arc::ptr_eq(used, image))
     }
 
-    /// An image that passes need only while they draw: all that need the same share it.
+    /// An image that passes need only while they draw: all passes with the same requirements share it.
     fn scratch(&self, gpu: &Arc<Gpu>, desc: ScratchDesc, last: &Self) -> Result<Arc<Image>, GpuError> {
         let known = self.passes.values().chain(last.passes.values());
         let mut known = known.flat_map(|pass| {
@@ -304,7 +306,7 @@ impl Images {
         pass.desc.images().filter_map(of).collect()
     }
 
-    /// Records that the pass has drawn its image, and what it was drawn from if a later frame may keep it.
+    /// Records that the pass has drawn its image, and from what, if a later frame may reuse it.
     pub(super) fn finished(&mut self, name: &str, cache_key: Option<PassCacheKey>) {
         self.drawings += 1;
         if let Some(pass) = self.passes.get_mut(name) {
@@ -314,7 +316,7 @@ impl Images {
         }
     }
 
-    /// Whether the image of the pass holds what would be drawn from these sources.
+    /// Whether the image of the pass holds what these inputs would produce.
     pub(super) fn holds(&self, name: &str, cache_key: &PassCacheKey) -> bool {
         self.passes.get(name).and_then(|pass| pass.cache_key.as_ref()).is_some_and(|of| of == cache_key)
     }
@@ -324,12 +326,12 @@ impl Images {
         self.passes.get(name).is_some_and(|pass| pass.is_shared)
     }
 
-    /// The number of the drawing that the image of a pass holds, which no other drawing of a pass has. `None`: it has no image.
+    /// A unique number of the drawing that the image of a pass holds. `None`: it has no image.
     pub(super) fn drawn_at(&self, name: &str) -> Option<u64> {
         self.active(name).map(|pass| pass.drawing)
     }
 
-    /// The images of a pass of this frame. Those that are kept of a pass that is off are not read.
+    /// The images of a pass of this frame. Images kept for a pass that is off are not read.
     fn active(&self, name: &str) -> Option<&PassImages> {
         let is_active = self.key.passes.iter().any(|pass| pass.desc.draws(name));
         self.passes.get(name).filter(|_| is_active)
@@ -353,7 +355,7 @@ impl Images {
         self.buffers.get(name)
     }
 
-    /// The image that a pass gives a new picture in, which is not the one that it reads.
+    /// The image in which a pass outputs the new picture: never the one that it reads.
     pub(super) fn other_picture(&self, phase: RenderPhase, read: &Arc<Image>) -> Option<&Arc<Image>> {
         let images = if phase == RenderPhase::Display { &self.displays } else { &self.pictures };
         images.iter().find(|image| !Arc::ptr_eq(image, read))

@@ -9,8 +9,8 @@ use crate::frame::PipelineRequest;
 use crate::shader::Diagnostic;
 use crate::shader::annotation::pass::{PassFormat, PassSize, Target};
 
-/// An error at the line of the first pass with whose images and buffers the passes of `request` take more than `limit` bytes, for a picture
-/// of this size.
+/// An error at the line of the first pass with which the images and buffers of `request` take more than `limit` bytes, for a
+/// frame of this size.
 pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) -> Option<Diagnostic> {
     let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), |pass, image| {
         PassDesc::new(pass, image, size)

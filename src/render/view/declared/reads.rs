@@ -6,7 +6,7 @@ use super::{DeclaredPasses, PassContext};
 use crate::gpu::{GpuError, Image, PassLayout, PassResource};
 use crate::shader::graph::{Input, Inputs};
 
-/// The inputs of a stage, and where they come from.
+/// The inputs of a stage, and their sources.
 pub(super) struct Reads<'a> {
     /// Name of the pass, or path of the stage.
     pub(super) name: &'a str,
@@ -66,7 +66,7 @@ impl DeclaredPasses {
         layout.bindings().map(resource).collect()
     }
 
-    /// An image as passes read it: with blended texels, if the device can blend them.
+    /// An image as passes read it: filtered, if the device can filter its format.
     fn sampled<'a>(&'a self, image: &'a Arc<Image>) -> PassResource<'a> {
         let blends = self.gpu.blends_texels(image.desc().format);
         PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })

@@ -11,7 +11,7 @@ use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Target;
 use crate::shader::graph::Input;
 
-/// Everything that an image of a pass was drawn from.
+/// Everything that an image of a pass depends on.
 #[derive(Clone, Default)]
 pub(super) struct PassCacheKey {
     /// The device objects. A weak reference keeps the address, so that no other object gets it.
@@ -23,7 +23,7 @@ pub(super) struct PassCacheKey {
 }
 
 impl PassCacheKey {
-    /// The sources of a pass in this frame. `None` if it has some that change with every picture, or that cannot be compared.
+    /// What a pass depends on in this frame. `None` if some of it changes with every frame, or cannot be compared.
     ///
     /// `pipelines`: those that draw it. `instances`: how often each draws the model; 0: not at all. `index`: its place in
     /// `PipelineRequest::passes`.

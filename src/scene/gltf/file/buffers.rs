@@ -9,7 +9,7 @@ use super::uri::{self, Target};
 use crate::scene::error::Problem;
 use crate::scene::gltf::place;
 
-/// The model's folder, and the files that the loader tried.
+/// The model's folder, and the files that the loader has looked for.
 pub struct Files<'t> {
     /// The model's folder; `None` for a model in memory, which has no files.
     pub folder: Option<PathBuf>,

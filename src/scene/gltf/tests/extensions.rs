@@ -71,7 +71,7 @@ fn values_of_layers() {
     }));
     assert_eq!(material.clearcoat, Clearcoat { factor: 0.5, roughness: 0.25, normal_scale: -2.0 });
     assert_eq!(material.sheen, Sheen { color: Vec3::new(0.1, 0.2, 0.3), roughness: 0.4 });
-    // A maximum below the minimum is a map that is read the other way around.
+    // If the maximum is below the minimum, the map is read inverted.
     let film = Iridescence { factor: 0.6, ior: 1.8, thickness_min_nm: 50.0, thickness_max_nm: 20.0 };
     assert_eq!(material.iridescence, film);
     assert_eq!(material.anisotropy, Anisotropy { strength: 0.7, rotation: -7.0 });

@@ -5,7 +5,7 @@ use super::super::super::model::Topology;
 use super::*;
 use crate::interface as contract;
 
-/// The features of the one material of a square, but for how its occlusion is read.
+/// The features of the only material of a square, except for how its occlusion is read.
 fn bits(builder: &Builder) -> u32 {
     let model = builder.model();
     features(&model, &model.materials[1], model.primitives[0].attributes, Topology::Triangles)
@@ -94,7 +94,7 @@ fn features_that_need_others() {
     bare.primitive()["attributes"].as_object_mut().unwrap().remove("TEXCOORD_0");
     assert_eq!(bits(&bare), contract::FEATURE_CLEARCOAT | contract::FEATURE_ANISOTROPY);
     assert!(bare.model().warnings[0].contains("around the object's Y axis"), "{:?}", bare.model().warnings);
-    // Unlit means without light.
+    // Unlit materials get no light.
     let unlit = json!({ "KHR_materials_unlit": {}, "KHR_materials_clearcoat": { "clearcoatFactor": 1 } });
     assert_eq!(bits(&with(unlit)), contract::FEATURE_UNLIT);
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A file with a bit of everything, to be damaged.
+/// A file that uses many features, for tests that damage it.
 fn rich() -> Builder {
     let mut builder = Builder::square();
     builder.image("normalTexture", &materials::png(2, 2));
@@ -16,7 +16,7 @@ fn rich() -> Builder {
     builder.json["textures"][0]["sampler"] = json!(0);
     builder.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 1 } }]);
     builder.json["nodes"][0]["camera"] = json!(0);
-    // Every extension's reader sees damaged numbers too.
+    // The readers of all extensions see damaged numbers too.
     builder.json["extensions"]["KHR_materials_variants"]["variants"] = json!([{ "name": "a" }]);
     builder.primitive()["extensions"]["KHR_materials_variants"]["mappings"] =
         json!([{ "material": 0, "variants": [0] }]);
@@ -107,7 +107,7 @@ fn accessors() {
         ("componentType", json!(U32), "expected Vec3 of F32"),
         ("componentType", json!(1), "that glTF defines"),
     ] {
-        // The other attributes would notice another count first.
+        // The other attributes would report a wrong count first.
         let mut builder = Builder::triangle();
         builder.json["accessors"][0][key] = value.clone();
         let error = builder.error();
@@ -176,7 +176,7 @@ fn primitives_and_references() {
     }
 }
 
-/// Neither panics nor lies: what loads keeps the model's promises.
+/// No panic and no broken invariant: a model that loads keeps all promises of `Model`.
 fn survives(bytes: &[u8], what: std::fmt::Arguments<'_>) {
     match load_bytes("damaged", bytes) {
         Ok(model) => assert_sound(&model),
@@ -207,7 +207,7 @@ fn flipped_bytes() {
 
 #[test]
 fn digits_changed_everywhere() {
-    // Bit flips seldom leave valid JSON with another number in it: this does.
+    // Bit flips seldom leave valid JSON with another number in it; this replaces numbers.
     let builder = rich();
     let text = builder.json.to_string();
     for (at, _) in text.char_indices().filter(|(_, c)| c.is_ascii_digit()) {

@@ -23,7 +23,7 @@ const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// A glTF file in the making. Change `json` freely: indexing an object makes its keys.
+/// A builder of glTF files. Change `json` freely: indexing an object creates its keys.
 #[derive(Clone)]
 struct Builder {
     json: Value,
