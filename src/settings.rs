@@ -2,7 +2,9 @@
 
 mod assign;
 mod catalog;
+mod declare;
 mod display;
+mod entry;
 mod environment;
 mod expression;
 mod factors;
@@ -10,8 +12,8 @@ mod lights;
 mod list;
 mod look;
 mod material;
-mod range;
 mod scene;
+mod value;
 
 use std::collections::BTreeMap;
 
@@ -20,52 +22,57 @@ use serde::{Deserialize, Serialize};
 use crate::message::did_you_mean;
 
 pub use assign::unknown_setting;
-pub use catalog::{Setting, catalog, limits, told};
+pub use catalog::{Setting, catalog, setting, table};
+use declare::settings;
 pub use display::{Channels, Colormap, ViewRange};
+pub use entry::{Curve, Entry, Slider, Unit, Valid};
 pub use environment::EnvironmentSettings;
 pub use expression::ExpressionSettings;
-pub use factors::{Factor, FactorInfo, FactorValue, MaterialValues, path as factor_path};
+pub use factors::{Factor, FactorValue, MaterialValues, path as factor_path};
 pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
 pub use look::LookError;
 pub use material::{MaterialChannel, MaterialChannels, MaterialOverride};
-use range::Range;
 pub use scene::{ModelSettings, SceneSettings};
+use value::{Choice, Part as _};
+pub use value::{Value, choice_name};
 
-/// All settings. A look file is this struct as TOML. `--set` takes dotted paths into it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// Slug of the debug mode.
-    pub mode: String,
-    /// Camera.
-    pub camera: CameraSettings,
-    /// Lights.
-    pub lights: LightSettings,
-    /// Name of a variant of the model (KHR_materials_variants); empty for the model's default materials.
-    pub variant: String,
-    /// Material override: one material replaces all of the model's, or some channels of them.
-    pub material: MaterialOverride,
-    /// Factors of single materials of the model, by name of the material.
-    pub materials: BTreeMap<String, MaterialValues>,
-    /// Visible parts of the model.
-    pub scene: SceneSettings,
-    /// Where the model stands.
-    pub model: ModelSettings,
-    /// Environment.
-    pub environment: EnvironmentSettings,
-    /// File of a measured BRDF, which the modes of the group Measured show; empty for none.
-    pub measured: String,
-    /// The expression that the mode `expression` shows.
-    pub expression: ExpressionSettings,
-    /// Exposure, tone mapping, background, multisampling.
-    pub view: ViewSettings,
-    /// Cameras that the user has kept, by their number.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub bookmarks: BTreeMap<String, CameraSettings>,
-    /// Declared passes that are switched on or off, by name. The others are as their `//@pass` says.
-    pub passes: BTreeMap<String, bool>,
-    /// Values of the constants and parameters that `//@ui` annotations declare, by name.
-    pub shader: BTreeMap<String, ShaderValue>,
+settings! {
+    /// All settings. A look file is this struct as TOML. `--set` takes dotted paths into it.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct Settings {
+        /// Debug mode; `specula modes` lists them.
+        mode: String = "final".into();
+        /// Camera.
+        camera: CameraSettings;
+        /// Lights.
+        lights: LightSettings;
+        /// Variant of the model's materials (KHR_materials_variants); without one its own materials.
+        variant: String, row("Variant");
+        /// Material override: one material replaces all of the model's, or some channels of them.
+        material: MaterialOverride;
+        /// Factors of single materials of the model, by name of the material.
+        materials: BTreeMap<String, MaterialValues>;
+        /// Visible parts of the model.
+        scene: SceneSettings;
+        /// Where the model stands.
+        model: ModelSettings;
+        /// Environment.
+        environment: EnvironmentSettings;
+        /// File of a measured BRDF, for the modes `measured...`.
+        measured: String;
+        /// The expression that the mode `expression` shows.
+        expression: ExpressionSettings;
+        /// Exposure, tone mapping, background, multisampling.
+        view: ViewSettings;
+        /// Cameras that the user has kept, by their number.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        bookmarks: BTreeMap<String, CameraSettings>;
+        /// Declared passes that are switched on or off, by name. The others are as their `//@pass` says.
+        passes: BTreeMap<String, bool>;
+        /// Values of the constants and parameters that `//@ui` annotations declare, by name.
+        shader: BTreeMap<String, ShaderValue>;
+    }
 }
 
 /// The pass of the shipped tree that draws the model's shadow on the ground.
@@ -81,28 +88,6 @@ impl Settings {
         settings.view.dither = true;
         settings.passes.insert(GROUND.into(), true);
         settings
-    }
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            mode: "final".into(),
-            camera: CameraSettings::default(),
-            lights: LightSettings::default(),
-            variant: String::new(),
-            material: MaterialOverride::default(),
-            materials: BTreeMap::new(),
-            scene: SceneSettings::default(),
-            model: ModelSettings::default(),
-            environment: EnvironmentSettings::default(),
-            measured: String::new(),
-            expression: ExpressionSettings::default(),
-            view: ViewSettings::default(),
-            bookmarks: BTreeMap::new(),
-            passes: BTreeMap::new(),
-            shader: BTreeMap::new(),
-        }
     }
 }
 
@@ -122,27 +107,23 @@ pub enum ShaderValue {
     Name(String),
 }
 
-/// The camera. Without `eye`, `azimuth` and `elevation` frame the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct CameraSettings {
-    /// World position, meters.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub eye: Option<[f32; 3]>,
-    /// Looked-at point, meters.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub target: Option<[f32; 3]>,
-    /// Vertical field of view, degrees.
-    pub fovy: f32,
-    /// Framing: degrees around the model from +Z towards +X.
-    pub azimuth: f32,
-    /// Framing: degrees above the horizon.
-    pub elevation: f32,
-}
-
-impl Default for CameraSettings {
-    fn default() -> Self {
-        Self { eye: None, target: None, fovy: 35.0, azimuth: 30.0, elevation: 15.0 }
+settings! {
+    /// The camera. Without `eye`, `azimuth` and `elevation` frame the model.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct CameraSettings {
+        /// Vertical field of view.
+        fovy: f32 = 35.0, limits(1.0, 170.0) unit(DEGREES) row("Field of view") slider(5.0, 120.0, 0);
+        /// Position of the camera in meters: x, y, z. Without it, the camera frames the model.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        eye: Option<[f32; 3]>, unit(METERS) row("Position");
+        /// The point that the camera looks at and orbits around, in meters: x, y, z. Without it, the center of the model.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        target: Option<[f32; 3]>, unit(METERS) row("Target");
+        /// Framing: angle around the model, from +Z towards +X.
+        azimuth: f32 = 30.0, limits(-1e6, 1e6) unit(DEGREES);
+        /// Framing: angle above the horizon.
+        elevation: f32 = 15.0, limits(-90.0, 90.0) unit(DEGREES);
     }
 }
 
@@ -169,57 +150,48 @@ pub enum Tonemap {
     Neutral,
 }
 
-/// How the renderer turns radiance into a picture.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ViewSettings {
-    /// Tone map.
-    pub tonemap: Tonemap,
-    /// EV100: exposure is 1 / (1.2 * 2^ev), so a larger value is darker. The window shows it with the other sign.
-    pub ev: f32,
-    /// `none`, `env` or `#rrggbb`.
-    pub background: String,
-    /// Range of values that the picture spreads over the display.
-    pub range: ViewRange,
-    /// Channels that the picture shows.
-    pub channels: Channels,
-    /// Colors that stand for a number.
-    pub colormap: Colormap,
-    /// Whether light is dithered before it is stored with 8 bits.
-    pub dither: bool,
-    /// Whether the edges of the triangles lie over the picture.
-    pub wireframe: bool,
-    /// Samples per pixel, 1 or 4.
-    pub msaa: u32,
-    /// Number of frames that accumulating modes average when rendering without a window.
-    pub frames: u32,
-    /// How often a random path goes on from the surface that it has hit, in the modes that trace the model. 0 leaves direct light.
-    pub bounces: u32,
-    /// Memory that images and buffers of passes may take, MiB.
-    pub pass_memory: u32,
-}
+impl Choice for Tonemap {}
 
 /// The default background. Modes that show data instead of light also use it if the background is `env`.
 const BACKGROUND: &str = "#1b1d21";
 
-impl Default for ViewSettings {
-    fn default() -> Self {
-        let (tonemap, background) = (Tonemap::default(), BACKGROUND.into());
-        let (range, channels, colormap) = (ViewRange::default(), Channels::default(), Colormap::default());
-        Self {
-            tonemap,
-            ev: 0.0,
-            background,
-            range,
-            channels,
-            colormap,
-            dither: false,
-            wireframe: false,
-            msaa: 4,
-            frames: 64,
-            bounces: 4,
-            pass_memory: 2048,
-        }
+settings! {
+    /// How the renderer turns radiance into a picture.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct ViewSettings {
+        /// Exposure as EV100: light in cd/m² is multiplied by 1 / (1.2 × 2^EV100), so +1 is half as bright. The window shows the exposure
+        /// compensation in stops, -EV100: there, +1 is twice as bright.
+        ev: f32 = 0.0, limits(-30.0, 30.0) unit(EV100) row("Exposure") negated(-16.0, 16.0, 1);
+        /// Curve that maps exposed light to the range of the display.
+        tonemap: Tonemap, row("Tone map");
+        /// What is behind the model: none (transparent), env (the environment), or a color as #rrggbb.
+        background: String = BACKGROUND.into(), row("Background")
+            choices(&[("environment", "env"), ("dark gray", BACKGROUND), ("transparent", "none")]);
+        /// The values shown as black and white. mode: as the mode stores them; auto: fit to the picture, in modes whose values have a unit
+        /// or leave 0..1, and for a watched expression; fit: fit to the picture in every mode, in place of exposure and tone map;
+        /// LOW..HIGH: these two.
+        range: ViewRange, words("mode, auto, fit or LOW..HIGH") row("Range") title("Range of values")
+            choices(&[("as the mode stores them", "mode"), ("auto", "auto"), ("fit to the picture", "fit")]);
+        /// Channels that the picture shows. A single channel is shown in gray; a is coverage.
+        channels: Channels, row("Channels");
+        /// Colors that stand for a number, in modes with one component and for a single channel. none: the colors of the mode. viridis and
+        /// magma have even steps of lightness (van der Walt and Smith 2015), turbo has many hues (Mikhailov 2019), and coolwarm diverges
+        /// from a neutral middle (Moreland 2009).
+        colormap: Colormap, row("Colormap") title("Colors of numbers");
+        /// Draw the edges of the triangles over the picture, in every mode.
+        wireframe: bool, row("Wireframe") title("Wireframe over the picture");
+        /// Noise of half an 8-bit step, which hides banding in smooth light. The window has it, `render` does not; data and EXR files never
+        /// have it.
+        dither: bool, row("Dither");
+        /// Multisampling: samples of each pixel.
+        msaa: u32 = 4, one_of(&[1, 4]) unit(SAMPLES) row("Samples") title("Samples per pixel");
+        /// Frames that `render` averages in modes that accumulate.
+        frames: u32 = 64, whole(1, 100_000) unit(FRAMES);
+        /// Reflections of a random path after the first, in modes that trace the model. 0 leaves direct light.
+        bounces: u32 = 4, whole(0, 64) unit(REFLECTIONS);
+        /// Memory that images and buffers of passes may take.
+        pass_memory: u32 = 2048, whole(1, 1 << 20) unit(MEBIBYTES);
     }
 }
 
@@ -250,21 +222,14 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
 }
 
 impl Settings {
-    /// All numbers that have limits, each with its path.
-    fn ranges(&self) -> Vec<Range> {
-        let camera = &self.camera;
-        let mut ranges = vec![
-            Range::new("camera.fovy", camera.fovy, 1.0..=170.0),
-            Range::new("camera.elevation", camera.elevation, -90.0..=90.0),
-            Range::new("camera.azimuth", camera.azimuth, -1e6..=1e6),
-            Range::new("view.ev", self.view.ev, -30.0..=30.0),
-        ];
-        ranges.extend(self.lights.ranges());
-        ranges.extend(self.material.ranges());
-        ranges.extend(self.model.ranges());
-        let environment = self.environment.numbers();
-        ranges.extend(environment.map(|(name, value, low, high)| Range::new(name, value, low..=high)));
-        ranges
+    /// The value of the setting at a path, or of one of its numbers.
+    pub fn value(&self, path: &str) -> Option<Value> {
+        self.at(path)
+    }
+
+    /// Sets the value at a path. A path that does not exist, or a value of another type, changes nothing.
+    pub fn set_value(&mut self, path: &str, value: &Value) {
+        self.set_at(path, value);
     }
 
     /// Checks that every value is valid.
@@ -272,7 +237,9 @@ impl Settings {
     /// # Errors
     /// A message with the setting, its value and the valid values.
     pub fn check(&self) -> Result<(), String> {
-        self.ranges().iter().try_for_each(Range::check)?;
+        for setting in catalog() {
+            self.at(&setting.path).map_or(Ok(()), |value| setting.entry.check(&setting.path, &value))?;
+        }
         factors::check(&self.materials)?;
         let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];
         for (name, vector) in vectors {
@@ -286,19 +253,7 @@ impl Settings {
                 Choose another background or an environment"
                 .into());
         }
-        if !(1..=100_000).contains(&self.view.frames) {
-            return Err(format!("view.frames is {}; it can be 1 to 100000", self.view.frames));
-        }
-        if self.view.bounces > 64 {
-            return Err(format!("view.bounces is {}; it can be 0 to 64", self.view.bounces));
-        }
-        if !(1..=1 << 20).contains(&self.view.pass_memory) {
-            return Err(format!("view.pass_memory is {}; it can be 1 to {} MiB", self.view.pass_memory, 1 << 20));
-        }
-        match self.view.msaa {
-            1 | 4 => Ok(()),
-            other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
-        }
+        Ok(())
     }
 }
 
@@ -316,6 +271,8 @@ mod tests {
             ("lights.rect.width=0", "lights.rect.width is 0; it can be 0.001 to 1000"),
             ("lights.rect.strength=inf", "lights.rect.strength is inf"),
             ("lights.orbit.1.color=[1, 1, -1]", "lights.orbit.1.color.2 is -1"),
+            ("view.frames=0", "view.frames is 0; it can be 1 to 100000"),
+            ("view.msaa=2", "view.msaa is 2; it can be 1 or 4"),
         ] {
             let mut settings = Settings::default();
             settings.assign(assignment).unwrap();

@@ -6,7 +6,7 @@ use clap::{Command, CommandFactory as _};
 use specula::control::{COMMANDS, Described};
 use specula::message::nearest;
 use specula::scene::BUILT_IN;
-use specula::settings::{Factor, FactorInfo, Setting, catalog, factor_path, told};
+use specula::settings::{Factor, Setting, catalog, factor_path};
 use specula::shader::annotation::ParameterType;
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Change, Library, ShaderSet, Update};
@@ -90,15 +90,15 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
     out!("Settings, for --set PATH=VALUE and for look files (--look FILE.toml).");
     out!("Several numbers are joined by commas, as --set lights.ambient_color=1,0.8,0.6.");
     out!("In a look file, view.ev is the line `ev = 1` below `[view]`.\n");
-    print_rows(&catalog());
+    print_rows(catalog().iter().map(of_setting).collect());
     out!("\nFactors of one material of the model, as --set materials.NAME.FACTOR=VALUE\n");
-    print_rows(&factors());
+    print_rows(Factor::ALL.iter().map(of_factor).collect());
     let source = source(tree)?;
     let name = source.name();
     match Library::new(source, compiler()?, &specula::frame::stages::stages()).update(&Change::All) {
         Update::Ready(shaders, _) => {
             out!("\nSettings of the shader tree {name}\n");
-            print_rows(&of_tree(&shaders));
+            print_rows(of_tree(&shaders));
         }
         _ => out!("\nThe shader tree {name} does not compile, so its own settings are unknown: see `specula check`."),
     }
@@ -119,32 +119,26 @@ fn print_commands() {
     }
 }
 
-/// The factors of a material.
-fn factors() -> Vec<Setting> {
-    let row = |factor: &Factor| {
-        let FactorInfo { unit, limits, is_color, doc, .. } = factor.info();
-        Setting {
-            path: factor_path("NAME", *factor),
-            takes: if is_color { "3 numbers" } else { "number" },
-            default: String::new(),
-            range: told(&limits),
-            unit: unit.trim(),
-            doc: doc.to_owned(),
-        }
-    };
-    Factor::ALL.iter().map(row).collect()
+/// Path, kind of value, default, range, unit and meaning.
+type Row = [String; 6];
+
+fn of_setting(setting: &Setting) -> Row {
+    let Setting { path, entry, takes, default, .. } = setting;
+    let [takes, unit] = [*takes, entry.unit.name].map(str::to_owned);
+    [path.clone(), takes, default.to_string(), entry.valid.text(), unit, setting.doc()]
+}
+
+fn of_factor(factor: &Factor) -> Row {
+    let (takes, entry) = (if factor.is_color() { "3 numbers" } else { "number" }, factor.entry());
+    let [takes, default, unit, doc] = [takes, "", entry.unit.name, entry.doc()].map(str::to_owned);
+    [factor_path("NAME", *factor), takes, default, entry.valid.text(), unit, doc]
 }
 
 /// The constants, parameters and passes of a tree.
-fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
+fn of_tree(shaders: &ShaderSet) -> Vec<Row> {
     let range = |range: Option<(f64, f64)>| range.map(|(low, high)| format!("{low} to {high}")).unwrap_or_default();
-    let setting = |path: &str, takes: &'static str, default: String, range: String, doc: String| Setting {
-        path: path.to_owned(),
-        takes,
-        default,
-        range,
-        unit: "",
-        doc,
+    let setting = |path: &str, takes: &str, default: String, range: String, doc: String| {
+        [path.to_owned(), takes.to_owned(), default, range, String::new(), doc]
     };
     let with_names = |label: &str, choices: &[(String, i64)], doc: &str| {
         let names: Vec<&str> = choices.iter().map(|(name, _)| name.as_str()).collect();
@@ -191,13 +185,9 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
     constants.chain(parameters).chain(passes).collect()
 }
 
-fn print_rows(settings: &[Setting]) {
+fn print_rows(rows: Vec<Row>) {
     let heading = ["Setting", "Value", "Default", "Range", "Unit", "Meaning"].map(str::to_owned);
-    let row = |setting: &Setting| {
-        let Setting { path, takes, default, range, unit, doc } = setting.clone();
-        [path, takes.to_owned(), default, range, unit.to_owned(), doc]
-    };
-    let rows: Vec<[String; 6]> = std::iter::once(heading).chain(settings.iter().map(row)).collect();
+    let rows: Vec<Row> = std::iter::once(heading).chain(rows).collect();
     let widths: [usize; 5] = std::array::from_fn(|i| rows.iter().map(|row| row[i].len()).max().unwrap_or(0));
     let mut group = String::new();
     for [path, takes, default, range, unit, doc] in &rows {

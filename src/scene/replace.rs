@@ -171,7 +171,7 @@ mod tests {
                     ..Material::default()
                 };
                 let before = material.clone();
-                let value = match wanted.info().is_color {
+                let value = match wanted.is_color() {
                     true => FactorValue::Color([0.25, 1.0, 0.75]),
                     false => FactorValue::Number(if *wanted == Factor::AnisotropyRotation { 90.0 } else { 2.5 }),
                 };

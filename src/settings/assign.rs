@@ -1,6 +1,6 @@
 //! `path=value`, as `--set` takes it.
 
-use super::{Settings, catalog, factors, limits, told};
+use super::{Settings, Value, catalog, factors, setting};
 use crate::message::{did_you_mean, either};
 
 /// Before the name of a material.
@@ -63,9 +63,8 @@ impl Settings {
         let material = unquoted.unwrap_or(material);
         let factor = factors::named(name)?;
         let value = parse(text).try_into().map_err(|_| {
-            let info = factor.info();
-            let takes = if info.is_color { "3 numbers, as 0.9,0.1,0.1" } else { "a number" };
-            format!("{MATERIALS}{path} cannot be '{text}'; it takes {takes}, {}", told(&info.limits))
+            let takes = if factor.is_color() { "3 numbers, as 0.9,0.1,0.1" } else { "a number" };
+            format!("{MATERIALS}{path} cannot be '{text}'; it takes {takes}, {}", factor.entry().valid.text())
         })?;
         self.materials.entry(material.to_owned()).or_default().insert(factor, value);
         Ok(())
@@ -157,22 +156,24 @@ fn keys(value: &toml::Value) -> String {
 
 /// `a number, 0 to 1`, if the setting is a number or several numbers with limits.
 fn numbers(path: &str) -> Option<String> {
-    let setting = catalog().into_iter().find(|setting| setting.path == path)?;
-    match setting.takes {
-        "number" => Some(format!("a number, {}", told(&limits(path)?))),
-        "3 numbers" => Some(format!("3 numbers, {}", told(&limits(path)?))),
+    let setting = setting(path)?;
+    let range = setting.entry.valid.text();
+    match setting.default {
+        Value::Number(_) if !range.is_empty() => Some(format!("a number, {range}")),
+        Value::Numbers(_) if !range.is_empty() => Some(format!("3 numbers, {range}")),
         _ => None,
     }
 }
 
 /// Describes the values that fit at a path where `old` is, after serde refused `text` because of `cause`.
 fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> String {
-    let names = catalog::names(path);
-    if !names.is_empty() {
-        let hint = did_you_mean(text, names.iter().map(String::as_str));
-        return format!("it can be {}.{hint}", either(&names));
+    let setting = setting(path);
+    if let Some(setting) = setting.filter(|setting| !setting.names.is_empty()) {
+        let hint = did_you_mean(text, setting.names.iter().map(String::as_str));
+        return format!("it can be {}.{hint}", either(&setting.names));
     }
-    let within = limits(path).map(|limits| format!(", {}", told(&limits))).unwrap_or_default();
+    let within = setting.map(|setting| setting.entry.valid.text()).filter(|range| !range.is_empty());
+    let within = within.map(|range| format!(", {range}")).unwrap_or_default();
     match old {
         _ if path.starts_with("passes.") => "it takes true or false".into(),
         _ if path.starts_with("shader.") => "it takes a number, numbers as 1,0.8,0.6, true, false or a name".into(),

@@ -1,183 +1,79 @@
-//! The list of all settings with what each takes, for `specula help set` and for messages.
+//! The list of all settings, made of their entries.
 
-use std::collections::HashMap;
-use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use clap::ValueEnum;
-
-use super::{Channels, Colormap, LightSource, Settings, Tonemap};
+use super::value::Part as _;
+use super::{Entry, Settings, Value};
 use crate::message;
 
-/// One setting, ready to be printed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A setting: its path, its entry, and what follows from its type.
+#[derive(Debug)]
 pub struct Setting {
     /// Path for `--set`, as `lights.orbit.0.strength`.
     pub path: String,
+    /// What was declared with its field.
+    pub entry: &'static Entry,
     /// Kind of value: a number, three numbers, a name, ...
     pub takes: &'static str,
-    /// Value without any option; empty when there is none.
-    pub default: String,
-    /// The range of a number; empty when any number fits, or for other types.
-    pub range: String,
-    /// Unit or color space; empty for pure numbers.
-    pub unit: &'static str,
-    /// The effect of the setting.
-    pub doc: String,
+    /// The names that it takes, if these are all that it takes.
+    pub names: Vec<String>,
+    /// Value without any option.
+    pub default: Value,
 }
 
-/// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
-const DESCRIBED: &[(&str, &str, &str)] = &[
-    ("mode", "", "Debug mode; `specula modes` lists them"),
-    ("variant", "", "Variant of the model; without one its own materials"),
-    ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
-    ("expression.at", "", "Expression of the shaders that the mode `expression` shows: FILE:LINE:NAME"),
-    ("camera.eye", "meters", "Position of the camera; without it the model is framed"),
-    ("camera.target", "meters", "Point that the camera looks at; without it the center of the model"),
-    ("camera.fovy", "degrees", "Vertical field of view"),
-    ("camera.azimuth", "degrees", "Framing: angle around the model, from +Z towards +X"),
-    ("camera.elevation", "degrees", "Framing: angle above the horizon"),
-    ("lights.source", "", "Which lights shine"),
-    ("lights.spin", "degrees/s", "Speed of the orbiting lights in the window"),
-    ("lights.chosen", "", "Light that the BRDF terms show, counted from 1; 0: all of them"),
-    ("lights.ambient_color", "linear RGB", "Color of the flat light without an environment"),
-    ("lights.ambient_strength", "cd/m^2", "Strength of the flat light without an environment"),
-    ("lights.orbit.*.color", "linear RGB", "Color"),
-    ("lights.orbit.*.strength", "candela", "Intensity for a model with a radius of 1 m"),
-    ("lights.orbit.*.distance", "radii", "Distance from the model's center, in radii of the model"),
-    ("lights.orbit.*.azimuth", "degrees", "Angle around +Y, from +Z towards +X"),
-    ("lights.orbit.*.polar", "degrees", "Angle from +Y"),
-    ("lights.rect.enabled", "", "Whether the rectangle shines"),
-    ("lights.rect.color", "linear RGB", "Color"),
-    ("lights.rect.strength", "cd/m^2", "Luminance of white; it does not depend on the size"),
-    ("lights.rect.width", "radii", "Length of the horizontal edges, in radii of the model"),
-    ("lights.rect.height", "radii", "Length of the other edges, in radii of the model"),
-    ("lights.rect.distance", "radii", "Distance from the model's center, in radii of the model"),
-    ("lights.rect.azimuth", "degrees", "Angle around +Y, from +Z towards +X"),
-    ("lights.rect.polar", "degrees", "Angle from +Y"),
-    ("material.enabled", "", "Whether this material replaces all of the model's"),
-    ("material.override", "", "Channels that it replaces alone: base_color, metallic, roughness, anisotropy"),
-    ("material.base_color", "linear RGB", "Base color: 0.5 is half the light, which a picture stores as 188 of 255"),
-    ("material.metallic", "", "0 dielectric, 1 metal"),
-    ("material.roughness", "", "Perceptual roughness"),
-    ("material.anisotropy", "", "Strength of the anisotropy"),
-    ("material.anisotropy_rotation", "degrees", "Angle from the tangent towards the bitangent"),
-    ("scene.hidden", "", "Nodes and primitives that are not drawn: names, or #3 for the node with this index"),
-    ("scene.isolated", "", "Nodes and primitives that alone are drawn; none: all"),
-    ("model.rotation", "degrees", "Rotation of the model about its X, Y and Z axis, about Z first and Y last"),
-    ("model.scale", "", "Factor on the model's lengths"),
-    ("model.translation", "meters", "Where the origin of the model's file is"),
-    ("environment.name", "", "studio, furnace, sky, none, or a .hdr or .exr file"),
-    ("environment.rotation", "degrees", "Angle around +Y"),
-    ("environment.intensity", "", "Factor on the map, whose values are cd/m^2"),
-    ("environment.blur", "", "Blur behind the model, as a roughness"),
-    (
-        "environment.suns",
-        "",
-        "Whether suns of the map light the model as lamps do; otherwise they are a part of the prefiltered light",
-    ),
-    ("view.tonemap", "", "Tone map"),
-    ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100), so +1 is half as bright; Exposure in the window is -EV100"),
-    ("view.channels", "", "Channels that the picture shows; a is coverage"),
-    ("view.colormap", "", "Colors that stand for a number, in modes with one component and for a single channel"),
-    (
-        "view.dither",
-        "",
-        "Noise of half a step of 8 bits, which hides bands in light; the window has it, `render` does not",
-    ),
-    ("view.wireframe", "", "Edges of the triangles over the picture"),
-];
+impl Setting {
+    /// Path of its group; empty at the top.
+    pub fn group(&self) -> &str {
+        self.path.rsplit_once('.').map_or("", |(group, _)| group)
+    }
 
-/// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: &[(&str, &str, &str, &str)] = &[
-    (
-        "expression.evaluation",
-        "",
-        "0 to 4294967295",
-        "Which evaluation of the expression in a pixel counts, from 1; 0: the last",
-    ),
-    ("view.background", "", "", "none (transparent), env, or #rrggbb"),
-    (
-        "view.range",
-        "",
-        "mode, auto, fit or LOW..HIGH",
-        "The values shown as black and white: as the mode stores them, fit to the picture where that helps (auto) or always (fit)",
-    ),
-    ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
-    ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
-    (
-        "view.bounces",
-        "reflections",
-        "0 to 64",
-        "Reflections of a random path after the first, in modes that trace the model",
-    ),
-    ("view.pass_memory", "MiB", "1 to 1048576", "Memory that images and buffers of passes may take"),
-];
+    /// Its meaning with the names that it takes.
+    pub fn doc(&self) -> String {
+        let doc = self.entry.doc();
+        if self.names.is_empty() { doc.to_owned() } else { format!("{doc}. One of {}", self.names.join(", ")) }
+    }
+}
 
-/// All settings, in the order in which they are documented.
-pub fn catalog() -> Vec<Setting> {
-    let defaults = toml::Value::try_from(Settings::default()).ok();
-    let known = Settings::default().known().ok();
-    let described = DESCRIBED.iter().map(|(path, unit, doc)| (*path, *unit, "", *doc));
-    let all = described.chain(DESCRIBED_WITH_RANGE.iter().copied());
-    let rows = all.flat_map(|(path, unit, range, doc)| {
-        let lights = if path.contains('*') { 3 } else { 1 };
-        (0..lights).map(move |light| (path.replace('*', &light.to_string()), unit, range, doc))
+/// All settings: those at the top, then group by group in the order of their declaration.
+pub fn catalog() -> &'static [Setting] {
+    static ALL: LazyLock<Vec<Setting>> = LazyLock::new(|| {
+        static ROOT: Entry = Entry::new("");
+        let mut all = Vec::new();
+        Settings::default().list("", &ROOT, &mut all);
+        // The settings of a group come before the groups in it.
+        let groups: Vec<String> = all.iter().map(|setting| setting.group().to_owned()).collect();
+        all.sort_by_key(|setting| groups.iter().position(|group| group == setting.group()));
+        all
     });
-    let mut rows: Vec<_> = rows.collect();
-    // The lights one after the other, all else in place.
-    let group = |path: &str| path.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
-    let groups: Vec<String> = rows.iter().map(|(path, ..)| group(path)).collect();
-    rows.sort_by_key(|(path, ..)| groups.iter().position(|known| *known == group(path)));
-    let row = |(path, unit, range, doc): (String, &'static str, &str, &str)| {
-        let default = defaults.as_ref().and_then(|root| at(root, &path)).map(shown).unwrap_or_default();
-        let takes = known.as_ref().and_then(|root| at(root, &path)).map(kind).unwrap_or_default();
-        let range = limits(&path).map_or_else(|| range.to_owned(), |limits| told(&limits));
-        let names = names(&path);
-        let doc = if names.is_empty() { doc.to_owned() } else { format!("{doc}: {}", names.join(", ")) };
-        Setting { takes: if names.is_empty() { takes } else { "name" }, path, default, range, unit, doc }
-    };
-    rows.into_iter().map(row).collect()
+    &ALL
 }
 
-/// Paths of all settings.
-pub(super) fn paths() -> Vec<String> {
-    catalog().into_iter().map(|setting| setting.path).collect()
+/// The setting at a path, or the one that has the number at this path.
+pub fn setting(path: &str) -> Option<&'static Setting> {
+    let at = |path: &str| catalog().iter().find(|setting| setting.path == path);
+    at(path).or_else(|| {
+        let (whole, index) = path.rsplit_once('.')?;
+        at(whole).filter(|setting| setting.takes == "3 numbers" && index.parse::<usize>().is_ok())
+    })
 }
 
-/// The names that a setting with a fixed choice takes; empty for all other settings.
-pub(super) fn names(path: &str) -> Vec<String> {
-    fn of<T: ValueEnum>() -> Vec<String> {
-        T::value_variants().iter().filter_map(|v| Some(v.to_possible_value()?.get_name().to_owned())).collect()
+/// The table of all settings, in Markdown: part of `assets/manual/settings.md`.
+pub fn table() -> String {
+    let mut out = String::from("| setting | takes | default | range | unit | meaning |\n|---|---|---|---|---|---|\n");
+    for setting in catalog() {
+        let Setting { path, entry, takes, default, .. } = setting;
+        let default = default.to_string();
+        let default = if default.is_empty() { default } else { format!("`{default}`") };
+        let (range, unit, doc) = (entry.valid.text(), entry.unit.name, setting.doc());
+        out += &format!("| `{path}` | {takes} | {default} | {range} | {unit} | {doc} |\n");
     }
-    match path {
-        "view.tonemap" => of::<Tonemap>(),
-        "lights.source" => of::<LightSource>(),
-        "view.channels" => of::<Channels>(),
-        "view.colormap" => of::<Colormap>(),
-        _ => Vec::new(),
-    }
-}
-
-/// Smallest and largest value of a number, or of each of its components; `None` when it has no limits or no such
-/// setting exists.
-pub fn limits(path: &str) -> Option<RangeInclusive<f32>> {
-    static LIMITS: LazyLock<HashMap<String, RangeInclusive<f32>>> =
-        LazyLock::new(|| Settings::default().ranges().into_iter().map(|range| (range.path, range.limits)).collect());
-    LIMITS.get(path).or_else(|| LIMITS.get(&format!("{path}.0"))).cloned()
-}
-
-/// Limits in words: `0 to 1`.
-pub fn told(limits: &RangeInclusive<f32>) -> String {
-    let number = |x: f32| if x.abs() >= 1e4 { format!("{x:e}") } else { x.to_string() };
-    format!("{} to {}", number(*limits.start()), number(*limits.end()))
+    out
 }
 
 /// The setting that is most like an unknown path, and how alike they are, 0..1. A path without a dot is also compared with the last parts of all
 /// paths, since that is how people abbreviate them.
 pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
-    let paths = paths();
-    let candidates = own.iter().copied().chain(paths.iter().map(String::as_str));
+    let candidates = own.iter().copied().chain(catalog().iter().map(|setting| setting.path.as_str()));
     let likeness = |path: &str| {
         let whole = message::likeness(typed, path);
         let last = path.rsplit('.').next().filter(|_| !typed.contains('.')).unwrap_or(path);
@@ -187,57 +83,52 @@ pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
     message::best(candidates.map(|path| (likeness(path), path))).map(|path| (likeness(path), path.to_owned()))
 }
 
-/// The value at a path of a table.
-fn at<'a>(root: &'a toml::Value, path: &str) -> Option<&'a toml::Value> {
-    path.split('.').try_fold(root, |place, key| match place {
-        toml::Value::Array(array) => array.get(key.parse::<usize>().ok()?),
-        other => other.get(key),
-    })
-}
-
-fn kind(value: &toml::Value) -> &'static str {
-    match value {
-        toml::Value::Float(_) => "number",
-        toml::Value::Integer(_) => "whole number",
-        toml::Value::Boolean(_) => "true or false",
-        toml::Value::Array(list) if list.is_empty() => "names",
-        toml::Value::Array(_) => "3 numbers",
-        _ => "text",
-    }
-}
-
-/// A value as it is typed after `=`. Floats are those of an `f32`.
-fn shown(value: &toml::Value) -> String {
-    match value {
-        toml::Value::Float(x) => (*x as f32).to_string(),
-        toml::Value::Array(list) => list.iter().map(shown).collect::<Vec<_>>().join(","),
-        toml::Value::String(text) => text.clone(),
-        other => other.to_string(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn leaves(value: &toml::Value, path: &str, out: &mut Vec<String>) {
-        let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-        match value {
-            toml::Value::Table(table) => table.iter().for_each(|(key, value)| leaves(value, &below(key), out)),
-            toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
-                list.iter().enumerate().for_each(|(i, value)| leaves(value, &below(&i.to_string()), out));
-            }
-            _ => out.push(path.to_owned()),
+    /// What a path and the value at it mean to `--set` and to a look file.
+    #[test]
+    fn every_setting_is_read_and_set_by_its_path() {
+        let defaults = toml::Value::try_from(Settings::default()).unwrap();
+        for setting in catalog() {
+            let mut keys = setting.path.split('.');
+            let stored = keys.try_fold(&defaults, |place, key| match (place, key.parse::<usize>()) {
+                (toml::Value::Array(list), Ok(index)) => list.get(index),
+                (place, _) => place.get(key),
+            });
+            assert_eq!(stored.is_none(), setting.default == Value::Unset, "{}", setting.path);
+            let mut settings = Settings::default();
+            assert_eq!(settings.value(&setting.path).as_ref(), Some(&setting.default), "{}", setting.path);
+            let other = match &setting.default {
+                Value::Switch(on) => Value::Switch(!on),
+                Value::Number(number) => Value::Number(number + 0.25),
+                Value::Whole(number) => Value::Whole(number + 1),
+                Value::Unset | Value::Numbers(_) => Value::Numbers([0.25, 0.5, 1.0]),
+                Value::Text(_) if setting.path == "view.range" => Value::Text("0..5".into()),
+                Value::Text(_) => Value::Text(setting.names.last().map_or("other", String::as_str).into()),
+                Value::Names(_) => Value::Names(vec!["roughness".into()]),
+            };
+            settings.set_value(&setting.path, &other);
+            let mut assigned = Settings::default();
+            assigned.assign(&format!("{}={other}", setting.path)).unwrap();
+            assert!(settings == assigned && settings != Settings::default(), "{}", setting.path);
         }
     }
 
     #[test]
-    fn every_setting_is_described_once() {
-        let (mut expected, mut found) = (Vec::new(), paths());
-        leaves(&Settings::default().known().unwrap(), "", &mut expected);
-        expected.sort();
-        found.sort();
-        assert_eq!(found, expected);
+    fn defaults_and_sliders_are_valid() {
+        for Setting { path, entry, default, .. } in catalog() {
+            entry.check(path, default).unwrap();
+            assert!(!entry.doc().is_empty(), "{path}");
+            if let Some(slider) = entry.slider {
+                for end in [slider.ends.0, slider.ends.1] {
+                    let end = if slider.is_negated { -end } else { end };
+                    entry.check(path, &Value::Number(end as f32)).unwrap();
+                }
+                assert!(slider.ends.0 < slider.ends.1 && !entry.label.is_empty(), "{path}");
+            }
+        }
     }
 
     #[test]
@@ -254,9 +145,12 @@ mod tests {
     }
 
     #[test]
-    fn limits_are_those_that_are_checked() {
-        assert_eq!(limits("camera.fovy"), Some(1.0..=170.0));
-        assert_eq!(limits("lights.orbit.2.color").map(|l| told(&l)).as_deref(), Some("0 to 1e6"));
-        assert_eq!(limits("camera.eye"), None);
+    fn valid_values_are_told_in_words() {
+        let told = |path| setting(path).map(|setting| setting.entry.valid.text());
+        assert_eq!(told("camera.fovy").as_deref(), Some("1 to 170"));
+        assert_eq!(told("lights.orbit.2.color.1").as_deref(), Some("0 to 1e6"));
+        assert_eq!(told("view.msaa").as_deref(), Some("1 or 4"));
+        assert_eq!(told("camera.eye").as_deref(), Some(""));
+        assert_eq!(told("camera.fovy.0"), None);
     }
 }

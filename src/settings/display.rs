@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::linear_from_srgb;
+use super::value::{Choice, Kind};
+use super::{Value, linear_from_srgb};
 
 /// The range of values that the picture spreads over the display, `view.range`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -60,6 +61,22 @@ impl TryFrom<String> for ViewRange {
     }
 }
 
+impl Kind for ViewRange {
+    const TAKES: &'static str = String::TAKES;
+
+    fn value(&self) -> Value {
+        Value::Text(self.to_string())
+    }
+
+    fn set(&mut self, value: &Value) {
+        if let Value::Text(text) = value
+            && let Ok(range) = text.parse()
+        {
+            *self = range;
+        }
+    }
+}
+
 impl From<ViewRange> for String {
     fn from(range: ViewRange) -> Self {
         range.to_string()
@@ -82,6 +99,8 @@ pub enum Channels {
     /// Coverage, as gray.
     A,
 }
+
+impl Choice for Channels {}
 
 impl Channels {
     /// The number in `Frame::channels`.
@@ -108,6 +127,8 @@ pub enum Colormap {
     /// Blue, cyan, green, yellow, red: false color.
     Heat,
 }
+
+impl Choice for Colormap {}
 
 use crate::interface::COLORMAP_STEPS;
 

@@ -2,29 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::ViewSettings;
+use super::declare::settings;
+use super::{Settings, ViewSettings};
 
-/// Settings of the environment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct EnvironmentSettings {
-    /// A built-in name, a `.hdr` or `.exr` file, or `none`, which selects the uniform ambient light of
-    /// `lights.ambient_*`.
-    pub name: String,
-    /// Degrees around +Y; a positive angle turns what is ahead (-Z) to the left (-X).
-    pub rotation: f32,
-    /// Factor on the environment's values, which are in cd/m^2.
-    pub intensity: f32,
-    /// Blur of the background: 0 sharp .. 1, as a roughness.
-    pub blur: f32,
-    /// Whether suns of the map light the model as lamps do. Otherwise they are a part of the prefiltered light.
-    pub suns: bool,
+settings! {
+    /// Settings of the environment.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct EnvironmentSettings {
+        /// Environment map: studio, furnace, sky, an .hdr or .exr file, or none, which leaves the ambient light. A file may be dropped on
+        /// the window.
+        name: String = "studio".into(), row("Map");
+        /// Rotation of the environment around +Y (Alt+drag in the window): a positive angle turns what is ahead (-Z) to the left (-X).
+        rotation: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Rotation") slider(-180.0, 180.0, 0) when(is_lit);
+        /// Factor on the map, whose values are in cd/m².
+        intensity: f32 = 1.0, limits(0.0, 1e6) unit(FACTOR) row("Intensity") slider(0.0, 8.0, 2) when(is_lit);
+        /// Suns of the map light the model as lamps do. Otherwise they are a part of the prefiltered light, which blurs their highlights.
+        suns: bool = true, row("Suns") title("Suns of the map") when(is_lit);
+        /// Blur of the map behind the model, as a roughness: 0 is sharp.
+        blur: f32 = 0.0, limits(0.0, 1.0) row("Blur") squared(0.0, 1.0, 2) when(|all| all.environment.is_shown(&all.view));
+    }
 }
 
-impl Default for EnvironmentSettings {
-    fn default() -> Self {
-        Self { name: "studio".into(), rotation: 0.0, intensity: 1.0, blur: 0.0, suns: true }
-    }
+fn is_lit(settings: &Settings) -> bool {
+    settings.environment.is_lit()
 }
 
 impl EnvironmentSettings {
@@ -36,14 +37,5 @@ impl EnvironmentSettings {
     /// Whether the environment is visible behind the model.
     pub fn is_shown(&self, view: &ViewSettings) -> bool {
         self.is_lit() && view.background == "env"
-    }
-
-    /// Path, value, smallest and largest value.
-    pub(super) fn numbers(&self) -> [(&'static str, f32, f32, f32); 3] {
-        [
-            ("environment.rotation", self.rotation, -1e6, 1e6),
-            ("environment.intensity", self.intensity, 0.0, 1e6),
-            ("environment.blur", self.blur, 0.0, 1.0),
-        ]
     }
 }

@@ -1,11 +1,11 @@
 //! Values that replace factors of single materials of the model.
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::told;
+use super::entry::unit::{DEGREES, LINEAR_RGB, LUMINANCE, METERS, NANOMETERS};
+use super::{Entry, Value};
 use crate::message::did_you_mean;
 
 /// Factors of one material that are replaced; the others are those of the file.
@@ -21,31 +21,14 @@ pub enum FactorValue {
     Color([f32; 3]),
 }
 
-/// How a factor is shown and what it can be.
-#[derive(Clone, Debug)]
-pub struct FactorInfo {
-    /// Name in its row.
-    pub label: &'static str,
-    /// Unit, with the space before it where it needs one; empty for pure numbers.
-    pub unit: &'static str,
-    /// Smallest and largest valid value, of each channel for a color.
-    pub limits: RangeInclusive<f32>,
-    /// Ends of its slider.
-    pub slider: RangeInclusive<f32>,
-    /// Whether it is a color.
-    pub is_color: bool,
-    /// Its meaning.
-    pub doc: &'static str,
-}
-
-/// Declares [`Factor`] with the name of each variant in settings, and [`Factor::info`].
+/// Declares [`Factor`] with the name of each variant in settings, and [`Factor::entry`].
 macro_rules! factors {
-    ($($variant:ident $name:literal $label:literal $kind:ident $limits:expr, $slider:expr, $unit:literal, $doc:literal;)+) => {
+    ($($(#[doc = $doc:literal])+ $variant:ident $name:ident: $kind:ident, $($option:ident($($argument:tt)*))+;)+) => {
         /// A factor of glTF's materials or of one of their extensions. Textures multiply it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Factor {
-            $(#[doc = $doc] $variant,)+
+            $($(#[doc = $doc])+ $variant,)+
         }
 
         impl Factor {
@@ -55,21 +38,24 @@ macro_rules! factors {
             /// Its name in settings.
             pub fn name(self) -> &'static str {
                 match self {
-                    $(Self::$variant => $name,)+
+                    $(Self::$variant => stringify!($name),)+
+                }
+            }
+
+            /// Whether it is a color.
+            pub fn is_color(self) -> bool {
+                match self {
+                    $(Self::$variant => stringify!($kind) == "color",)+
                 }
             }
 
             /// How it is shown and what it can be.
-            pub fn info(self) -> FactorInfo {
+            pub fn entry(self) -> &'static Entry {
                 match self {
-                    $(Self::$variant => FactorInfo {
-                        label: $label,
-                        unit: $unit,
-                        limits: $limits,
-                        slider: $slider,
-                        is_color: stringify!($kind) == "color",
-                        doc: $doc,
-                    },)+
+                    $(Self::$variant => {
+                        static ENTRY: Entry = Entry::new(concat!($($doc),+))$(.$option($($argument)*))+;
+                        &ENTRY
+                    })+
                 }
             }
         }
@@ -77,34 +63,62 @@ macro_rules! factors {
 }
 
 factors! {
-    BaseColor "base_color" "Base color" color 0.0..=1.0, 0.0..=1.0, "", "Reflectance of the diffuse lobe, or of a metal";
-    Alpha "alpha" "Alpha" number 0.0..=1.0, 0.0..=1.0, "", "Coverage, for materials that are masked or blended";
-    AlphaCutoff "alpha_cutoff" "Alpha cutoff" number 0.0..=1.0, 0.0..=1.0, "", "A masked surface is drawn where its alpha is at least this";
-    Metallic "metallic" "Metallic" number 0.0..=1.0, 0.0..=1.0, "", "0 is a dielectric, 1 a metal";
-    Roughness "roughness" "Roughness" number 0.0..=1.0, 0.0..=1.0, "", "Perceptual roughness; alpha is its square";
-    NormalScale "normal_scale" "Normal scale" number -100.0..=100.0, 0.0..=4.0, "", "Factor on x and y of the normal texture";
-    Occlusion "occlusion" "Occlusion" number 0.0..=1.0, 0.0..=1.0, "", "Strength of the occlusion texture";
-    Emissive "emissive" "Emissive" color 0.0..=1.0, 0.0..=1.0, "", "Color of the emitted light";
-    EmissiveStrength "emissive_strength" "Emission" number 0.0..=1e6, 0.0..=20.0, " cd/m²", "Factor on the emissive color (KHR_materials_emissive_strength)";
-    Ior "ior" "IOR" number 1.0..=100.0, 1.0..=3.0, "", "Index of refraction of the dielectric (KHR_materials_ior): F0 = ((n - 1) / (n + 1))²";
-    Specular "specular" "Specular" number 0.0..=1.0, 0.0..=1.0, "", "Weight of the dielectric's reflection (KHR_materials_specular)";
-    SpecularColor "specular_color" "Specular color" color 0.0..=100.0, 0.0..=1.0, "", "Tint of the dielectric's F0 (KHR_materials_specular)";
-    Clearcoat "clearcoat" "Clear coat" number 0.0..=1.0, 0.0..=1.0, "", "Weight of the clear coat (KHR_materials_clearcoat)";
-    ClearcoatRoughness "clearcoat_roughness" "Coat roughness" number 0.0..=1.0, 0.0..=1.0, "", "Perceptual roughness of the clear coat";
-    SheenColor "sheen_color" "Sheen color" color 0.0..=1.0, 0.0..=1.0, "", "Color of the layer of fibers (KHR_materials_sheen)";
-    SheenRoughness "sheen_roughness" "Sheen roughness" number 0.0..=1.0, 0.0..=1.0, "", "Perceptual roughness of the sheen";
-    Anisotropy "anisotropy" "Anisotropy" number 0.0..=1.0, 0.0..=1.0, "", "Strength of the anisotropy (KHR_materials_anisotropy)";
-    AnisotropyRotation "anisotropy_rotation" "Direction" number -1e6..=1e6, -90.0..=90.0, "°", "Angle of the anisotropy from the tangent towards the bitangent";
-    Iridescence "iridescence" "Iridescence" number 0.0..=1.0, 0.0..=1.0, "", "Weight of the thin film (KHR_materials_iridescence)";
-    IridescenceIor "iridescence_ior" "Film IOR" number 1.0..=100.0, 1.0..=3.0, "", "Index of refraction of the thin film";
-    IridescenceThickness "iridescence_thickness" "Film thickness" number 0.0..=1e5, 0.0..=1200.0, " nm", "Thickness of the film where its texture is 1, or missing";
-    Transmission "transmission" "Transmission" number 0.0..=1.0, 0.0..=1.0, "", "Part of the light that passes through the surface (KHR_materials_transmission)";
-    Thickness "thickness" "Thickness" number 0.0..=1e6, 0.0..=1.0, " m", "Thickness of the volume, in object space; 0 is a thin wall (KHR_materials_volume)";
-    AttenuationColor "attenuation_color" "Attenuation" color 0.0..=1.0, 0.0..=1.0, "", "Color of white light after the attenuation distance";
-    AttenuationDistance "attenuation_distance" "Att. distance" number 1e-6..=1e30, 0.01..=10.0, " m", "Distance after which white light has the attenuation color";
-    Dispersion "dispersion" "Dispersion" number 0.0..=100.0, 0.0..=1.0, "", "20 / Abbe number (KHR_materials_dispersion)";
-    DiffuseTransmission "diffuse_transmission" "Diffuse trans." number 0.0..=1.0, 0.0..=1.0, "", "Part of the light that leaves diffusely at the other side (KHR_materials_diffuse_transmission)";
-    DiffuseTransmissionColor "diffuse_transmission_color" "Trans. color" color 0.0..=1.0, 0.0..=1.0, "", "Color of the diffusely transmitted light";
+    /// Reflectance of the diffuse lobe, or of a metal.
+    BaseColor base_color: color, limits(0.0, 1.0) unit(LINEAR_RGB) row("Base color");
+    /// Coverage, for materials that are masked or blended.
+    Alpha alpha: number, limits(0.0, 1.0) row("Alpha") slider(0.0, 1.0, 2);
+    /// A masked surface is drawn where its alpha is at least this.
+    AlphaCutoff alpha_cutoff: number, limits(0.0, 1.0) row("Alpha cutoff") slider(0.0, 1.0, 2);
+    /// 0 is a dielectric, 1 a metal.
+    Metallic metallic: number, limits(0.0, 1.0) row("Metallic") slider(0.0, 1.0, 2);
+    /// Perceptual roughness; alpha is its square.
+    Roughness roughness: number, limits(0.0, 1.0) row("Roughness") slider(0.0, 1.0, 2);
+    /// Factor on x and y of the normal texture.
+    NormalScale normal_scale: number, limits(-100.0, 100.0) row("Normal scale") slider(0.0, 4.0, 2);
+    /// Strength of the occlusion texture.
+    Occlusion occlusion: number, limits(0.0, 1.0) row("Occlusion") slider(0.0, 1.0, 2);
+    /// Color of the emitted light.
+    Emissive emissive: color, limits(0.0, 1.0) unit(LINEAR_RGB) row("Emissive");
+    /// Factor on the emissive color (KHR_materials_emissive_strength).
+    EmissiveStrength emissive_strength: number, limits(0.0, 1e6) unit(LUMINANCE) row("Emission") slider(0.0, 20.0, 2);
+    /// Index of refraction of the dielectric (KHR_materials_ior): F0 = ((n - 1) / (n + 1))².
+    Ior ior: number, limits(1.0, 100.0) row("IOR") slider(1.0, 3.0, 2);
+    /// Weight of the dielectric's reflection (KHR_materials_specular).
+    Specular specular: number, limits(0.0, 1.0) row("Specular") slider(0.0, 1.0, 2);
+    /// Tint of the dielectric's F0 (KHR_materials_specular).
+    SpecularColor specular_color: color, limits(0.0, 100.0) unit(LINEAR_RGB) row("Specular color");
+    /// Weight of the clear coat (KHR_materials_clearcoat).
+    Clearcoat clearcoat: number, limits(0.0, 1.0) row("Clear coat") slider(0.0, 1.0, 2);
+    /// Perceptual roughness of the clear coat.
+    ClearcoatRoughness clearcoat_roughness: number, limits(0.0, 1.0) row("Coat roughness") slider(0.0, 1.0, 2);
+    /// Color of the layer of fibers (KHR_materials_sheen).
+    SheenColor sheen_color: color, limits(0.0, 1.0) unit(LINEAR_RGB) row("Sheen color");
+    /// Perceptual roughness of the sheen.
+    SheenRoughness sheen_roughness: number, limits(0.0, 1.0) row("Sheen roughness") slider(0.0, 1.0, 2);
+    /// Strength of the anisotropy (KHR_materials_anisotropy).
+    Anisotropy anisotropy: number, limits(0.0, 1.0) row("Anisotropy") slider(0.0, 1.0, 2);
+    /// Angle of the anisotropy from the tangent towards the bitangent.
+    AnisotropyRotation anisotropy_rotation: number, limits(-1e6, 1e6) unit(DEGREES) row("Direction") slider(-90.0, 90.0, 0);
+    /// Weight of the thin film (KHR_materials_iridescence).
+    Iridescence iridescence: number, limits(0.0, 1.0) row("Iridescence") slider(0.0, 1.0, 2);
+    /// Index of refraction of the thin film.
+    IridescenceIor iridescence_ior: number, limits(1.0, 100.0) row("Film IOR") slider(1.0, 3.0, 2);
+    /// Thickness of the film where its texture is 1, or missing.
+    IridescenceThickness iridescence_thickness: number, limits(0.0, 1e5) unit(NANOMETERS) row("Film thickness") slider(0.0, 1200.0, 0);
+    /// Part of the light that passes through the surface (KHR_materials_transmission).
+    Transmission transmission: number, limits(0.0, 1.0) row("Transmission") slider(0.0, 1.0, 2);
+    /// Thickness of the volume, in object space; 0 is a thin wall (KHR_materials_volume).
+    Thickness thickness: number, limits(0.0, 1e6) unit(METERS) row("Thickness") slider(0.0, 1.0, 2);
+    /// Color of white light after the attenuation distance.
+    AttenuationColor attenuation_color: color, limits(0.0, 1.0) unit(LINEAR_RGB) row("Attenuation");
+    /// Distance after which white light has the attenuation color.
+    AttenuationDistance attenuation_distance: number, limits(1e-6, 1e30) unit(METERS) row("Att. distance") slider(0.01, 10.0, 2);
+    /// 20 / Abbe number (KHR_materials_dispersion).
+    Dispersion dispersion: number, limits(0.0, 100.0) row("Dispersion") slider(0.0, 1.0, 2);
+    /// Part of the light that leaves diffusely at the other side (KHR_materials_diffuse_transmission).
+    DiffuseTransmission diffuse_transmission: number, limits(0.0, 1.0) row("Diffuse trans.") slider(0.0, 1.0, 2);
+    /// Color of the diffusely transmitted light.
+    DiffuseTransmissionColor diffuse_transmission_color: color, limits(0.0, 1.0) unit(LINEAR_RGB) row("Trans. color");
 }
 
 /// Checks the values of all materials.
@@ -114,22 +128,18 @@ factors! {
 pub(super) fn check(materials: &BTreeMap<String, MaterialValues>) -> Result<(), String> {
     for (material, values) in materials {
         for (factor, value) in values {
-            let (path, info) = (path(material, *factor), factor.info());
-            let range = told(&info.limits);
-            let is_valid = |number: &f32| info.limits.contains(number);
-            match value {
-                FactorValue::Number(number) if info.is_color => {
-                    return Err(format!("{path} is {number}; it takes 3 numbers, {range}"));
+            let (path, entry, is_color) = (path(material, *factor), factor.entry(), factor.is_color());
+            let value = match value {
+                FactorValue::Number(number) if is_color => {
+                    return Err(format!("{path} is {number}; it takes 3 numbers, {}", entry.valid.text()));
                 }
-                FactorValue::Color(_) if !info.is_color => return Err(format!("{path} takes one number, {range}")),
-                FactorValue::Number(number) if !is_valid(number) => {
-                    return Err(format!("{path} is {number}; it can be {range}"));
+                FactorValue::Color(_) if !is_color => {
+                    return Err(format!("{path} takes one number, {}", entry.valid.text()));
                 }
-                FactorValue::Color(color) if !color.iter().all(is_valid) => {
-                    return Err(format!("{path} is {color:?}; each of its numbers can be {range}"));
-                }
-                _ => {}
-            }
+                FactorValue::Number(number) => Value::Number(*number),
+                FactorValue::Color(color) => Value::Numbers(*color),
+            };
+            entry.check(&path, &value)?;
         }
     }
     Ok(())
@@ -154,6 +164,7 @@ pub(super) fn named(name: &str) -> Result<Factor, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Valid;
     use super::*;
 
     #[test]
@@ -162,8 +173,12 @@ mod tests {
             let text = toml::Value::try_from(factor).unwrap();
             assert_eq!(text.as_str(), Some(factor.name()));
             assert_eq!(named(factor.name()), Ok(*factor));
-            let info = factor.info();
-            assert!(info.limits.contains(info.slider.start()) && info.limits.contains(info.slider.end()), "{factor:?}");
+            let Valid::Limits(low, high) = factor.entry().valid else { panic!("{factor:?} has no limits") };
+            let ends = factor.entry().slider.map_or((low, high), |slider| (slider.ends.0 as f32, slider.ends.1 as f32));
+            assert!(
+                low <= ends.0 && ends.1 <= high && factor.is_color() == factor.entry().slider.is_none(),
+                "{factor:?}"
+            );
         }
     }
 }

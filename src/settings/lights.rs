@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Range;
+use super::declare::settings;
+use super::value::{Choice, Part};
+use super::{Entry, Setting, Settings, Value};
 
 /// The lights that are on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -17,124 +19,107 @@ pub enum LightSource {
     None,
 }
 
-/// Settings of the lights.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LightSettings {
-    /// Which lights are on.
-    pub source: LightSource,
-    /// The three orbiting lights.
-    pub orbit: [OrbitLight; 3],
-    /// The rectangular light, in addition to those of `source`, unless that is `none`.
-    pub rect: RectLight,
-    /// Speed at which the orbiting lights turn around the model in the window, degrees a second; 0 stops them.
-    pub spin: f32,
-    /// The light that BRDF term modes show: 0 all, else 1-based.
-    pub chosen: u32,
-    /// Color of the ambient light, linear RGB. It is off while there is an environment.
-    pub ambient_color: [f32; 3],
-    /// Luminance of the ambient light if its color is white, cd/m^2.
-    pub ambient_strength: f32,
-}
+impl Choice for LightSource {}
 
-impl Default for LightSettings {
-    fn default() -> Self {
-        Self {
-            source: LightSource::Orbit,
-            orbit: [
-                OrbitLight { color: [1.0, 0.93, 0.82], strength: 14.0, distance: 2.0, azimuth: 0.0, polar: 50.0 },
-                OrbitLight { color: [0.45, 0.65, 1.0], strength: 6.0, distance: 2.2, azimuth: 95.0, polar: 75.0 },
-                OrbitLight { color: [1.0, 0.42, 0.25], strength: 10.0, distance: 2.0, azimuth: 200.0, polar: 55.0 },
-            ],
-            rect: RectLight::default(),
-            spin: 0.0,
-            chosen: 0,
-            ambient_color: [0.72, 0.82, 1.0],
-            ambient_strength: 0.12,
-        }
-    }
-}
-
-/// A point light that orbits the model. Distances are in radii of the model's bounding sphere, so that every model has
-/// the same lighting.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OrbitLight {
-    /// Linear RGB.
-    pub color: [f32; 3],
-    /// Illuminance at the model's center in lux, times distance^2: candela for a model of radius 1 m.
-    pub strength: f32,
-    /// Distance from the center in model radii.
-    pub distance: f32,
-    /// Degrees around +Y, from +Z towards +X.
-    pub azimuth: f32,
-    /// Degrees from +Y.
-    pub polar: f32,
-}
-
-/// A one-sided rectangular light that faces the model's center. Lengths are in radii of the model's bounding sphere.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RectLight {
-    /// Whether it is on.
-    pub enabled: bool,
-    /// Linear RGB.
-    pub color: [f32; 3],
-    /// Luminance if its color is white, cd/m^2. It does not change with the size.
-    pub strength: f32,
-    /// Length of its horizontal edges.
-    pub width: f32,
-    /// Length of the other edges.
-    pub height: f32,
-    /// Distance from the model's center to the rectangle's.
-    pub distance: f32,
-    /// Degrees around +Y, from +Z towards +X.
-    pub azimuth: f32,
-    /// Degrees from +Y.
-    pub polar: f32,
-}
-
-impl Default for RectLight {
-    fn default() -> Self {
-        Self {
-            enabled: false,
-            color: [1.0; 3],
-            strength: 6.0,
-            width: 1.2,
-            height: 0.8,
-            distance: 1.8,
-            azimuth: -40.0,
-            polar: 50.0,
-        }
-    }
-}
-
-impl LightSettings {
-    /// All numbers with their paths and limits.
-    pub(super) fn ranges(&self) -> Vec<Range> {
-        let mut ranges = vec![
-            Range::new("lights.ambient_strength", self.ambient_strength, 0.0..=1e9),
-            Range::new("lights.spin", self.spin, -1e4..=1e4),
+settings! {
+    /// Settings of the lights.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct LightSettings {
+        /// Lights that are on: those that orbit the model, those in its file, or none.
+        source: LightSource, row("Source") title("Lights");
+        /// Light whose BRDF terms the modes show, counted from 1. 0: all, which means lobes summed over all lights, and light 1 for D, G, V,
+        /// F, weights and cosines, which depend on the direction to a single light.
+        chosen: u32, row("Terms of");
+        /// Speed of the orbiting lights around the model in the window; 0 stops them (L).
+        spin: f32 = 0.0, limits(-1e4, 1e4) unit(DEGREES_PER_SECOND) row("Orbit speed") slider(-90.0, 90.0, 0) when(has_orbit);
+        /// The three orbiting lights.
+        orbit: [OrbitLight; 3] = [
+            OrbitLight::default(),
+            OrbitLight { color: [0.45, 0.65, 1.0], strength: 6.0, distance: 2.2, azimuth: 95.0, polar: 75.0 },
+            OrbitLight { color: [1.0, 0.42, 0.25], strength: 10.0, distance: 2.0, azimuth: 200.0, polar: 55.0 },
         ];
-        ranges.extend(Range::all("lights.ambient_color", &self.ambient_color, 0.0..=1e6));
-        for (i, light) in self.orbit.iter().enumerate() {
-            ranges.extend(placed(&format!("lights.orbit.{i}"), light));
-        }
-        let RectLight { enabled: _, color, strength, width, height, distance, azimuth, polar } = self.rect;
-        ranges.extend(placed("lights.rect", &OrbitLight { color, strength, distance, azimuth, polar }));
-        ranges.push(Range::new("lights.rect.width", width, 1e-3..=1e3));
-        ranges.push(Range::new("lights.rect.height", height, 1e-3..=1e3));
-        ranges
+        /// The rectangular light, in addition to those of `source`, unless that is `none`.
+        rect: RectLight;
+        /// Color of the light from every direction. An environment replaces the ambient light.
+        ambient_color: [f32; 3] = [0.72, 0.82, 1.0], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(is_dark);
+        /// Luminance from every direction. An environment replaces the ambient light.
+        ambient_strength: f32 = 0.12, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 2.0, 2) when(is_dark);
     }
 }
 
-fn placed(path: &str, light: &OrbitLight) -> Vec<Range> {
-    let mut ranges = vec![
-        Range::new(format!("{path}.strength"), light.strength, 0.0..=1e9),
-        Range::new(format!("{path}.distance"), light.distance, 1e-3..=1e6),
-        Range::new(format!("{path}.azimuth"), light.azimuth, -1e6..=1e6),
-        Range::new(format!("{path}.polar"), light.polar, -1e6..=1e6),
-    ];
-    ranges.extend(Range::all(&format!("{path}.color"), &light.color, 0.0..=1e6));
-    ranges
+settings! {
+    /// A point light that orbits the model. Distances are in radii of the model's bounding sphere, so that every model has
+    /// the same lighting.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct OrbitLight {
+        /// Color.
+        color: [f32; 3] = [1.0, 0.93, 0.82], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(has_orbit);
+        /// Illuminance at a distance of one model radius: the intensity if that radius is 1 m.
+        strength: f32 = 14.0, limits(0.0, 1e9) unit(CANDELA) row("Illuminance") slider(0.0, 60.0, 1) when(has_orbit);
+        /// Distance from the model's center, in radii of the model.
+        distance: f32 = 2.0, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(has_orbit);
+        /// Angle around +Y, from +Z towards +X.
+        azimuth: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(has_orbit);
+        /// Angle from +Y.
+        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(has_orbit);
+    }
+}
+
+settings! {
+    /// A one-sided rectangular light that faces the model's center. Lengths are in radii of the model's bounding sphere.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct RectLight {
+        /// One-sided area light that faces the model's center.
+        enabled: bool = false, row("On") title("Rectangular light");
+        /// Color.
+        color: [f32; 3] = [1.0; 3], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(has_rectangle);
+        /// Luminance of a white rectangle, independent of its size.
+        strength: f32 = 6.0, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 60.0, 1) when(has_rectangle);
+        /// Length of the horizontal edges, in radii of the model.
+        width: f32 = 1.2, limits(1e-3, 1e3) unit(RADII) row("Width") logarithmic(0.01, 20.0, 2) when(has_rectangle);
+        /// Length of the other edges, in radii of the model.
+        height: f32 = 0.8, limits(1e-3, 1e3) unit(RADII) row("Height") logarithmic(0.01, 20.0, 2) when(has_rectangle);
+        /// Distance from the model's center, in radii of the model.
+        distance: f32 = 1.8, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(has_rectangle);
+        /// Angle around +Y, from +Z towards +X.
+        azimuth: f32 = -40.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(has_rectangle);
+        /// Angle from +Y.
+        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(has_rectangle);
+    }
+}
+
+fn has_orbit(settings: &Settings) -> bool {
+    settings.lights.source == LightSource::Orbit
+}
+
+fn has_rectangle(settings: &Settings) -> bool {
+    settings.lights.rect.enabled && settings.lights.source != LightSource::None
+}
+
+fn is_dark(settings: &Settings) -> bool {
+    !settings.environment.is_lit()
+}
+
+impl Part for [OrbitLight; 3] {
+    fn list(&self, path: &str, entry: &'static Entry, list: &mut Vec<Setting>) {
+        for (index, light) in self.iter().enumerate() {
+            light.list(&format!("{path}.{index}"), entry, list);
+        }
+    }
+
+    fn at(&self, path: &str) -> Option<Value> {
+        let (index, rest) = path.split_once('.')?;
+        self.get(index.parse::<usize>().ok()?)?.at(rest)
+    }
+
+    fn set_at(&mut self, path: &str, value: &Value) {
+        let light =
+            path.split_once('.').and_then(|(index, rest)| Some((self.get_mut(index.parse::<usize>().ok()?)?, rest)));
+        if let Some((light, rest)) = light {
+            light.set_at(rest, value);
+        }
+    }
 }

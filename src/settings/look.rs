@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn a_look_file_that_is_wrong_is_explained_with_its_place() {
         for (text, is_value, told) in [
-            ("[view]\nevv = 1\n", true, "2:1: unknown setting `evv`. Did you mean `ev`? It can be tonemap, ev, "),
+            ("[view]\nevv = 1\n", true, "2:1: unknown setting `evv`. Did you mean `ev`? It can be ev, tonemap, "),
             ("[view]\nev = 'x'", true, "2:6: invalid type: string \"x\", expected a number\n    ev = 'x'"),
             ("[view]\ntonemap = 'acess'", true, "2:11: unknown name `acess`. Did you mean `aces`? It can be none, "),
             ("[view\nev = 1", false, "1:6: "),

@@ -4,8 +4,10 @@ use serde::de::{Deserializer, Error as _};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use super::Range;
+use super::Value;
+use super::declare::settings;
 use super::list::names;
+use super::value::Kind;
 use crate::message::did_you_mean;
 
 /// A channel of the material override.
@@ -36,6 +38,8 @@ impl MaterialChannel {
     }
 }
 
+use MaterialChannel::{Anisotropy, Metallic, Roughness};
+
 /// A set of channels; a list of names in files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MaterialChannels(u8);
@@ -63,6 +67,22 @@ impl MaterialChannels {
     }
 }
 
+impl Kind for MaterialChannels {
+    const TAKES: &'static str = Vec::<String>::TAKES;
+
+    fn value(&self) -> Value {
+        Value::Names(self.names().map(str::to_owned).collect())
+    }
+
+    fn set(&mut self, value: &Value) {
+        if let Value::Names(names) = value {
+            *self = Self::default();
+            let is_named = |channel: &MaterialChannel| names.iter().any(|name| name == channel.name());
+            MaterialChannel::ALL.into_iter().filter(is_named).for_each(|channel| Self::set(self, channel, true));
+        }
+    }
+}
+
 impl Serialize for MaterialChannels {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(self.names())
@@ -85,39 +105,27 @@ impl<'de> Deserialize<'de> for MaterialChannels {
     }
 }
 
-/// A material without textures that replaces all materials of the model while it is enabled, to inspect shapes and the
-/// BRDF itself; or single channels of all of them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct MaterialOverride {
-    /// Whether it replaces the model's materials.
-    pub enabled: bool,
-    /// The channels that it replaces while it is not enabled. All else stays as the model's materials have it.
-    #[serde(rename = "override")]
-    pub channels: MaterialChannels,
-    /// Linear RGB.
-    pub base_color: [f32; 3],
-    /// 0 dielectric .. 1 metal.
-    pub metallic: f32,
-    /// Perceptual roughness, 0..1.
-    pub roughness: f32,
-    /// Anisotropy strength, 0..1. Needs meshes with tangents or texture coordinates.
-    pub anisotropy: f32,
-    /// Degrees from the tangent towards the bitangent.
-    pub anisotropy_rotation: f32,
-}
-
-impl Default for MaterialOverride {
-    fn default() -> Self {
-        Self {
-            enabled: false,
-            channels: MaterialChannels::default(),
-            base_color: [0.8; 3],
-            metallic: 0.0,
-            roughness: 0.5,
-            anisotropy: 0.0,
-            anisotropy_rotation: 0.0,
-        }
+settings! {
+    /// A material without textures that replaces all materials of the model while it is enabled, to inspect shapes and the
+    /// BRDF itself; or single channels of all of them.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct MaterialOverride {
+        /// Replace all materials of the model with this one, which has no textures and no extensions.
+        enabled: bool, row("Whole") title("One material for all");
+        /// Channels that are replaced in all materials, each with its texture: base_color, metallic, roughness, anisotropy.
+        channels as "override": MaterialChannels;
+        /// Reflectance of the diffuse lobe, or of a metal: 0.5 is half the light, which a picture stores as 188 of 255.
+        base_color: [f32; 3] = [0.8; 3], limits(0.0, 1.0) unit(LINEAR_RGB) row("Base color");
+        /// 0 is a dielectric, 1 a metal.
+        metallic: f32 = 0.0, limits(0.0, 1.0) row("Metallic") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Metallic));
+        /// Perceptual roughness.
+        roughness: f32 = 0.5, limits(0.0, 1.0) row("Roughness") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Roughness));
+        /// Strength of the anisotropy: 0 is isotropic. It needs meshes with tangents or texture coordinates.
+        anisotropy: f32 = 0.0, limits(0.0, 1.0) row("Anisotropy") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Anisotropy));
+        /// Direction of the anisotropy: angle from the tangent towards the bitangent.
+        anisotropy_rotation: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Direction") slider(-90.0, 90.0, 0)
+            when(|all| all.material.replaces(Anisotropy) && all.material.anisotropy > 0.0);
     }
 }
 
@@ -125,17 +133,5 @@ impl MaterialOverride {
     /// Whether a channel of the model's materials is replaced.
     pub fn replaces(&self, channel: MaterialChannel) -> bool {
         self.enabled || self.channels.has(channel)
-    }
-
-    /// All numbers with their paths and limits.
-    pub(super) fn ranges(&self) -> Vec<Range> {
-        let mut ranges = Range::all("material.base_color", &self.base_color, 0.0..=1.0);
-        ranges.extend([
-            Range::new("material.metallic", self.metallic, 0.0..=1.0),
-            Range::new("material.roughness", self.roughness, 0.0..=1.0),
-            Range::new("material.anisotropy", self.anisotropy, 0.0..=1.0),
-            Range::new("material.anisotropy_rotation", self.anisotropy_rotation, -1e6..=1e6),
-        ]);
-        ranges
     }
 }

@@ -3,37 +3,35 @@
 use glam::{EulerRot, Mat4, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::Range;
+use super::declare::settings;
 use super::list::names;
 
-/// The nodes and primitives that are drawn. A name is that of a node (with all below it) or of a primitive, as `Shell #0`; `#3` is the
-/// node with this index in the file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SceneSettings {
-    /// Names of the parts that are not drawn.
-    #[serde(deserialize_with = "names")]
-    pub hidden: Vec<String>,
-    /// If it names anything, nothing else is drawn.
-    #[serde(deserialize_with = "names")]
-    pub isolated: Vec<String>,
+settings! {
+    /// The nodes and primitives that are drawn. A name is that of a node (with all below it) or of a primitive, as `Shell #0`; `#3` is the
+    /// node with this index in the file.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct SceneSettings {
+        /// Nodes and primitives that are not drawn: names, or #3 for the node with this index.
+        #[serde(deserialize_with = "names")]
+        hidden: Vec<String>;
+        /// Nodes and primitives that alone are drawn; none: all.
+        #[serde(deserialize_with = "names")]
+        isolated: Vec<String>;
+    }
 }
 
-/// Where the model stands: scaled, then rotated, then moved, all about the origin of its file. Its lights and cameras go with it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ModelSettings {
-    /// Degrees about the axes X, Y and Z of the model: about Z first, then X, then Y.
-    pub rotation: [f32; 3],
-    /// Factor on all lengths.
-    pub scale: f32,
-    /// Meters.
-    pub translation: [f32; 3],
-}
-
-impl Default for ModelSettings {
-    fn default() -> Self {
-        Self { rotation: [0.0; 3], scale: 1.0, translation: [0.0; 3] }
+settings! {
+    /// Where the model stands: scaled, then rotated, then moved, all about the origin of its file. Its lights and cameras go with it.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct ModelSettings {
+        /// Rotation of the model about its X, Y and Z axis: about Z first, then about X, then about Y.
+        rotation: [f32; 3], limits(-1e6, 1e6) unit(DEGREES) row("Rotation") slider(-180.0, 180.0, 0);
+        /// Factor on all lengths of the model. The camera frames the model again unless it was moved; lights follow its size.
+        scale: f32 = 1.0, limits(1e-3, 1e3) unit(FACTOR) row("Scale") logarithmic(0.01, 100.0, 2);
+        /// Where the origin of the model's file is. The camera follows unless it was moved.
+        translation: [f32; 3], limits(-1e6, 1e6) unit(METERS) row("Move") slider(-10.0, 10.0, 2);
     }
 }
 
@@ -45,14 +43,6 @@ impl ModelSettings {
         let place =
             || Mat4::from_scale_rotation_translation(Vec3::splat(self.scale), rotation, Vec3::from(self.translation));
         (*self != Self::default()).then(place)
-    }
-
-    /// All numbers with their paths and limits.
-    pub(super) fn ranges(&self) -> Vec<Range> {
-        let mut ranges = Range::all("model.rotation", &self.rotation, -1e6..=1e6);
-        ranges.push(Range::new("model.scale", self.scale, 1e-3..=1e3));
-        ranges.extend(Range::all("model.translation", &self.translation, -1e6..=1e6));
-        ranges
     }
 }
 

@@ -15,7 +15,7 @@ use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, 
 use crate::message::did_you_mean;
 use crate::picture;
 use crate::scene::BUILT_IN;
-use crate::settings::{Settings, catalog};
+use crate::settings::{Setting, Settings, catalog};
 use crate::shader::{Source, is_specula_tree};
 
 impl Viewer {
@@ -344,18 +344,17 @@ fn get(settings: &Settings, path: Option<&str>) -> Result<Value, String> {
     };
     let found = at(path).or_else(|| at(&format!("shader.{path}")));
     found.cloned().ok_or_else(|| {
-        let catalog = catalog();
-        let hint = did_you_mean(path, catalog.iter().map(|setting| setting.path.as_str()));
+        let hint = did_you_mean(path, catalog().iter().map(|setting| setting.path.as_str()));
         format!("`{path}` has no value of its own.{hint} `settings` lists all; what is not set has its default")
     })
 }
 
 fn settings_json() -> Value {
-    let setting = |setting: crate::settings::Setting| {
-        json!({ "path": setting.path, "takes": setting.takes, "default": setting.default, "range": setting.range,
-            "unit": setting.unit, "doc": setting.doc })
+    let setting = |setting: &Setting| {
+        json!({ "path": setting.path, "takes": setting.takes, "default": setting.default.to_string(),
+            "range": setting.entry.valid.text(), "unit": setting.entry.unit.name, "doc": setting.doc() })
     };
-    catalog().into_iter().map(setting).collect()
+    catalog().iter().map(setting).collect()
 }
 
 /// A value for an answer. Floats have the fewest digits that name them: 0.3, not 0.30000001192092896.

@@ -1,17 +1,9 @@
 //! The numbers of the settings as the panels and the command palette show them: name, unit, decimals and range.
 
-mod list;
-
-use std::ops::RangeInclusive;
-
-use crate::settings::{Settings, limits};
+use crate::settings::{Curve, Entry, Setting, Settings, Valid, Value};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter};
-pub(super) use list::{
-    AMBIENT, BLUR, DIRECTION, EXPOSURE, FIELD_OF_VIEW, INTENSITY, MATERIAL, ORBIT, RECTANGLE, ROTATION, SPIN,
-    TRANSFORM, all,
-};
 
 /// How a number is shown and what it can be.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,10 +15,7 @@ pub(super) struct Scale {
     /// Text behind the number, with a space in front where the unit needs one.
     pub(super) suffix: String,
     pub(super) decimals: usize,
-    /// Whether equal steps of the slider are equal factors.
-    pub(super) is_logarithmic: bool,
-    /// Whether the number is the square of the place on the slider.
-    pub(super) is_squared: bool,
+    pub(super) curve: Curve,
     /// Whether a positive number has its sign.
     pub(super) is_signed: bool,
 }
@@ -41,9 +30,25 @@ impl Scale {
             limits,
             suffix,
             decimals: if is_whole { 0 } else { decimals(range) },
-            is_logarithmic: false,
-            is_squared: false,
+            curve: Curve::Linear,
             is_signed: false,
+        }
+    }
+
+    /// The scale of a setting's number.
+    pub(super) fn of(entry: &Entry) -> Self {
+        let (low, high) = match entry.valid {
+            Valid::Limits(low, high) => (f64::from(low), f64::from(high)),
+            _ => (f64::from(f32::MIN), f64::from(f32::MAX)),
+        };
+        let is_negated = entry.slider.is_some_and(|slider| slider.is_negated);
+        Self {
+            slider: entry.slider.map(|slider| slider.ends),
+            limits: if is_negated { (0.0 - high, 0.0 - low) } else { (low, high) },
+            suffix: entry.unit.suffix.to_owned(),
+            decimals: entry.slider.map_or(2, |slider| slider.decimals),
+            curve: entry.slider.map_or(Curve::Linear, |slider| slider.curve),
+            is_signed: is_negated,
         }
     }
 
@@ -88,135 +93,114 @@ fn decimals(range: Option<(f64, f64)>) -> usize {
     (2.0 - span.max(1e-6).log10()).ceil().clamp(2.0, 6.0) as usize
 }
 
-/// A number of the settings.
-#[derive(Clone)]
+/// A number of the settings: a setting, or one of the three numbers of a setting.
+#[derive(Clone, Debug)]
 pub(super) struct Number {
-    /// Path for `--set`. A `*` stands for the index of an orbiting light.
-    path: &'static str,
-    light: usize,
-    /// Name in its row.
-    pub(super) name: &'static str,
-    /// Suffix of the number.
-    unit: &'static str,
-    /// Ends of the slider.
-    slider: (f64, f64),
-    decimals: usize,
-    is_logarithmic: bool,
-    is_squared: bool,
-    /// Whether the row shows the negative of the setting.
-    is_negated: bool,
-    /// Meaning, for the hover text.
-    pub(super) doc: &'static str,
-    place: fn(&mut Settings, usize) -> &mut f32,
-    /// Whether the number changes the picture.
-    is_used: fn(&Settings) -> bool,
+    setting: &'static Setting,
+    /// Which of three numbers.
+    axis: Option<usize>,
 }
 
 impl Number {
-    const fn new(
-        (path, name): (&'static str, &'static str),
-        (slider, decimals, unit): ((f64, f64), usize, &'static str),
-        doc: &'static str,
-        place: fn(&mut Settings, usize) -> &mut f32,
-    ) -> Self {
-        let (is_logarithmic, is_squared, is_negated, is_used) =
-            (false, false, false, (|_| true) as fn(&Settings) -> bool);
-        let light = 0;
-        Self { path, light, name, unit, slider, decimals, is_logarithmic, is_squared, is_negated, doc, place, is_used }
-    }
-
-    const fn when(mut self, is_used: fn(&Settings) -> bool) -> Self {
-        self.is_used = is_used;
-        self
-    }
-
-    const fn logarithmic(mut self) -> Self {
-        self.is_logarithmic = true;
-        self
-    }
-
-    const fn squared(mut self) -> Self {
-        self.is_squared = true;
-        self
-    }
-
-    const fn negated(mut self) -> Self {
-        self.is_negated = true;
-        self
-    }
-
-    /// This number of the orbiting light with this index.
-    pub(super) fn of_light(&self, light: usize) -> Self {
-        Self { light, ..self.clone() }
+    /// The numbers of a setting: one, or three that have sliders. None for all other settings.
+    pub(super) fn of(setting: &'static Setting) -> impl Iterator<Item = Self> {
+        let axes: &'static [Option<usize>] = match setting.default {
+            Value::Number(_) => &[None],
+            Value::Numbers(_) if setting.entry.slider.is_some() => &[Some(0), Some(1), Some(2)],
+            _ => &[],
+        };
+        axes.iter().map(move |axis| Self { setting, axis: *axis })
     }
 
     /// Path for `--set`.
     pub(super) fn path(&self) -> String {
-        self.path.replace('*', &self.light.to_string())
+        let path = &self.setting.path;
+        self.axis.map_or_else(|| path.clone(), |axis| format!("{path}.{axis}"))
+    }
+
+    /// Name in its row.
+    pub(super) fn name(&self) -> String {
+        let label = self.setting.entry.label;
+        self.axis.map_or_else(|| label.to_owned(), |axis| format!("{label} {}", ["X", "Y", "Z"][axis]))
+    }
+
+    /// Meaning, for the hover text.
+    pub(super) fn doc(&self) -> &'static str {
+        self.setting.entry.doc()
     }
 
     /// Whether the number changes the picture, with the other settings as they are.
     pub(super) fn is_used(&self, settings: &Settings) -> bool {
-        (self.is_used)(settings)
+        (self.setting.entry.is_used)(settings)
     }
 
     /// The number as its row shows it.
-    pub(super) fn get(&self, settings: &mut Settings) -> f64 {
+    pub(super) fn get(&self, settings: &Settings) -> f64 {
         // The shortest decimal text of an f32 is what the user typed.
-        let value = *(self.place)(settings, self.light);
-        let number = value.to_string().parse().unwrap_or(f64::from(value));
+        let number = self.option_value(settings).parse().unwrap_or_default();
         // 0.0 - 0.0 is 0, and -0.0 would show its sign.
-        if self.is_negated { 0.0 - number } else { number }
+        if self.is_negated() { 0.0 - number } else { number }
     }
 
     /// Sets the number from what its row shows.
     pub(super) fn set(&self, settings: &mut Settings, number: f64) {
-        *(self.place)(settings, self.light) = (if self.is_negated { 0.0 - number } else { number }) as f32;
+        let number = if self.is_negated() { 0.0 - number } else { number };
+        settings.set_value(&self.path(), &Value::Number(number as f32));
+    }
+
+    /// Whether the row shows the negative of the setting.
+    fn is_negated(&self) -> bool {
+        self.setting.entry.slider.is_some_and(|slider| slider.is_negated)
     }
 
     /// The setting as `--set` takes it.
-    pub(super) fn option_value(&self, settings: &mut Settings) -> String {
-        (self.place)(settings, self.light).to_string()
+    pub(super) fn option_value(&self, settings: &Settings) -> String {
+        settings.value(&self.path()).map(|value| value.to_string()).unwrap_or_default()
     }
 
     /// Unit, decimals and range.
     pub(super) fn scale(&self) -> Scale {
-        let limits: RangeInclusive<f32> = limits(&self.path()).unwrap_or(f32::MIN..=f32::MAX);
-        let (low, high) = (f64::from(*limits.start()), f64::from(*limits.end()));
-        Scale {
-            slider: Some(self.slider),
-            limits: if self.is_negated { (0.0 - high, 0.0 - low) } else { (low, high) },
-            suffix: self.unit.to_owned(),
-            decimals: self.decimals,
-            is_logarithmic: self.is_logarithmic,
-            is_squared: self.is_squared,
-            is_signed: self.is_negated,
-        }
+        Scale::of(self.setting.entry)
     }
 
     /// Name without its row: `Light 2: azimuth`.
     pub(super) fn title(&self) -> String {
-        let group = match self.path.split_once('.') {
-            _ if self.path.starts_with("lights.orbit") => format!("Light {}", self.light + 1),
-            _ if self.path.starts_with("lights.rect") => "Rectangle".to_owned(),
-            _ if self.path.starts_with("lights.ambient") => "Ambient light".to_owned(),
-            Some(("environment", _)) => "Environment".to_owned(),
-            Some(("material", _)) => "Material override".to_owned(),
-            Some(("model", _)) => "Model".to_owned(),
-            _ => return self.name.to_owned(),
-        };
-        format!("{group}: {}", self.name.to_lowercase())
+        title(self.setting, &self.name())
     }
 
     /// The panel in which its row is.
     pub(super) fn group(&self) -> &'static str {
-        match self.path.split_once('.') {
-            Some(("environment", _)) => "Environment",
-            Some(("lights", _)) => "Lights",
-            Some(("material" | "model", _)) => "Model",
-            Some(("view", _)) => "Output",
-            _ => "Camera",
-        }
+        group(self.setting)
+    }
+}
+
+/// The name of a setting without its row and panel. `label`: its name in the row.
+pub(super) fn title(setting: &Setting, label: &str) -> String {
+    let light =
+        setting.path.strip_prefix("lights.orbit.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
+    let group = match setting.group() {
+        _ if !setting.entry.title.is_empty() => return setting.entry.title.to_owned(),
+        _ if setting.path.starts_with("lights.ambient") => "Ambient light".to_owned(),
+        "lights.rect" => "Rectangle".to_owned(),
+        "environment" => "Environment".to_owned(),
+        "material" => "Material override".to_owned(),
+        "model" => "Model".to_owned(),
+        _ => match light {
+            Some(index) => format!("Light {}", index + 1),
+            None => return label.to_owned(),
+        },
+    };
+    format!("{group}: {}", label.to_lowercase())
+}
+
+/// The panel that has the row of a setting.
+pub(super) fn group(setting: &Setting) -> &'static str {
+    match setting.path.split_once('.') {
+        Some(("environment", _)) => "Environment",
+        Some(("lights", _)) => "Lights",
+        Some(("view", _)) => "Output",
+        Some(("camera", _)) => "Camera",
+        _ => "Model",
     }
 }
 
@@ -241,19 +225,16 @@ pub(super) fn of_constant(constant: &Constant) -> Option<Scale> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::catalog;
+    use crate::settings::{catalog, setting};
 
     #[test]
     fn each_path_is_that_of_its_number() {
         let mut settings = Settings::of_window();
-        for number in all(&settings.clone()) {
+        for number in catalog().iter().flat_map(Number::of) {
             let path = number.path();
-            // One of several numbers has the path of all, and its index.
-            let whole = path.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('.');
-            assert!(catalog().iter().any(|setting| setting.path == path || setting.path == whole), "{path}");
             settings.assign(&format!("{path}=0.25")).unwrap();
             let shown = if path == "view.ev" { -0.25 } else { 0.25 };
-            assert_eq!(number.get(&mut settings), shown, "{path}");
+            assert_eq!(number.get(&settings), shown, "{path}");
             number.set(&mut settings, 2.0 * shown);
             let mut expected = settings.clone();
             expected.assign(&format!("{path}=0.5")).unwrap();
@@ -262,18 +243,19 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_every_slider_are_valid() {
-        for number in all(&Settings::default()) {
-            let Scale { slider, limits: (low, high), .. } = number.scale();
-            let (first, last) = slider.unwrap();
-            assert!(low <= first && first < last && last <= high, "{}", number.path());
-            assert!(!number.doc.is_empty() && number.title().starts_with(char::is_uppercase), "{}", number.path());
-        }
+    fn titles_say_what_they_are_of() {
+        let titles = |path: &str| Number::of(setting(path).unwrap()).map(|number| number.title()).collect::<Vec<_>>();
+        assert_eq!(titles("lights.orbit.1.azimuth"), ["Light 2: azimuth"]);
+        assert_eq!(titles("lights.rect.width"), ["Rectangle: width"]);
+        assert_eq!(titles("lights.ambient_strength"), ["Ambient light: luminance"]);
+        assert_eq!(titles("model.rotation"), ["Model: rotation x", "Model: rotation y", "Model: rotation z"]);
+        assert_eq!(titles("view.ev"), ["Exposure"]);
+        assert!(titles("view.msaa").is_empty());
     }
 
     #[test]
     fn numbers_are_shown_and_read_with_their_unit() {
-        let exposure = EXPOSURE.scale();
+        let exposure = Number::of(setting("view.ev").unwrap()).next().unwrap().scale();
         assert_eq!([0.0, -0.04, 1.5, -30.0].map(|n| exposure.text(n)), ["+0.0 EV", "+0.0 EV", "+1.5 EV", "-30.0 EV"]);
         assert_eq!(["1.5", " -2 EV", "+3EV"].map(|text| exposure.parse(text)), [Ok(1.5), Ok(-2.0), Ok(3.0)]);
         for (text, words) in [("x", "`x` is not a number"), ("31", "-30.0 EV to +30.0 EV"), ("nan", "not a number")] {

@@ -14,10 +14,7 @@ pub(super) fn is_in_force(action: &Action, viewer: &Viewer) -> bool {
     match action {
         Action::Mode(slug) => viewer.session.mode().is_some_and(|mode| mode.slug == *slug),
         Action::Environment(name) => settings.environment.name == *name,
-        Action::Assign(assignment) => {
-            let mut assigned = settings.clone();
-            assigned.assign(assignment).is_ok() && assigned == *settings
-        }
+        Action::Set(path, value) => settings.value(path).as_ref() == Some(value),
         Action::Value(name, value) => viewer.session.shaders.as_ref().is_some_and(|shaders| {
             let constant = shaders.constants.iter().find(|constant| constant.name == *name);
             let parameter = shaders.parameters.iter().find(|parameter| parameter.name == *name);
@@ -39,11 +36,7 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
         Action::Mode(slug) => settings.mode = slug,
         Action::Do(command) => commands.push(command),
         Action::Environment(name) => settings.environment.name = name,
-        Action::Assign(assignment) => {
-            if let Err(message) = settings.assign(&assignment) {
-                viewer.say(message);
-            }
-        }
+        Action::Set(path, value) => settings.set_value(&path, &value),
         Action::ToggleHistogram => viewer.panels.legend.shows_histogram ^= true,
         Action::ToggleDifference => viewer.compare.shows_map ^= true,
         Action::Value(name, value) => drop(settings.shader.insert(name, value)),

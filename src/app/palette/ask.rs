@@ -17,28 +17,19 @@ pub(super) struct Ask {
 }
 
 /// Where a number is.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) enum Target {
     Setting(Number),
     /// A parameter or constant of the shaders; `true` for a whole number.
     Shader(String, bool),
 }
 
-impl std::fmt::Debug for Target {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Setting(number) => formatter.write_str(&number.path()),
-            Self::Shader(name, _) => formatter.write_str(name),
-        }
-    }
-}
-
 impl Ask {
-    pub(super) fn of_setting(number: &Number, settings: &mut Settings) -> Self {
+    pub(super) fn of_setting(number: &Number, settings: &Settings) -> Self {
         Self {
             title: number.title(),
             group: number.group(),
-            doc: number.doc.to_owned(),
+            doc: number.doc().to_owned(),
             scale: number.scale(),
             now: number.get(settings),
             target: Target::Setting(number.clone()),

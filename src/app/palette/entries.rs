@@ -8,7 +8,7 @@ use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
-use crate::app::numbers::{self, of_constant, of_parameter};
+use crate::app::numbers::{of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::state::exercise::LearnCommand;
@@ -18,7 +18,7 @@ use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
 use crate::learn::exercises;
 use crate::scene::environment::BUILT_IN;
-use crate::settings::{Settings, ShaderValue};
+use crate::settings::{Settings, ShaderValue, Value};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
@@ -30,8 +30,8 @@ pub(super) enum Action {
     Mode(String),
     Do(Command),
     Environment(String),
-    /// Sets a setting of the command line, `PATH=VALUE`.
-    Assign(String),
+    /// Sets the setting at a path.
+    Set(String, Value),
     /// Shows or hides the histogram of the picture's values.
     ToggleHistogram,
     /// Shows or hides the map of a comparison's differences.
@@ -88,8 +88,6 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
     entries.extend(files(viewer));
     entries.extend(lessons());
     entries.extend(of_settings(viewer));
-    let (used, mut copy) = (numbers::all(settings).filter(|number| number.is_used(settings)), settings.clone());
-    entries.extend(used.map(|number| Ask::of_setting(&number, &mut copy).entry()));
     entries.extend(of_picture(viewer));
     if let Some(shaders) = &viewer.session.shaders {
         constants(&mut entries, shaders, settings);

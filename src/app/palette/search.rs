@@ -163,8 +163,8 @@ mod tests {
     use super::super::ask::Ask;
     use super::super::entries::commands;
     use super::*;
-    use crate::app::numbers::{EXPOSURE, ORBIT};
-    use crate::settings::Settings;
+    use crate::app::numbers::Number;
+    use crate::settings::{Settings, setting};
 
     fn entry(title: &str, is_minor: bool) -> Entry {
         Entry { is_minor, ..Entry::new("Test", title.to_owned(), Action::ShowKeys) }
@@ -236,9 +236,10 @@ mod tests {
 
     #[test]
     fn a_number_takes_the_value_behind_its_name() {
-        let mut settings = Settings::default();
-        let numbers = [&EXPOSURE, &ORBIT[2].of_light(0), &ORBIT[2].of_light(1)];
-        let entries = numbers.map(|number| Ask::of_setting(number, &mut settings).entry());
+        let paths = ["view.ev", "lights.orbit.0.azimuth", "lights.orbit.1.azimuth"];
+        let numbers = paths.into_iter().flat_map(|path| Number::of(setting(path).unwrap()));
+        let entries: Vec<Entry> =
+            numbers.map(|number| Ask::of_setting(&number, &Settings::default()).entry()).collect();
         let found =
             |query| find(&entries, query).into_iter().map(|f| (f.entry.title.clone(), f.typed)).collect::<Vec<_>>();
         assert_eq!(found("exposure -1.5 EV"), [("Exposure".to_owned(), Some("-1.5 EV"))]);

@@ -1,49 +1,23 @@
-//! Entries for the settings that are no numbers: choices and switches.
+//! Entries for the settings: numbers, choices and switches.
 
-use clap::ValueEnum;
-
+use super::ask::Ask;
 use super::entries::{Action, Entry, switch};
 use crate::app::command::Command;
+use crate::app::numbers::{Number, group, title};
 use crate::app::viewer::Viewer;
-use crate::app::widgets::rows::choice_name;
-use crate::settings::{Channels, Colormap, LightSource, Settings, Tonemap};
+use crate::settings::{Setting, Settings, Valid, Value, catalog};
 
-/// An entry that sets a setting of the command line.
-fn assign(group: &'static str, title: String, path: &str, value: &str) -> Entry {
-    Entry { words: path.to_owned(), ..Entry::new(group, title, Action::Assign(format!("{path}={value}"))) }
-}
-
-/// An entry for each choice of a setting.
-fn choices<T: ValueEnum + 'static>(group: &'static str, title: &str, path: &str) -> impl Iterator<Item = Entry> {
-    T::value_variants().iter().filter_map(move |choice| {
-        let value = choice.to_possible_value()?;
-        Some(assign(group, format!("{title}: {}", choice_name(choice)), path, value.get_name()))
-    })
-}
-
-/// Settings of light, display and material.
+/// Entries of all settings with a row, and of the saved cameras.
 pub(super) fn of_settings(viewer: &Viewer) -> Vec<Entry> {
     let settings = &viewer.session.settings;
     let has_lights = viewer.session.model().is_some_and(|model| !model.lights.is_empty());
-    let is_offered =
-        |entry: &Entry| has_lights || !matches!(&entry.action, Action::Assign(text) if text == "lights.source=model");
+    let is_offered = |entry: &Entry| match &entry.action {
+        Action::Set(path, value) => has_lights || path != "lights.source" || *value != Value::Text("model".to_owned()),
+        _ => true,
+    };
+    let has_row = |setting: &&'static Setting| !setting.entry.label.is_empty();
     let mut entries: Vec<Entry> =
-        choices::<LightSource>("Lights", "Lights", "lights.source").filter(is_offered).collect();
-    entries.extend(choices::<Tonemap>("Output", "Tone map", "view.tonemap"));
-    entries.extend(choices::<Channels>("Output", "Channels", "view.channels"));
-    entries.extend(choices::<Colormap>("Output", "Colors of numbers", "view.colormap"));
-    for (name, value) in [("as the mode stores them", "mode"), ("auto", "auto"), ("fit to the picture", "fit")] {
-        entries.push(assign("Output", format!("Range of values: {name}"), "view.range", value));
-    }
-    for samples in [1, 4] {
-        entries.push(assign("Output", format!("Samples per pixel: {samples}"), "view.msaa", &samples.to_string()));
-    }
-    for (name, value) in [("environment", "env"), ("dark gray", "#1b1d21"), ("transparent", "none")] {
-        entries.push(assign("Environment", format!("Background: {name}"), "view.background", value));
-    }
-    for (group, title, path, is_on) in switches(settings) {
-        entries.push(switch(group, title, path, is_on, |on| Action::Assign(format!("{path}={on}"))));
-    }
+        catalog().iter().filter(has_row).flat_map(|setting| of_setting(setting, settings)).filter(is_offered).collect();
     for number in 1..=9 {
         let entry = |title: String, command| {
             let entry = Entry::new("Camera", title, Action::Do(command));
@@ -57,13 +31,29 @@ pub(super) fn of_settings(viewer: &Viewer) -> Vec<Entry> {
     entries
 }
 
-fn switches(settings: &Settings) -> [(&'static str, &'static str, &'static str, bool); 5] {
-    let view = &settings.view;
-    [
-        ("Output", "Wireframe over the picture", "view.wireframe", view.wireframe),
-        ("Output", "Dither", "view.dither", view.dither),
-        ("Environment", "Suns of the map", "environment.suns", settings.environment.suns),
-        ("Lights", "Rectangular light", "lights.rect.enabled", settings.lights.rect.enabled),
-        ("Material", "One material for all", "material.enabled", settings.material.enabled),
-    ]
+/// The entries of a setting: its numbers, a switch, or its choices.
+fn of_setting(setting: &'static Setting, settings: &Settings) -> Vec<Entry> {
+    let (title, group, path) = (title(setting, setting.entry.label), group(setting), &setting.path);
+    let choice = |name: &str, value: Value| {
+        let entry = Entry::new(group, format!("{title}: {name}"), Action::Set(path.clone(), value));
+        Entry { words: path.clone(), ..entry }
+    };
+    let text = |name: &str, value: &str| choice(name, Value::Text(value.to_owned()));
+    match (&setting.default, setting.entry.valid) {
+        (Value::Switch(_), _) => {
+            let is_on = settings.value(path) == Some(Value::Switch(true));
+            vec![switch(group, &title, path, is_on, |on| Action::Set(path.clone(), Value::Switch(on)))]
+        }
+        (Value::Whole(_), Valid::OneOf(values)) => {
+            values.iter().map(|value| choice(&value.to_string(), Value::Whole(*value))).collect()
+        }
+        (Value::Text(_), _) => {
+            let names = setting.names.iter().map(|name| text(name, name));
+            names.chain(setting.entry.choices.iter().map(|(name, value)| text(name, value))).collect()
+        }
+        _ => {
+            let used = Number::of(setting).filter(|number| number.is_used(settings));
+            used.map(|number| Ask::of_setting(&number, settings).entry()).collect()
+        }
+    }
 }

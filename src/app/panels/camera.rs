@@ -4,11 +4,11 @@ use egui::{Button, Label, Response, RichText, Ui};
 
 use super::{ACCENT, QUIET};
 use crate::app::command::{Command, Side};
-use crate::app::numbers::{FIELD_OF_VIEW, Scale};
-use crate::app::widgets::rows::{Row, Value as _, drag, heading, number, option_text, set_option};
+use crate::app::numbers::Scale;
+use crate::app::widgets::rows::{Row, drag, group, heading, option_text, option_value, set_option};
 use crate::app::widgets::spoken::named;
 use crate::scene::{CameraView, Model};
-use crate::settings::{CameraSettings, Settings};
+use crate::settings::{CameraSettings, Curve, Settings, Value, setting};
 
 /// Farthest position that the panel sets, meters.
 const FARTHEST: f64 = 1e6;
@@ -23,10 +23,14 @@ pub(super) fn show(
     model: &Model,
     commands: &mut Vec<Command>,
 ) {
-    number(ui, settings, &FIELD_OF_VIEW);
-    if let Some(view) = view {
-        place(ui, &mut settings.camera, view);
-    }
+    group(ui, settings, "camera", |ui, settings, path| match path {
+        "camera.eye" => {
+            view.into_iter().for_each(|view| place(ui, &mut settings.camera, view));
+            true
+        }
+        "camera.target" => true,
+        _ => false,
+    });
     sides(ui, commands);
     bookmarks(ui, settings, commands);
     let settings = &mut settings.camera;
@@ -63,26 +67,18 @@ fn place(ui: &mut Ui, settings: &mut CameraSettings, view: &CameraView) {
         limits: (-FARTHEST, FARTHEST),
         suffix: String::new(),
         decimals: 3,
-        is_logarithmic: false,
-        is_squared: false,
+        curve: Curve::Linear,
         is_signed: false,
     };
-    let rows = [
-        (
-            "Position",
-            "Position of the camera in meters: x, y, z. Without it, the camera frames the model",
-            "camera.eye",
-        ),
-        ("Target", "The point that the camera looks at and orbits around, in meters: x, y, z", "camera.target"),
-    ];
     let is_set = [settings.eye.is_some(), settings.target.is_some()];
     let mut points = [before, target];
     let mut is_changed = false;
-    for (at, (name, doc, path)) in rows.into_iter().enumerate() {
+    for (at, path) in ["camera.eye", "camera.target"].into_iter().enumerate() {
+        let Some(entry) = setting(path).map(|setting| setting.entry) else { continue };
         let point = &mut points[at];
-        let option = set_option(path, &point.text());
-        let row = Row { name, doc, option, is_changed: is_set[at], is_indented: false };
-        if row.show(ui, |ui| edit_point(ui, name, point, &scale, &mut is_changed)) {
+        let option = set_option(path, &option_value(&Value::Numbers(*point)));
+        let row = Row { name: entry.label, doc: entry.doc(), option, is_changed: is_set[at], is_indented: false };
+        if row.show(ui, |ui| edit_point(ui, entry.label, point, &scale, &mut is_changed)) {
             (settings.eye, settings.target) = (None, None);
             return;
         }

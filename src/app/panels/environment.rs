@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use crate::app::numbers::{BLUR, INTENSITY, ROTATION};
-use crate::app::widgets::rows::{Row, check, choose, number, set_option, setting};
+use crate::app::widgets::rows::{Row, check, choose, group, set_option, special};
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
-use crate::settings::{EnvironmentSettings, Settings, ViewSettings};
+use crate::settings::{Settings, ViewSettings};
 
 /// Shows the panel. `recent`: files that were shown, the newest first. `progress` is the fraction of the current bake that is
 /// done, and its next pass.
@@ -20,8 +19,22 @@ pub(super) fn show(
     progress: Option<&(f32, String)>,
     report: &BakeReport,
 ) {
-    map(ui, &mut settings.environment, recent);
-    let is_lit = settings.environment.is_lit();
+    group(ui, settings, "environment", |ui, settings, path| {
+        match path {
+            "environment.name" => {
+                map(ui, settings, recent);
+                baked(ui, settings.environment.is_lit(), progress, report);
+                return true;
+            }
+            "environment.blur" => visible(ui, settings),
+            _ => {}
+        }
+        false
+    });
+}
+
+/// What the bake does, or how long it took.
+fn baked(ui: &mut Ui, is_lit: bool, progress: Option<&(f32, String)>, report: &BakeReport) {
     // A row of the same height in every state, so that the rows below keep their place.
     ui.allocate_ui(egui::vec2(ui.available_width(), 16.0), |ui| {
         ui.set_min_height(16.0);
@@ -32,19 +45,13 @@ pub(super) fn show(
             ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
         }
     });
-    number(ui, settings, &ROTATION);
-    number(ui, settings, &INTENSITY);
-    suns(ui, &mut settings.environment);
-    visible(ui, &mut settings.view, is_lit);
-    number(ui, settings, &BLUR);
 }
 
 /// The list of maps.
-fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
+fn map(ui: &mut Ui, settings: &mut Settings, recent: &[PathBuf]) {
     let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-    let doc = "Environment map. Drop an .hdr or .exr file on the window to use it";
-    let default = EnvironmentSettings::default().name;
-    setting(ui, ("Map", doc, "environment.name"), &mut environment.name, default, |ui, name| {
+    special(ui, settings, "environment.name", |ui, settings| {
+        let name = &mut settings.environment.name;
         choose(ui, "environment", short(name), |ui| {
             for choice in BUILT_IN.into_iter().chain(["none"]) {
                 ui.selectable_value(name, choice.to_owned(), choice);
@@ -62,18 +69,9 @@ fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
     });
 }
 
-/// Whether suns of the map are lamps.
-fn suns(ui: &mut Ui, environment: &mut EnvironmentSettings) {
-    let is_lit = environment.is_lit();
-    let doc = "Suns of the map light the model as lamps do. Off: they are a part of the prefiltered light, which blurs their highlights";
-    let default = EnvironmentSettings::default().suns;
-    setting(ui, ("Suns", doc, "environment.suns"), &mut environment.suns, default, |ui, on| {
-        ui.add_enabled_ui(is_lit, |ui| check(ui, on)).inner
-    });
-}
-
 /// Whether the map is the background.
-fn visible(ui: &mut Ui, view: &mut ViewSettings, is_lit: bool) {
+fn visible(ui: &mut Ui, settings: &mut Settings) {
+    let (is_lit, view) = (settings.environment.is_lit(), &mut settings.view);
     let mut is_visible = view.background == "env";
     let row = Row {
         name: "Visible",

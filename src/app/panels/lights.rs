@@ -4,18 +4,31 @@ use egui::{RichText, Ui};
 
 use super::QUIET;
 use crate::app::command::Command;
-use crate::app::numbers::{AMBIENT, ORBIT, RECTANGLE, SPIN};
 use crate::app::state::selection::{LightId, Selected};
-use crate::app::widgets::rows::{check, choose, color, heading, number, setting};
-use crate::settings::{LightSettings, LightSource, RectLight, Settings};
+use crate::app::widgets::rows::{choose, group, heading, special};
+use crate::settings::{LightSource, Settings};
 
 /// Shows the panel. `in_model` is the number of lights in the model.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize, commands: &mut Vec<Command>) {
-    let default = LightSettings::default();
-    source(ui, &mut settings.lights, in_model);
-    terms(ui, &mut settings.lights, in_model);
+    group(ui, settings, "lights", |ui, settings, path| {
+        match path {
+            "lights.source" => source(ui, settings, in_model),
+            "lights.chosen" => terms(ui, settings, in_model),
+            "lights.spin" => return settings.lights.source != LightSource::Orbit,
+            "lights.ambient_color" => {
+                placed(ui, settings, commands);
+                heading(ui, "Ambient light");
+                return false;
+            }
+            _ => return false,
+        }
+        true
+    });
+}
+
+/// The lights that have a place of their own.
+fn placed(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     if settings.lights.source == LightSource::Orbit {
-        number(ui, settings, &SPIN);
         for i in 0..settings.lights.orbit.len() {
             ui.push_id(i, |ui| {
                 titled(ui, &format!("Light {}", i + 1), LightId::Orbit(i), commands);
@@ -29,26 +42,16 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize, comman
             rectangle(ui, settings);
         });
     }
-    ui.push_id("ambient", |ui| {
-        heading(ui, "Ambient light");
-        let is_used = !settings.environment.is_lit();
-        let light = &mut settings.lights.ambient_color;
-        let doc = "Color of the light from every direction. An environment replaces the ambient light";
-        setting(ui, ("Color", doc, "lights.ambient_color"), light, default.ambient_color, |ui, light| {
-            ui.add_enabled_ui(is_used, |ui| color(ui, light)).inner
-        });
-        number(ui, settings, &AMBIENT);
-    });
 }
 
-fn source(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
+fn source(ui: &mut Ui, settings: &mut Settings, in_model: usize) {
     let name = |source: LightSource| match source {
         LightSource::Orbit => "Orbiting lights".to_owned(),
         LightSource::Model => format!("Model ({in_model})"),
         LightSource::None => "None".to_owned(),
     };
-    let doc = "Lights that are on: three that orbit the model, those in the model's file, or none";
-    setting(ui, ("Source", doc, "lights.source"), &mut lights.source, LightSource::default(), |ui, source| {
+    special(ui, settings, "lights.source", |ui, settings| {
+        let source = &mut settings.lights.source;
         choose(ui, "source", name(*source), |ui| {
             for choice in [LightSource::Orbit, LightSource::Model, LightSource::None] {
                 let is_offered = choice != LightSource::Model || in_model > 0;
@@ -61,14 +64,13 @@ fn source(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
     });
 }
 
-fn terms(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
+fn terms(ui: &mut Ui, settings: &mut Settings, in_model: usize) {
     let name = |light: u32| {
         if light == 0 { "All (D to V·H: light 1)".to_owned() } else { format!("Light {light}") }
     };
-    let doc = "Light whose BRDF terms the modes show. All: the lobes are summed over all lights. D, G, V, F, weights and cosines depend on the \
-        direction to a single light, so they are those of light 1";
-    let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
-    setting(ui, ("Terms of", doc, "lights.chosen"), &mut lights.chosen, 0, |ui, chosen| {
+    let count = if settings.lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
+    special(ui, settings, "lights.chosen", |ui, settings| {
+        let chosen = &mut settings.lights.chosen;
         choose(ui, "terms", name(*chosen), |ui| {
             (0..=count).for_each(|light| drop(ui.selectable_value(chosen, light, name(light))));
         })
@@ -94,20 +96,12 @@ fn titled(ui: &mut Ui, title: &str, light: LightId, commands: &mut Vec<Command>)
 
 /// The rows of an orbiting light.
 pub(super) fn orbit(ui: &mut Ui, settings: &mut Settings, index: usize) {
-    let default = LightSettings::default();
-    let Some((light, default)) = settings.lights.orbit.get_mut(index).zip(default.orbit.get(index)) else { return };
-    setting(ui, ("Color", "", &format!("lights.orbit.{index}.color")), &mut light.color, default.color, color);
-    ORBIT.iter().for_each(|row| number(ui, settings, &row.of_light(index)));
+    group(ui, settings, &format!("lights.orbit.{index}"), |_, _, _| false);
 }
 
 /// The rows of the rectangular light.
 pub(super) fn rectangle(ui: &mut Ui, settings: &mut Settings) {
-    let default = RectLight::default();
-    let light = &mut settings.lights.rect;
-    let doc = "One-sided area light that faces the model's center";
-    setting(ui, ("On", doc, "lights.rect.enabled"), &mut light.enabled, default.enabled, check);
-    if light.enabled {
-        setting(ui, ("Color", "", "lights.rect.color"), &mut light.color, default.color, color);
-        RECTANGLE.iter().for_each(|row| number(ui, settings, row));
-    }
+    group(ui, settings, "lights.rect", |_, settings, path| {
+        path != "lights.rect.enabled" && !settings.lights.rect.enabled
+    });
 }

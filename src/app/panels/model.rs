@@ -6,12 +6,11 @@ use egui::{Checkbox, RichText, Ui};
 
 use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
-use crate::app::numbers::{DIRECTION, MATERIAL, TRANSFORM};
 use crate::app::viewer::ModelStatus;
 use crate::app::widgets::check_box;
-use crate::app::widgets::rows::{Row, check, choose, color, heading, number, setting};
+use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
 use crate::scene::{BUILT_IN, Model};
-use crate::settings::{MaterialChannel, MaterialOverride, ModelSettings, Settings};
+use crate::settings::{MaterialChannel, ModelSettings, Settings, setting};
 
 pub(super) fn show(
     ui: &mut Ui,
@@ -23,9 +22,9 @@ pub(super) fn show(
 ) {
     list(ui, model, status, recent, commands);
     if !model.variants.is_empty() {
-        let doc = "Variant of the model's materials (KHR_materials_variants)";
         let name = |variant: &str| if variant.is_empty() { "default materials" } else { variant }.to_owned();
-        setting(ui, ("Variant", doc, "variant"), &mut settings.variant, String::new(), |ui, variant| {
+        special(ui, settings, "variant", |ui, settings| {
+            let variant = &mut settings.variant;
             choose(ui, "variant", name(variant), |ui| {
                 for choice in [""].into_iter().chain(model.variants.iter().map(String::as_str)) {
                     ui.selectable_value(variant, choice.to_owned(), name(choice));
@@ -70,25 +69,19 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], co
 /// The material override.
 fn override_material(ui: &mut Ui, settings: &mut Settings) {
     heading(ui, "Material override");
-    let (material, default) = (&mut settings.material, MaterialOverride::default());
-    let doc = "Replace all materials of the model with one that has no textures and no extensions";
-    setting(ui, ("Whole", doc, "material.enabled"), &mut material.enabled, default.enabled, check);
-    let doc = "Reflectance of the diffuse lobe, or of a metal";
-    channel(ui, settings, MaterialChannel::BaseColor, |ui, settings| {
-        let value = &mut settings.material.base_color;
-        setting(ui, ("Base color", doc, "material.base_color"), value, default.base_color, color);
+    group(ui, settings, "material", |ui, settings, path| match path {
+        "material.enabled" => false,
+        "material.anisotropy_rotation" => {
+            !settings.material.replaces(MaterialChannel::Anisotropy) || settings.material.anisotropy <= 0.0
+        }
+        _ => channel(ui, settings, path),
     });
-    let channels = [MaterialChannel::Metallic, MaterialChannel::Roughness, MaterialChannel::Anisotropy];
-    for (of, row) in channels.into_iter().zip(&MATERIAL) {
-        channel(ui, settings, of, |ui, settings| number(ui, settings, row));
-    }
-    if settings.material.replaces(MaterialChannel::Anisotropy) && settings.material.anisotropy > 0.0 {
-        number(ui, settings, &DIRECTION);
-    }
 }
 
-/// The row of a channel, with a switch in front that replaces the channel of all materials.
-fn channel(ui: &mut Ui, settings: &mut Settings, of: MaterialChannel, row: impl FnOnce(&mut Ui, &mut Settings)) {
+/// The row of a channel, with a switch in front that replaces the channel of all materials. Returns whether the setting is a channel.
+fn channel(ui: &mut Ui, settings: &mut Settings, path: &str) -> bool {
+    let is_of = |of: &MaterialChannel| path.strip_prefix("material.") == Some(of.name());
+    let Some(of) = MaterialChannel::ALL.into_iter().find(is_of) else { return false };
     ui.horizontal(|ui| {
         let mut is_on = settings.material.replaces(of);
         let show = |ui: &mut Ui| check_box::show(ui, Checkbox::without_text(&mut is_on));
@@ -100,15 +93,18 @@ fn channel(ui: &mut Ui, settings: &mut Settings, of: MaterialChannel, row: impl 
         if switch.on_hover_text(hint).changed() {
             settings.material.channels.set(of, is_on);
         }
-        ui.add_enabled_ui(is_on, |ui| row(ui, settings));
+        ui.add_enabled_ui(is_on, |ui| {
+            setting(path).into_iter().for_each(|setting| rows::setting(ui, settings, setting));
+        });
     });
+    true
 }
 
 /// Where the model stands.
 fn place(ui: &mut Ui, settings: &mut Settings) {
     let is_moved = settings.model != ModelSettings::default();
     heading(ui, "Transform");
-    TRANSFORM.iter().for_each(|row| number(ui, settings, row));
+    group(ui, settings, "model", |_, _, _| false);
     if is_moved && ui.small_button("Reset").on_hover_text("Return to the transform in the file").clicked() {
         settings.model = ModelSettings::default();
     }

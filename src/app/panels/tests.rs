@@ -5,18 +5,16 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 
-use super::output::range;
 use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
 use super::timeline::comparison;
 use super::{LegendOf, Readout};
-use super::{camera, capture};
+use super::{camera, capture, output};
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::control::Captures;
 use crate::app::dialog::Dialog;
-use crate::app::numbers::EXPOSURE;
 use crate::app::viewer::Compare;
-use crate::app::widgets::{rows, theme};
+use crate::app::widgets::theme;
 use crate::control::{Request, Timeline, Turntable};
 use crate::scene::{Bounds, CameraView, Model};
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
@@ -90,8 +88,7 @@ fn the_legend_names_the_colors_of_numbers() {
 #[test]
 fn rows_are_named_and_follow_the_keyboard() {
     let mut harness = harness(Settings::of_window(), |ui, settings| {
-        rows::number(ui, settings, &EXPOSURE);
-        range::show(ui, &mut settings.view);
+        output::show(ui, settings, &mut false, &mut Vec::new());
     });
     for name in ["Exposure", "Range", "Channels", "Colormap", "Wireframe", "Dither"] {
         assert!(harness.query_all_by_label(name).next().is_some(), "{name}");

@@ -3,6 +3,7 @@
 //! the command line.
 
 use std::cell::RefCell;
+use std::sync::LazyLock;
 
 use egui::{
     Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
@@ -12,7 +13,7 @@ use super::check_box;
 use super::spoken::named;
 use super::theme::{ACCENT, QUIET, small_mono};
 use crate::app::numbers::{Number, Scale};
-use crate::settings::{LightSource, Settings, Tonemap};
+use crate::settings::{Curve, Setting, Settings, Valid, Value, catalog};
 
 /// Height of a row, in points.
 const HEIGHT: f32 = 18.0;
@@ -141,52 +142,6 @@ pub(in crate::app) fn heading(ui: &mut Ui, text: &str) {
     ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(false));
 }
 
-/// A value of a setting as `--set` takes it.
-pub(in crate::app) trait Value: PartialEq {
-    fn text(&self) -> String;
-}
-
-impl Value for bool {
-    fn text(&self) -> String {
-        self.to_string()
-    }
-}
-
-impl Value for u32 {
-    fn text(&self) -> String {
-        self.to_string()
-    }
-}
-
-impl Value for String {
-    fn text(&self) -> String {
-        self.clone()
-    }
-}
-
-impl Value for [f32; 3] {
-    fn text(&self) -> String {
-        self.map(|number| short(f64::from(number))).join(",")
-    }
-}
-
-impl Value for LightSource {
-    fn text(&self) -> String {
-        choice_name(self)
-    }
-}
-
-impl Value for Tonemap {
-    fn text(&self) -> String {
-        choice_name(self)
-    }
-}
-
-/// The name of a choice on the command line.
-pub(in crate::app) fn choice_name(value: &impl clap::ValueEnum) -> String {
-    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
-}
-
 /// A number with at most four decimals.
 pub(in crate::app) fn short(number: f64) -> String {
     ((number * 1e4).round() / 1e4).to_string()
@@ -200,36 +155,101 @@ pub(in crate::app) fn set_option(path: &str, value: &str) -> String {
     format!("--set {path}={value}")
 }
 
-/// Shows the row of a setting: `value` at `path` of the settings, with this default.
-pub(in crate::app) fn setting<T: Value>(
+/// Initial settings of the window. The name of a row has another color when its setting differs from them.
+static INITIAL: LazyLock<Settings> = LazyLock::new(Settings::of_window);
+
+/// Shows the rows of the settings in a group, in the order of their declaration. `special` shows those that need more than the control of
+/// their type; it returns whether it has.
+pub(in crate::app) fn group(
     ui: &mut Ui,
-    (name, doc, path): (&str, &str, &str),
-    value: &mut T,
-    default: T,
-    control: impl FnOnce(&mut Ui, &mut T) -> Response,
+    settings: &mut Settings,
+    group: &str,
+    mut special: impl FnMut(&mut Ui, &mut Settings, &'static str) -> bool,
 ) {
-    let row =
-        Row { name, doc, option: set_option(path, &value.text()), is_changed: *value != default, is_indented: false };
-    if row.show(ui, |ui| control(ui, value)) {
-        *value = default;
+    let in_group = |setting: &&Setting| !setting.entry.label.is_empty() && setting.group() == group;
+    for setting in catalog().iter().filter(in_group) {
+        if !special(ui, settings, &setting.path) {
+            self::setting(ui, settings, setting);
+        }
+    }
+}
+
+/// Shows the rows of a setting with the control of its type.
+pub(in crate::app) fn setting(ui: &mut Ui, settings: &mut Settings, setting: &'static Setting) {
+    if Number::of(setting).next().is_some() {
+        return Number::of(setting).for_each(|each| number(ui, settings, &each));
+    }
+    special(ui, settings, &setting.path, |ui, settings| {
+        let before = settings.value(&setting.path).unwrap_or(Value::Unset);
+        let mut value = before.clone();
+        let response = match (&mut value, setting.entry.valid) {
+            (Value::Switch(on), _) => check(ui, on),
+            (Value::Numbers(linear), _) => color(ui, linear),
+            (Value::Text(name), _) => choose(ui, &setting.path, name.clone(), |ui| {
+                for choice in &setting.names {
+                    ui.selectable_value(name, choice.clone(), choice.as_str());
+                }
+            }),
+            (Value::Whole(number), Valid::OneOf(values)) => {
+                let suffix = setting.entry.unit.suffix;
+                let choice = |value: &u32| ui.selectable_value(number, *value, format!("{value}{suffix}"));
+                values.iter().map(choice).reduce(|all, next| all.union(next)).unwrap_or_else(|| ui.label(""))
+            }
+            (Value::Whole(number), Valid::Whole(low, high)) => ui.add(DragValue::new(number).range(low..=high)),
+            (other, _) => ui.label(other.to_string()),
+        };
+        if value != before {
+            settings.set_value(&setting.path, &value);
+        }
+        response
+    });
+}
+
+/// Shows the row of the setting at a path with another control.
+pub(in crate::app) fn special(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    path: &str,
+    control: impl FnOnce(&mut Ui, &mut Settings) -> Response,
+) {
+    let Some(setting) = crate::settings::setting(path) else { return };
+    let (value, initial) = (settings.value(path).unwrap_or(Value::Unset), INITIAL.value(path).unwrap_or(Value::Unset));
+    let row = Row {
+        name: setting.entry.label,
+        doc: setting.entry.doc(),
+        option: set_option(path, &option_value(&value)),
+        is_changed: value != initial,
+        is_indented: false,
+    };
+    let is_used = (setting.entry.is_used)(settings);
+    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| control(ui, settings)).inner) {
+        settings.set_value(path, &initial);
+    }
+}
+
+/// The value as `--set` takes it. Numbers of colors and places are rounded.
+pub(in crate::app) fn option_value(value: &Value) -> String {
+    match value {
+        Value::Numbers(numbers) => numbers.map(|number| short(f64::from(number))).join(","),
+        value => value.to_string(),
     }
 }
 
 /// Shows the row of a number of the settings.
-pub(in crate::app) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
-    let (before, default) = (number.get(settings), number.get(&mut Settings::of_window()));
-    let (path, scale) = (number.path(), number.scale());
+fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
+    let (before, initial) = (number.get(settings), number.get(&INITIAL));
+    let (name, scale) = (number.name(), number.scale());
     let row = Row {
-        name: number.name,
-        doc: number.doc,
-        option: set_option(&path, &number.option_value(settings)),
-        is_changed: before != default,
+        name: &name,
+        doc: number.doc(),
+        option: set_option(&number.path(), &number.option_value(settings)),
+        is_changed: before != initial,
         is_indented: false,
     };
     let is_used = number.is_used(settings);
     let mut now = before;
-    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| edit_number(ui, number.name, &mut now, &scale)).inner) {
-        now = default;
+    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| edit_number(ui, &name, &mut now, &scale)).inner) {
+        now = initial;
     }
     if now != before {
         number.set(settings, now);
@@ -245,13 +265,14 @@ pub(in crate::app) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, sca
         return drag(ui, number, scale, width);
     };
     ui.spacing_mut().slider_width = rail;
-    let (mut place, ends) = match scale.is_squared {
+    let is_squared = scale.curve == Curve::Squared;
+    let (mut place, ends) = match is_squared {
         true => (number.max(0.0).sqrt(), low.max(0.0).sqrt()..=high.max(0.0).sqrt()),
         false => (*number, low..=high),
     };
     let slider = Slider::new(&mut place, ends).show_value(false).clamping(SliderClamping::Edits);
-    let slider = slider.logarithmic(scale.is_logarithmic);
-    let slider = if scale.is_squared { slider } else { slider.fixed_decimals(scale.decimals) };
+    let slider = slider.logarithmic(scale.curve == Curve::Logarithmic);
+    let slider = if is_squared { slider } else { slider.fixed_decimals(scale.decimals) };
     let response = ui.scope(|ui| {
         // The fill of the rail has no color of its own.
         ui.visuals_mut().selection.bg_fill = ACCENT.color();
@@ -260,7 +281,7 @@ pub(in crate::app) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, sca
     let response = response.inner;
     if response.changed() {
         let digits = 10_f64.powi(scale.decimals as i32);
-        *number = if scale.is_squared { (place * place * digits).round() / digits } else { place };
+        *number = if is_squared { (place * place * digits).round() / digits } else { place };
     }
     response.union(named(drag(ui, number, scale, VALUE), &format!("{name}, value")))
 }
@@ -329,13 +350,12 @@ pub(in crate::app) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::numbers::{BLUR, EXPOSURE};
 
     #[test]
     fn options_are_what_a_shell_takes() {
         assert_eq!(set_option("view.ev", "-1.5"), "--set view.ev=-1.5");
         assert_eq!(set_option("environment.name", "my sky's.hdr"), r"--set environment.name='my sky'\''s.hdr'");
-        assert_eq!([0.45_f32, 1.0, 0.0].text(), "0.45,1,0");
+        assert_eq!(option_value(&Value::Numbers([0.45, 1.0, 0.0])), "0.45,1,0");
     }
 
     #[test]
@@ -357,11 +377,11 @@ mod tests {
             let _ = egui.run_ui(input, |ui| {
                 let column = egui::Rect::from_min_size(egui::Pos2::ZERO, vec2(width, 600.0));
                 ui.scope_builder(egui::UiBuilder::new().max_rect(column), |ui| {
-                    number(ui, &mut settings, &EXPOSURE);
-                    number(ui, &mut settings, &BLUR);
-                    let long = "a name that is longer than any column";
-                    setting(ui, (long, "", "variant"), &mut settings.variant, String::new(), |ui, value| {
-                        choose(ui, "long", format!("{long}{value}"), |_| {})
+                    for path in ["view.ev", "environment.blur"] {
+                        setting(ui, &mut settings, crate::settings::setting(path).unwrap());
+                    }
+                    special(ui, &mut settings, "variant", |ui, _| {
+                        choose(ui, "long", "a name that is longer than any column", |_| {})
                     });
                     reach = ui.min_rect().max.x;
                 });

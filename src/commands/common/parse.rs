@@ -1,6 +1,6 @@
 //! Parsers of option values. Each error says what was expected, with an example or a range.
 
-use specula::settings::{limits, told};
+use specula::settings::Valid;
 
 /// Three finite numbers, as `0,1.5,3`.
 pub fn vector(text: &str) -> Result<[f32; 3], String> {
@@ -37,7 +37,8 @@ pub fn number(text: &str, low: f32, high: f32) -> Result<f32, String> {
 
 /// A number within the limits of a setting.
 fn setting(path: &str, unit: &str, text: &str) -> Result<f32, String> {
-    let limits = limits(path).unwrap_or(f32::MIN..=f32::MAX);
-    let number = text.trim().parse::<f32>().ok().filter(|number| limits.contains(number));
-    number.ok_or_else(|| format!("expected a number, {}{unit}", told(&limits)))
+    let valid = specula::settings::setting(path).map_or(Valid::Any, |setting| setting.entry.valid);
+    let is_valid = |number: &f32| matches!(valid, Valid::Limits(low, high) if (low..=high).contains(number));
+    let number = text.trim().parse::<f32>().ok().filter(is_valid);
+    number.ok_or_else(|| format!("expected a number, {}{unit}", valid.text()))
 }

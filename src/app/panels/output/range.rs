@@ -1,65 +1,15 @@
-//! Rows of the panel Output that say how values become colors: range, channels, colormap, dither, and the edges of triangles.
+//! The row of the panel Output that says which values are black and white.
 
-use clap::ValueEnum;
 use egui::{DragValue, Ui};
 
-use crate::app::widgets::rows::{Value, check, choice_name, choose, setting};
+use crate::app::widgets::rows::{choose, special};
 use crate::app::widgets::spoken::named;
-use crate::settings::{Channels, Colormap, Settings, ViewRange, ViewSettings};
+use crate::settings::{Settings, ViewRange};
 
-impl Value for ViewRange {
-    fn text(&self) -> String {
-        self.to_string()
-    }
-}
-
-impl Value for Channels {
-    fn text(&self) -> String {
-        choice_name(self)
-    }
-}
-
-impl Value for Colormap {
-    fn text(&self) -> String {
-        choice_name(self)
-    }
-}
-
-/// Shows the rows.
-pub(in crate::app::panels) fn show(ui: &mut Ui, view: &mut ViewSettings) {
-    let default = Settings::of_window().view;
-    range(ui, view, default.range);
-    let doc = "Channels that the picture shows. A single channel is shown in gray; a is coverage";
-    setting(ui, ("Channels", doc, "view.channels"), &mut view.channels, default.channels, |ui, channels| {
-        list(ui, "channels", channels)
-    });
-    let doc = "Colors that stand for a number, in modes with one component and for a single channel. None: the colors of the \
-        mode. Viridis and magma have even steps of lightness (van der Walt and Smith 2015), turbo has many hues (Mikhailov 2019), \
-        and coolwarm diverges from a neutral middle (Moreland 2009)";
-    setting(ui, ("Colormap", doc, "view.colormap"), &mut view.colormap, default.colormap, |ui, colormap| {
-        list(ui, "colormap", colormap)
-    });
-    let doc = "Draw the edges of the triangles over the picture, in every mode";
-    setting(ui, ("Wireframe", doc, "view.wireframe"), &mut view.wireframe, default.wireframe, check);
-    let doc = "Noise of half an 8-bit step, which hides banding in smooth light. Data and EXR files never have it";
-    setting(ui, ("Dither", doc, "view.dither"), &mut view.dither, default.dither, check);
-}
-
-/// A list of names.
-fn list<T: ValueEnum + PartialEq + Copy>(ui: &mut Ui, id: &str, value: &mut T) -> egui::Response {
-    choose(ui, id, choice_name(value), |ui| {
-        for choice in T::value_variants() {
-            ui.selectable_value(value, *choice, choice_name(choice));
-        }
-    })
-}
-
-/// The range, with both ends where the user sets them.
-fn range(ui: &mut Ui, view: &mut ViewSettings, default: ViewRange) {
-    let doc = "The values shown as black and white. auto: fit to the picture, in modes whose values have a unit or leave 0..1, and for a \
-        watched expression; mode: as the mode stores them; fit: fit to the picture in every mode, in place of exposure and tone map; \
-        set: two numbers";
-    setting(ui, ("Range", doc, "view.range"), &mut view.range, default, |ui, range| {
+/// Shows the rows of the range: the choice, and both ends where the user sets them.
+pub(in crate::app::panels) fn show(ui: &mut Ui, settings: &mut Settings) {
+    special(ui, settings, "view.range", |ui, settings| {
+        let range = &mut settings.view.range;
         let name = match &*range {
             ViewRange::Fixed(..) => "set".to_owned(),
             range => range.to_string(),
@@ -74,6 +24,7 @@ fn range(ui: &mut Ui, view: &mut ViewSettings, default: ViewRange) {
             }
         })
     });
+    let view = &mut settings.view;
     let ViewRange::Fixed(mut low, mut high) = view.range else { return };
     ui.horizontal(|ui| {
         let speed = f64::from(high - low) / 200.0;

@@ -6,12 +6,11 @@ use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, 
 
 use super::{swatches, wrapped};
 use crate::app::panels::{LegendOf, Readout};
-use crate::app::widgets::rows::choice_name;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
-use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
+use crate::settings::{Channels, Colormap, ViewRange, ViewSettings, choice_name};
 use crate::shader::Encode;
 
 /// Size of the color bar in points.

@@ -79,7 +79,7 @@ fn note_override(ui: &mut Ui, settings: &Settings) {
 
 /// The row of a factor.
 fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: Factor) {
-    let (info, original) = (of.info(), factor(of_file, of));
+    let (entry, original) = (of.entry(), factor(of_file, of));
     let set = settings.materials.get(key).and_then(|values| values.get(&of)).copied();
     let before = set.unwrap_or(original);
     let text = match before {
@@ -92,14 +92,13 @@ fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: 
         true => format!("--set '{}={text}'", path.replace('\'', r"'\''")),
         false => set_option(&path, &text),
     };
-    let row = Row { name: info.label, doc: info.doc, option, is_changed: set.is_some(), is_indented: false };
+    let row = Row { name: entry.label, doc: entry.doc(), option, is_changed: set.is_some(), is_indented: false };
     let mut now = before;
     let resets = row.show(ui, |ui| match &mut now {
         FactorValue::Color(linear) => color(ui, linear),
         FactorValue::Number(number) => {
-            let scale = scale(of);
             let mut shown = number.to_string().parse().unwrap_or(f64::from(*number));
-            let response = edit_number(ui, info.label, &mut shown, &scale);
+            let response = edit_number(ui, entry.label, &mut shown, &Scale::of(entry));
             if response.changed() {
                 *number = shown as f32;
             }
@@ -113,21 +112,6 @@ fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: 
         settings.materials.retain(|_, values| !values.is_empty());
     } else if now != before {
         settings.materials.entry(key.to_owned()).or_default().insert(of, now);
-    }
-}
-
-fn scale(factor: Factor) -> Scale {
-    let info = factor.info();
-    let ends = |range: &std::ops::RangeInclusive<f32>| (f64::from(*range.start()), f64::from(*range.end()));
-    let slider = ends(&info.slider);
-    Scale {
-        slider: Some(slider),
-        limits: ends(&info.limits),
-        suffix: info.unit.to_owned(),
-        decimals: if slider.1 - slider.0 > 50.0 { 0 } else { 2 },
-        is_logarithmic: false,
-        is_squared: false,
-        is_signed: false,
     }
 }
 

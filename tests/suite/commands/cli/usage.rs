@@ -216,8 +216,10 @@ fn help_set_lists_every_setting() {
     let help = run(directory.path(), &["help", "set"]);
     help.expect(0, &[]);
     let row = |path: &str| {
-        let line = help.stdout.lines().find(|line| line.split_whitespace().next() == Some(path));
-        line.unwrap_or_else(|| panic!("no {path}: {help:#?}")).to_owned()
+        let mut lines = help.stdout.lines().skip_while(|line| line.split_whitespace().next() != Some(path));
+        let first = lines.next().unwrap_or_else(|| panic!("no {path}: {help:#?}"));
+        // The meaning goes on in lines without a path.
+        std::iter::once(first).chain(lines.take_while(|line| line.starts_with(' '))).collect::<String>()
     };
     for (path, parts) in [
         ("view.ev", &["number", "0", "-30 to 30", "EV100"][..]),
