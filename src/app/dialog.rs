@@ -24,10 +24,10 @@ pub(super) enum Dialog {
 const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
 /// Extensions of pictures.
 const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
-/// Nobody cancels a dialog in less than this. The portal gives the same answer to a cancel and to its own absence.
+/// Nobody cancels a dialog in less time than this. The portal reports a cancel and its own absence in the same way.
 const SHORTEST: Duration = Duration::from_millis(300);
 
-/// Waits for the user's choice. Returns `None` if she cancels the dialog.
+/// Waits for the user's choice. Returns `None` if the user cancels the dialog.
 ///
 /// # Errors
 /// A message, if the desktop shows no dialog.
@@ -60,15 +60,15 @@ fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, S
     Ok(chosen)
 }
 
-/// Writes the built-in shaders, as `specula new` does, and returns their folder. Without a folder the user chooses one. It blocks, so
-/// it runs on a thread of its own.
+/// Writes the built-in shaders, as `specula new` does, and returns their folder. Without a folder, a dialog asks for one. It
+/// blocks, so it runs on a thread of its own.
 ///
 /// # Errors
 /// A message: there is no dialog, or the folder cannot be written.
 pub(super) fn write_tree(folder: Option<PathBuf>) -> Result<Option<PathBuf>, String> {
     let folder = match folder {
         Some(folder) => Some(folder),
-        // A folder that holds other files gets one inside.
+        // If the chosen folder holds other files, the shaders go into a folder inside it.
         None => choose(Dialog::New)?.map(|chosen| {
             let holds_files = std::fs::read_dir(&chosen).is_ok_and(|mut entries| entries.next().is_some());
             if holds_files { chosen.join("specula-shaders") } else { chosen }

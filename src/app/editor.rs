@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Editors with windows of their own, and how each takes a position. Those of a terminal have no place to open in.
+/// Editors with windows of their own, and how each takes a position. Terminal editors would have no terminal to run in.
 const EDITORS: [(&str, &str); 15] = [
     ("code", "-g {file}:{line}:{column}"),
     ("codium", "-g {file}:{line}:{column}"),
@@ -31,7 +31,7 @@ pub(super) struct Place {
     pub(super) column: Option<u32>,
 }
 
-/// An editor that ends with an error later than this has opened the file before.
+/// An editor that ends with an error later than this has opened the file.
 const OPENING: Duration = Duration::from_secs(10);
 
 /// A started editor.
@@ -84,7 +84,7 @@ pub(super) fn open(place: &Place) -> Result<Editor, String> {
 fn start(words: &[String]) -> Result<Editor, String> {
     let (program, arguments) = words.split_first().ok_or("SPECULA_EDITOR is empty")?;
     let mut command = Command::new(program);
-    // Ctrl+C in the terminal ends Specula and leaves the editor.
+    // Ctrl+C in the terminal ends Specula, but not the editor.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
@@ -92,15 +92,15 @@ fn start(words: &[String]) -> Result<Editor, String> {
     Ok(Editor { program: program.clone(), process, start: Instant::now() })
 }
 
-/// Program and arguments. `own`: a command with or without places for the position. `choices`: the editors that the user prefers
-/// elsewhere.
+/// Program and arguments. `own`: a command, with or without placeholders for the position. `choices`: the editors that the user
+/// prefers elsewhere.
 fn command(
     own: Option<String>,
     choices: [Option<String>; 2],
     is_installed: impl Fn(&str) -> bool,
     place: &Place,
 ) -> Option<Vec<String>> {
-    // A folder or a whole file has no line, and every editor takes it as it is.
+    // A folder or a whole file has no line, so every editor takes its plain path.
     let with = |command: &str, template: &str| {
         let rest = if place.line.is_some() { template } else { "{file}" };
         filled(&format!("{command} {rest}"), place)
@@ -126,7 +126,7 @@ fn template(command: &str) -> Option<&'static str> {
     EDITORS.into_iter().find(|(name, _)| *name == program).map(|(_, template)| template)
 }
 
-/// Splits a command into words and fills the place in. Without a line, the parts that give one are left out.
+/// Splits a command into words and fills in the position. Without a line, the parts for it are left out.
 fn filled(command: &str, place: &Place) -> Vec<String> {
     let file = place.file.display().to_string();
     let (line, column) = (place.line.unwrap_or(1).to_string(), place.column.unwrap_or(1).to_string());
@@ -140,7 +140,7 @@ fn filled(command: &str, place: &Place) -> Vec<String> {
     words(&command).into_iter().filter(|word| !gives_line(word)).map(fill).collect()
 }
 
-/// The words of a command. As in a shell, a word can have spaces inside of quotes, and on Unix a space behind a backslash.
+/// The words of a command. As in a shell, a word can contain spaces inside quotes, and on Unix after a backslash.
 fn words(command: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     let (mut quote, mut is_open) = (None, false);
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(at(words(None, prefers, "code", Some(20))).unwrap(), "/usr/bin/subl|-w|my shaders/ndf.glsl:20:7");
         let terminal = [Some("vim"), Some("nano")];
         assert_eq!(at(words(None, terminal, "kate", Some(20))).unwrap(), "kate|-l|20|-c|7|my shaders/ndf.glsl");
-        // A command of the user's own is taken as it is.
+        // The user's own command is used unchanged.
         assert_eq!(
             at(words(Some("ed {line} {file}"), prefers, "code", Some(20))).unwrap(),
             "ed|20|my shaders/ndf.glsl"

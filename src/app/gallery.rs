@@ -3,10 +3,10 @@
 use std::collections::{BTreeSet, HashMap};
 use std::time::Duration;
 
-/// The time for which the mouse rests on a mode before the picture shows it.
+/// How long the mouse must rest on a mode before the picture previews it.
 const REST: Duration = Duration::from_millis(300);
 
-/// The gallery's side of the panel of modes.
+/// The gallery's state in the panel of modes.
 pub(super) struct GalleryState {
     /// Whether the modes are shown as thumbnails; else as a list.
     pub(super) is_on: bool,
@@ -20,7 +20,7 @@ pub(super) struct GalleryState {
     pub(super) places: HashMap<String, egui::Rect>,
     /// The mode under the mouse in this frame.
     hovered: Option<String>,
-    /// The mode that the picture shows while the mouse rests on it.
+    /// The mode that the picture previews while the mouse rests on it.
     preview: Option<String>,
 }
 
@@ -39,18 +39,18 @@ impl Default for GalleryState {
 }
 
 impl GalleryState {
-    /// Forgets what was in sight in the frame before.
+    /// Forgets the visible thumbnails of the previous frame.
     pub(super) fn begin_frame(&mut self) {
         self.visible.clear();
         self.hovered = None;
     }
 
-    /// Reports that the mouse is on a mode.
+    /// Records that the mouse is on a mode.
     pub(super) fn hover(&mut self, slug: &str) {
         self.hovered = Some(slug.to_owned());
     }
 
-    /// Decides which mode the picture shows instead of the selected one: that on which the mouse has rested.
+    /// Decides which mode the picture previews: the one on which the mouse has rested.
     pub(super) fn end_frame(&mut self, egui: &egui::Context) {
         let Some(hovered) = self.hovered.take() else {
             self.preview = None;
@@ -66,7 +66,7 @@ impl GalleryState {
         }
     }
 
-    /// The mode that the picture shows instead of the selected one.
+    /// The mode that the picture previews instead of the selected one.
     pub(super) fn preview(&self) -> Option<&str> {
         self.preview.as_deref()
     }

@@ -74,7 +74,7 @@ pub(super) fn digit(key: KeyCode) -> Option<u32> {
     DIGITS.iter().zip(0..).find_map(|(other, digit)| (*other == key).then_some(digit))
 }
 
-/// The number of a key in JavaScript's `keyCode`, by its place on a keyboard with the layout of the United States.
+/// The number of a key in JavaScript's `keyCode`, by its position on a US keyboard.
 pub(super) fn number(key: KeyCode) -> Option<u8> {
     let rows: [(&[KeyCode], u8); 4] = [(&LETTERS, b'A'), (&DIGITS, b'0'), (&NUMPAD, 96), (&FUNCTIONS, 112)];
     let in_row = |(keys, first): &(&[KeyCode], u8)| {

@@ -28,12 +28,12 @@ fn panels_keep_their_width_and_the_picture_takes_the_rest() {
         assert!((left - widths[0].0).abs() < 1.5 && (right - widths[0].1).abs() < 1.5, "{widths:?}");
     }
     assert!(widths[0].0 > 150.0 && widths[0].1 > 250.0, "{widths:?}");
-    // A narrow window hides the panels on the left, which come back with their width.
+    // A narrow window hides the panels on the left, and a wide one shows them again with their width.
     let narrow = shown(&mut layout, &egui, Vec2::new(640.0, 480.0));
     assert!(narrow.min.x == 0.0 && narrow.width() > 250.0, "{narrow:?}");
     let wide = shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
     assert!((wide.min.x - widths[0].0).abs() < 1.5, "{wide:?}, {widths:?}");
-    // Even in a tiny one there is a picture.
+    // Even a tiny window shows the picture.
     assert!(shown(&mut layout, &egui, Vec2::new(300.0, 200.0)).width() > 100.0);
 }
 
@@ -97,7 +97,7 @@ fn a_preset_keeps_the_arrangement_that_the_user_made() {
     for preset in [Preset::Look, Preset::Debug] {
         layout.arrange(preset);
         assert!(layout.is_open(Panel::Lights) && layout.has_own());
-        // A change of the preset does not cost the arrangement.
+        // A change of the preset keeps the own arrangement.
         layout.close(Panel::Output);
     }
     layout.arrange_own();

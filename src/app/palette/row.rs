@@ -51,13 +51,13 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
     clicked
 }
 
-/// Marks the choice in force. `left` is the middle of the mark's left edge.
+/// Marks the current choice. `left` is the middle of the mark's left edge.
 fn check_mark(ui: &Ui, left: egui::Pos2, color: Color32) {
     let at = |x: f32, y: f32| left + CHECK_MARK * vec2(x, y);
     ui.painter().line(vec![at(0.0, 0.0), at(0.35, 0.35), at(1.0, -0.4)], Stroke::new(1.5, color));
 }
 
-/// A line that ends with an ellipsis where it does not fit `width`. `colors`: of the text and of the marks.
+/// A line that is truncated with an ellipsis at `width`. `colors`: of the text and of the marks.
 fn job(title: &str, marks: &[Range<usize>], width: f32, font: FontId, colors: [Color32; 2]) -> LayoutJob {
     let mut job = LayoutJob { wrap: TextWrapping::truncate_at_width(width.max(0.0)), ..LayoutJob::default() };
     for (range, is_marked) in parts(title.len(), marks) {

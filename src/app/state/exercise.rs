@@ -27,7 +27,7 @@ pub(in crate::app) enum LearnCommand {
     Edit,
 }
 
-/// How far the measurement of the goals is.
+/// The state of the measurement of the goals.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in crate::app) enum Measured {
     /// Nothing has been measured yet.
@@ -42,7 +42,7 @@ pub(in crate::app) enum Measured {
 /// The exercise that is open.
 #[derive(Default)]
 pub(in crate::app) struct Learning {
-    /// `None`: the tree is none of an exercise, and the panel shows the list.
+    /// `None`: the tree does not belong to an exercise, and the panel shows the list.
     pub(in crate::app) exercise: Option<&'static Exercise>,
     /// Folder of its tree.
     pub(in crate::app) folder: PathBuf,
@@ -54,7 +54,7 @@ pub(in crate::app) struct Learning {
     pub(in crate::app) shows_list: bool,
     /// Difference between the current files and the solution, while the solution is shown.
     pub(in crate::app) solution: Option<Vec<Line>>,
-    /// Whether the user is asked before the files of the start are written.
+    /// Whether the confirmation for writing the start files is open.
     pub(in crate::app) asks: bool,
 }
 
@@ -69,7 +69,7 @@ impl Learning {
         self.progress.folder.clone().unwrap_or_else(standard)
     }
 
-    /// Takes the exercise of a tree that has been opened.
+    /// Sets the exercise of a tree that has been opened.
     pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<&'static Exercise>) {
         let progress = std::mem::take(&mut self.progress);
         *self = Self { exercise, folder: folder.to_owned(), progress, ..Self::default() };
@@ -80,7 +80,7 @@ impl Learning {
         matches!(&self.measured, Measured::Findings(all) if all.iter().all(|finding| finding.passed))
     }
 
-    /// Compares the solution with the files on screen.
+    /// Compares the solution with the current shaders.
     pub(in crate::app) fn update_solution(&mut self, shaders: Option<&ShaderSet>) {
         let Some((exercise, shaders)) = self.exercise.zip(shaders).filter(|_| self.solution.is_some()) else { return };
         let after: BTreeMap<TreePath, Arc<str>> =

@@ -17,7 +17,7 @@ pub(in crate::app) struct PictureRect {
 /// The modes that are shown side by side.
 #[derive(Default)]
 pub(in crate::app) struct Grid {
-    /// Their slugs, row by row. Fewer than two are no grid.
+    /// Slugs of the modes, row by row. Empty unless at least two modes are shown.
     modes: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ impl Grid {
         &self.modes
     }
 
-    /// Adds a mode beside the selected one, or takes it away. Returns whether there was room for it.
+    /// Adds a mode beside the selected one, or removes it. Returns whether there was room for it.
     pub(in crate::app) fn toggle(&mut self, slug: &str, selected: &str) -> bool {
         if self.modes.is_empty() {
             self.modes.push(selected.to_owned());
@@ -53,7 +53,7 @@ impl Grid {
         true
     }
 
-    /// Whether a mode can be one of several: it takes one frame.
+    /// Whether the grid can show a mode: it takes one frame.
     pub(in crate::app) fn can_show(mode: &Mode) -> bool {
         mode.stage != PATHS_STAGE && !mode.accumulate
     }
@@ -81,7 +81,7 @@ impl Grid {
         self.modes.clear();
     }
 
-    /// Ends when the selected mode is none of the grid's.
+    /// Ends the grid when the selected mode is not part of it.
     pub(in crate::app) fn follow(&mut self, selected: &str) {
         if !self.modes.iter().any(|mode| mode == selected) {
             self.end();

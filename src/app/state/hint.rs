@@ -31,13 +31,13 @@ impl Hint {
         self.is_shown = false;
     }
 
-    /// Hides it for good.
+    /// Hides it permanently.
     pub(in crate::app) fn dismiss(&mut self) {
         self.is_shown = false;
         state::save(FILE, DISMISSED);
     }
 
-    /// Dismisses it if a save of the user's own files has changed the picture: the user has done what it says.
+    /// Dismisses the hint once a save of the user's own files has changed the picture: the hint has been followed.
     pub(in crate::app) fn saved(&mut self, reload: &ReloadEvent) {
         if self.is_shown && reaches_picture(reload) {
             self.dismiss();

@@ -2,25 +2,25 @@
 
 use std::time::{Duration, Instant};
 
-/// Duration of a passing message.
+/// Duration of a transient message.
 const NOTICE: Duration = Duration::from_secs(6);
 
 /// Messages over the picture.
 #[derive(Default)]
 pub(in crate::app) struct Notices {
-    /// The passing message and the time it appeared.
+    /// The transient message and the time it appeared.
     passing: Option<(String, Instant)>,
-    /// Shown until it is dismissed.
+    /// Sticky messages, shown until they are dismissed.
     kept: Vec<String>,
 }
 
 impl Notices {
-    /// Shows a message for a few seconds.
+    /// Shows a transient message.
     pub(in crate::app) fn say(&mut self, text: String) {
         self.passing = Some((text, Instant::now()));
     }
 
-    /// Shows a message until the user dismisses it. Returns whether the message is new.
+    /// Shows a sticky message, until the user dismisses it. Returns whether the message is new.
     pub(in crate::app) fn keep(&mut self, text: String) -> bool {
         let is_new = !self.kept.contains(&text);
         if is_new {
@@ -29,7 +29,7 @@ impl Notices {
         is_new
     }
 
-    /// The passing message and the time that it has left, which is endless if `stays`.
+    /// The transient message and the time that it has left, which is infinite if `stays`.
     pub(in crate::app) fn passing(&self, stays: bool) -> Option<(&str, Duration)> {
         let (text, since) = self.passing.as_ref()?;
         let left = if stays { Duration::MAX } else { NOTICE.saturating_sub(since.elapsed()) };
@@ -41,12 +41,12 @@ impl Notices {
         &self.kept
     }
 
-    /// Removes a kept message whose reason is gone.
+    /// Removes a sticky message whose reason is gone.
     pub(in crate::app) fn end(&mut self, text: &str) {
         self.kept.retain(|kept| kept != text);
     }
 
-    /// Removes all kept messages.
+    /// Removes all sticky messages.
     pub(in crate::app) fn dismiss(&mut self) {
         self.kept.clear();
     }

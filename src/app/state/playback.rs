@@ -72,7 +72,7 @@ impl Playback {
         (self.last, self.restarted) = (None, true);
     }
 
-    /// Sets the clock to a time. Passes go on from what they drew before.
+    /// Sets the clock to a time. Passes continue from their last images.
     pub(in crate::app) fn seek(&mut self, time_s: f32) {
         (self.clock.time_s, self.last) = (time_s, None);
     }
@@ -87,9 +87,9 @@ impl Playback {
         self.clock.time_s
     }
 
-    /// The clock of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the
-    /// start, so that a still picture need not be redrawn. Its keys are those that are down now, unless the clock is paused. A
-    /// picture that does not read keys gets none.
+    /// The clock of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the start,
+    /// so that a still picture need not be redrawn. Its keys are those that are down now, unless the clock is paused. A picture
+    /// that does not read keys gets none.
     pub(in crate::app) fn next(&mut self, is_animated: bool, reads_keys: bool) -> Clock {
         self.next_at(is_animated, reads_keys, (Instant::now(), Date::now()))
     }
@@ -120,7 +120,7 @@ impl Playback {
         self.clock.delta_s = match before {
             _ if step => STEP_S,
             Some(before) => (now - before).as_secs_f32() * self.speed,
-            // The time begins to run, so none has passed: this is the last frame again.
+            // The clock has just started, so no time has passed: this is the last frame again.
             None => return self.clock,
         };
         self.clock.time_s += self.clock.delta_s;
@@ -128,8 +128,7 @@ impl Playback {
         self.clock
     }
 
-    /// Whether the next frame differs from the last one because a key counts as pressed in one frame only. Says nothing about
-    /// an animated picture.
+    /// Whether the next frame differs from the last one because a key press counts in one frame only. Ignores animation.
     pub(in crate::app) fn ends_press(&self) -> bool {
         self.clock.keys.any_pressed()
     }
@@ -157,7 +156,7 @@ impl Playback {
 
     /// The left button went down over the picture.
     pub(in crate::app) fn press(&mut self, [x, y]: [f32; 2]) {
-        // The sign of w says whether this is the frame of a click, so it is not 0.
+        // The sign of w marks the frame of a click, so w is never 0.
         (self.mouse.px, self.shows_click) = ([x, y, x, y.max(0.5)], false);
     }
 

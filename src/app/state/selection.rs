@@ -40,7 +40,7 @@ impl Selected {
         }
     }
 
-    /// The selection after a click on an instance: that instance, or nothing if it was selected already.
+    /// The selection after a click on an instance: that instance, or nothing if it was already selected.
     pub(in crate::app) fn clicked(self, instance: Option<usize>) -> Self {
         instance.map(Self::Instance).filter(|selected| *selected != self).unwrap_or_default()
     }
@@ -85,7 +85,8 @@ impl Selected {
         }
     }
 
-    /// Whether both versions of a model have it, under the same name. After a file has changed, an index may mean another part.
+    /// Whether both versions of a model contain the selection, under the same name. After a file has changed, an index may refer
+    /// to another part.
     pub(in crate::app) fn is_same(self, before: &Model, after: &Model) -> bool {
         self.is_in(before) && self.is_in(after) && self.name(before) == self.name(after)
     }
@@ -102,7 +103,7 @@ impl Selected {
     }
 }
 
-/// Whether an outline of these instances tells something: others are drawn, too, or they are of several nodes.
+/// Whether an outline of these instances is informative: others are drawn, too, or they belong to several nodes.
 pub(in crate::app) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
     let nodes: Vec<(usize, usize)> =
         scene.numbered_instances().map(|(index, instance)| (index, instance.node)).collect();

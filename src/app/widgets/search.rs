@@ -25,24 +25,25 @@ impl Words {
         Self { typed: typed.trim().to_owned(), words }
     }
 
-    /// Whether every entry has them.
+    /// Whether the search is empty, so that every entry matches.
     pub(in crate::app) fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
 
-    /// Whether `text` has all of them, in letters of any case.
+    /// Whether `text` contains all of them, ignoring case.
     pub(in crate::app) fn are_in(&self, text: &str) -> bool {
         let text = if self.is_empty() { String::new() } else { text.to_lowercase() };
         self.words.iter().all(|word| text.contains(word))
     }
 
-    /// Says that no entry of a list of `noun`s has the words.
+    /// Shows that no entry of a list of `noun`s matches.
     pub(in crate::app) fn no_match(&self, ui: &mut Ui, noun: &str) {
         ui.label(RichText::new(format!("No {noun} matches \"{}\".", self.typed)).small().color(QUIET));
     }
 }
 
-/// Shows the field with its button, and leaves `beside` points of the row to the caller. `what` the list has, such as "modes".
+/// Shows the field with its button, and leaves `beside` points of the row to the caller. `what` names the entries, such as
+/// "modes".
 pub(in crate::app) fn field(ui: &mut Ui, text: &mut String, what: &str, beside: f32) -> Response {
     let mut row = |ui: &mut Ui| {
         // The button comes one frame after the first letter, when the field has made room for it.
@@ -57,7 +58,7 @@ pub(in crate::app) fn field(ui: &mut Ui, text: &mut String, what: &str, beside: 
         }
         field
     };
-    // The caller's row goes on beside the field.
+    // The caller continues the row beside the field.
     if ui.layout().is_horizontal() { row(ui) } else { ui.horizontal(row).inner }
 }
 
@@ -70,7 +71,7 @@ pub(in crate::app) fn above(ui: &mut Ui, text: &mut String, what: &str, entries:
     Words::new(text)
 }
 
-/// The same for a panel without a state: egui keeps the text.
+/// [`above`] for a panel without a state: egui keeps the text.
 pub(in crate::app) fn above_kept(ui: &mut Ui, what: &str, entries: usize) -> Words {
     let id = ui.id().with(("search", what));
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();

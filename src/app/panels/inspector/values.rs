@@ -84,7 +84,7 @@ pub(super) fn show(
     });
 }
 
-/// Whether a value says anything: the mode has data here, and something covers the pixel.
+/// Whether a value is meaningful: the mode has data here, and something covers the pixel.
 fn has_data(value: &PixelValue) -> bool {
     value.not_finite || (!value.no_data && value.value[3] > 0.0)
 }

@@ -9,14 +9,14 @@ use crate::app::widgets::theme::{CARD, TEXT, small_font};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
 use crate::settings::CameraSettings;
 
-/// Models with more objects than this are no charts.
+/// Above this, labels are hidden: the model is not a chart of materials.
 const MOST: usize = 40;
 /// A chart has at least this many objects with a number in their name.
 const FEWEST: usize = 4;
 
-/// Width of a name at least, points: no word is longer.
+/// Smallest width of a name, points: no word is longer.
 const LEAST_WIDTH: f32 = 64.0;
-/// Part of an object that its name may hide.
+/// Fraction of an object that its name may hide.
 const MOST_HIDDEN: f32 = 0.4;
 
 /// Where each named object of a chart is. Empty for other models.
@@ -81,7 +81,7 @@ pub(super) fn show(
         let (center, low) = (bounds.center(), bounds.min.y);
         let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
         let label = Label::new(&painter, name, foot, around.width(), picture);
-        // A name would hide a small object, so there it comes with the mouse.
+        // A name would hide a small object, so there it appears under the mouse.
         if label.rect.area() > MOST_HIDDEN * around.area() {
             let is_pointed = pointer.is_some_and(|at| around.contains(at));
             if !is_pointed || std::mem::replace(&mut has_pointed, true) {

@@ -63,7 +63,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
     });
 }
 
-/// The switch that lets the driver be asked.
+/// The switch for querying the driver's statistics.
 fn ask(ui: &mut Ui, viewer: &mut Viewer) {
     let tells = viewer.gpu.tells_statistics();
     let hint = match tells {
@@ -111,7 +111,7 @@ fn color(state: StageState) -> Color32 {
     }
 }
 
-/// The numbers and times of a stage in a line. Returns whether it is clicked.
+/// The statistics and times of a stage in a line. Returns whether it is clicked.
 fn numbers(ui: &mut Ui, row: &StageRow) -> bool {
     ui.spacing_mut().item_spacing.x = 3.0;
     short_figures(ui, &row.figures);
@@ -133,7 +133,7 @@ fn numbers(ui: &mut Ui, row: &StageRow) -> bool {
     label.on_hover_text(hover).clicked()
 }
 
-/// Numbers with their changes: `4,469 words -212 · 96 registers -8`.
+/// Statistics with their changes: `4,469 words -212 · 96 registers -8`.
 pub(in crate::app::panels) fn short_figures(ui: &mut Ui, figures: &[Figure]) {
     for (index, figure) in figures.iter().enumerate() {
         if index > 0 {
@@ -144,17 +144,17 @@ pub(in crate::app::panels) fn short_figures(ui: &mut Ui, figures: &[Figure]) {
     }
 }
 
-/// The change of a number since the version before, if it has changed.
+/// The change of a statistic since the previous version, if it has changed.
 fn change(ui: &mut Ui, figure: &Figure) {
     let (Some(text), Some(change)) = (figure.change_text(), figure.change()) else { return };
-    // More work is not wrong, but worth a look.
+    // An increase is not an error, but worth attention.
     let color = if change > 0.0 { WARNING } else { GOOD };
     let before = grouped(figure.before.unwrap_or_default());
     ui.label(RichText::new(text).monospace().small().color(color))
         .on_hover_text(format!("Before the last edit: {before} {}", figure.name));
 }
 
-/// All that is known of a stage.
+/// All statistics of a stage.
 fn details(ui: &mut Ui, row: &StageRow) {
     let mut lines = vec![(
         "Words as compiled",

@@ -8,7 +8,7 @@ use crate::app::widgets::theme::{EDGE, QUIET, WARNING, small_font};
 /// Heights of the graphs, in points.
 const PASSES: f32 = 64.0;
 const CPU: f32 = 36.0;
-/// Colors of passes, by their place in the frame. The last is that of all further ones.
+/// Colors of passes, by their place in the frame. The last color is shared by all further passes.
 const COLORS: [Color32; 8] = [
     Color32::from_rgb(94, 182, 255),
     Color32::from_rgb(255, 176, 84),
@@ -28,7 +28,7 @@ pub(super) fn color(index: usize) -> Color32 {
     COLORS[index.min(COLORS.len() - 1)]
 }
 
-/// The value at the top of a graph: a round number that nearly all values fit below, so that one slow frame does not flatten the rest.
+/// The value at the top of a graph: a round number above nearly all values, so that one slow frame does not flatten the rest.
 fn top_of(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
@@ -123,7 +123,7 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
     });
 }
 
-/// Marks the frames with which new shaders came.
+/// Marks the frames in which new shaders appeared.
 fn edits(painter: &Painter, rect: Rect, timing: &Timing) {
     let pictures = timing.pictures();
     let pairs = pictures.iter().zip(pictures.iter().skip(1)).enumerate();
@@ -133,7 +133,7 @@ fn edits(painter: &Painter, rect: Rect, timing: &Timing) {
     }
 }
 
-/// The CPU's time of the last frames, with a line at the `limit` of the panels.
+/// The CPU time of the last frames, with a line at the `limit` of the panels.
 pub(super) fn cpu(ui: &mut Ui, timing: &Timing, limit: f64) {
     let frames = timing.frames();
     let top = top_of(frames.iter().map(|frame| frame.ui_ms + frame.record_ms)).max(limit);

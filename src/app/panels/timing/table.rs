@@ -8,7 +8,7 @@ use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 
 /// Size of the history of a pass, in points.
 const HISTORY: egui::Vec2 = vec2(60.0, 12.0);
-/// A narrower panel shows no history beside the numbers, in points.
+/// A narrower panel hides the history beside the numbers, in points.
 const ROOM_FOR_HISTORY: f32 = 250.0;
 
 /// The names of the passes of the last picture, in the order in which they began.

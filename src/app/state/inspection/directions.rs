@@ -17,7 +17,7 @@ pub(in crate::app) struct Directions {
 }
 
 impl Directions {
-    /// The directions at a point of a surface. `None` if the light is at the point itself, or the normal is none.
+    /// The directions at a point of a surface. `None` if the light is at the point itself, or the normal is zero.
     pub(in crate::app) fn new(position: Vec3, normal: Vec3, eye: Vec3, light: &Light) -> Option<Self> {
         let [x, y, z, _] = light.position_ws;
         let to_light = match light.kind {

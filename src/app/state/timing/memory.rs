@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{Gpu, MemoryUse};
 
-/// How often the memory is looked up, at most.
+/// Shortest interval between two queries of the memory.
 const INTERVAL: Duration = Duration::from_millis(500);
 
 /// The memory in use, and when it was looked up.
@@ -14,8 +14,8 @@ pub(in crate::app) struct MemoryClock {
 }
 
 impl MemoryClock {
-    /// Memory of the device, and resident memory of the process in bytes where the system tells it. A file of the kernel, which no
-    /// disk can delay.
+    /// Memory of the device, and resident memory of the process in bytes where the system reports it. The latter is a file of the
+    /// kernel, which no disk can delay.
     pub(in crate::app) fn read(&mut self, gpu: &Gpu) -> (&MemoryUse, Option<u64>) {
         let old = self.known.take().filter(|(at, ..)| at.elapsed() < INTERVAL);
         let (_, device, process) = self.known.insert(match old {
