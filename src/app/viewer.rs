@@ -283,7 +283,7 @@ impl Viewer {
 
     /// Whether an edit is being compiled, or has not been drawn. Whatever else there is to draw waits for it.
     pub(super) fn awaits_edit(&self) -> bool {
-        self.shader.compiling || self.threads.worker.is_compiling() || self.times_next_frame()
+        self.threads.worker.is_compiling() || self.times_next_frame()
     }
 
     /// Whether to measure the next frame, because it is the first of a shader generation or of the model.

@@ -20,7 +20,7 @@ pub const COMMANDS: [Described; 29] = [
     row(
         "set",
         r#""values": "path=value" | ["path=value", ...] | {"path": value}"#,
-        "Changes settings, all or none. Done when a frame that shows them has been drawn",
+        "Changes settings, all or none. Done when their final picture is on screen",
     ),
     row("get", r#""path"?: "view.ev""#, "The settings, or the one at a path"),
     row("mode", r#""name": "d""#, "Shows a debug mode"),
@@ -44,7 +44,7 @@ pub const COMMANDS: [Described; 29] = [
     row(
         "open",
         r#""file" | "model" | "environment" | "tree" | "look" | "measured": "path or name""#,
-        "Opens a file or folder. Done when it is on screen",
+        "Opens a file or folder. Done when its final picture is on screen",
     ),
     row(
         "compare",

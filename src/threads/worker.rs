@@ -53,6 +53,8 @@ pub(crate) enum WorkerMessage {
         detect_ms: f64,
         /// The tree that was compiled.
         source: Source,
+        /// Number of edits that the reload contains, for [`Worker::reloaded`].
+        edits: u64,
     },
     /// The stages of the last reload that the frame did not need have been compiled.
     Completed(Box<Reload>),
@@ -107,8 +109,6 @@ impl Job {
 struct Jobs {
     sender: Sender<Job>,
     edits: Arc<AtomicU64>,
-    /// How many of them the last finished reload contains.
-    reloaded: Arc<AtomicU64>,
 }
 
 impl Jobs {
@@ -127,6 +127,8 @@ const MOST_ASKED: usize = 16;
 /// The window's handle of the worker. Dropping it ends the thread and waits for it.
 pub(crate) struct Worker {
     jobs: Option<Jobs>,
+    /// Number of edits in the last reload whose message the window has handled.
+    reloaded: u64,
     snapshot: Arc<Mutex<Snapshot>>,
     /// The build requests since the last success, the newest first: as many as the grid can show modes.
     asked: VecDeque<Build>,
@@ -144,15 +146,15 @@ impl Worker {
         sender: &MessageSender,
     ) -> Self {
         let (jobs, inbox) = unbounded();
-        let (edits, reloaded) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+        // The first reload, which compiles the whole tree, counts as an edit.
+        let edits = Arc::new(AtomicU64::new(1));
         let snapshot = Arc::new(Mutex::new(snapshot));
         let mut state = Thread {
             reloader: Reloader::new(gpu, layouts, compiler, source),
             snapshot: snapshot.clone(),
             inbox,
             edits: edits.clone(),
-            edits_taken: 0,
-            reloaded: reloaded.clone(),
+            edits_taken: 1,
             has_compiled: false,
             panics: 0,
             thumbnails: None,
@@ -165,12 +167,8 @@ impl Worker {
             sender: sender.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
-        Self {
-            jobs: Some(Jobs { sender: jobs, edits, reloaded }),
-            snapshot,
-            asked: VecDeque::new(),
-            thread: Some(thread),
-        }
+        let jobs = Some(Jobs { sender: jobs, edits });
+        Self { jobs, reloaded: 0, snapshot, asked: VecDeque::new(), thread: Some(thread) }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -183,10 +181,23 @@ impl Worker {
         self.send(Job::Edit(Edit::new(change, since)));
     }
 
-    /// Whether an edit waits or is being compiled. Its message arrives before this turns false.
+    /// Whether the window lacks the result of an edit: the edit waits, is being compiled, or its message has not been handled.
     pub(crate) fn is_compiling(&self) -> bool {
-        let count = |edits: &AtomicU64| edits.load(Ordering::SeqCst);
-        self.jobs.as_ref().is_some_and(|jobs| count(&jobs.edits) > count(&jobs.reloaded))
+        self.edits() > self.reloaded
+    }
+
+    /// Notes that the window has handled the message of a reload with this number of edits.
+    pub(crate) fn reloaded(&mut self, edits: u64) {
+        self.reloaded = edits;
+    }
+
+    /// Notes that the thread has panicked, so that no result of the edits so far may come.
+    pub(crate) fn panicked(&mut self) {
+        self.reloaded = self.edits();
+    }
+
+    fn edits(&self) -> u64 {
+        self.jobs.as_ref().map_or(0, |jobs| jobs.edits.load(Ordering::SeqCst))
     }
 
     /// [`Worker::change`] for the watcher's thread, which must end before the worker does.

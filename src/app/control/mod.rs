@@ -1,5 +1,5 @@
-//! Carries out commands from outside, and of the panel Capture. Each is answered once it is really done: a setting when a frame that
-//! shows it has been drawn, a file when it is written.
+//! Carries out commands from outside, and of the panel Capture. A command that changes the picture is answered when the picture is final
+//! ([`Viewer::is_settled`]), one that writes a file when the file is written.
 
 mod captures;
 mod compare;
@@ -13,8 +13,7 @@ use serde_json::{Value, json};
 
 use super::viewer::Viewer;
 use crate::control::{Asked, Reply, Request};
-use crate::shader::expression::is_about_expression;
-use crate::shader::{Diagnostic, Severity};
+use crate::shader::Diagnostic;
 pub(super) use captures::{Captures, Job};
 use requests::short;
 
@@ -27,13 +26,13 @@ pub(super) struct Controlled {
 
 /// Condition that a command waits for.
 pub(super) enum Until {
-    /// A frame that shows the settings.
+    /// The final picture.
     Shown,
     /// The same; the answer tells the camera.
     Camera,
-    /// The end of a reload, and then a frame.
+    /// The end of a reload, and then the final picture.
     Reloaded,
-    /// The end of loading this model, and then a frame.
+    /// The end of loading this model, and then the final picture.
     Model(PathBuf),
     /// A look file that is being read.
     Look,
@@ -43,9 +42,9 @@ pub(super) enum Until {
     Written(u64),
     /// The shader files with these edits.
     EditsWritten(Value),
-    /// A frame that shows the settings; the answer tells the modes side by side.
+    /// The final picture; the answer tells the modes side by side.
     Grid,
-    /// A frame that shows the settings, for a picture of it.
+    /// The final picture, to write it.
     Screen(Option<PathBuf>),
     /// The same for a picture of the window.
     Window(Option<PathBuf>),
@@ -98,15 +97,17 @@ impl Viewer {
         if self.controlled.waiting.is_empty() {
             return;
         }
-        let shows = self.shows_settings();
+        let settled = self.is_settled();
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match until {
-                Until::Shown if shows => reply.done(Value::Null),
-                Until::Camera if shows => reply.done(self.camera_json()),
-                Until::Grid if shows => reply.done(json!({ "modes": self.panels.grid.modes() })),
-                Until::Compared if shows && self.compare.is_drawn() => reply.done(self.compare_json()),
-                Until::Picture(job) if shows && self.has_all_modes() => self.begin_capture(reply, job),
-                Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
+                Until::Shown if settled => reply.done(Value::Null),
+                Until::Camera if settled => reply.done(self.camera_json()),
+                Until::Grid if settled => reply.done(json!({ "modes": self.panels.grid.modes() })),
+                Until::Compared if settled && self.compare.is_drawn() => reply.done(self.compare_json()),
+                Until::Picture(job) if settled => self.begin_capture(reply, job),
+                Until::Reloaded if settled || (self.has_errors() && !self.threads.worker.is_compiling()) => {
+                    self.reloaded(reply);
+                }
                 Until::Model(path) if !self.model.loading => match self.model.is_file(&path) {
                     true => self.controlled.waiting.push((reply, Until::Shown)),
                     false => reply.error(format!("{} was not loaded", path.display())),
@@ -131,7 +132,7 @@ impl Viewer {
         let waits_for_frame = |until: &Until| {
             matches!(until, Until::Shown | Until::Camera | Until::Grid | Until::Screen(_) | Until::Window(_))
         };
-        self.shows_settings() && self.controlled.waiting.iter().any(|(_, until)| waits_for_frame(until))
+        self.is_settled() && self.controlled.waiting.iter().any(|(_, until)| waits_for_frame(until))
     }
 
     /// Answers the commands that wait for a picture which cannot come.
@@ -209,7 +210,7 @@ impl Viewer {
         }
     }
 
-    /// The pictures of the screen that can be taken now: its frame shows the settings.
+    /// The pictures of the screen that can be taken now: its frame is final.
     pub(super) fn take_shots(&mut self) -> Vec<Shot> {
         let is_wanted = |until: &Until| matches!(until, Until::Screen(_));
         std::iter::from_fn(|| self.take_shot(is_wanted)).collect()
@@ -223,7 +224,7 @@ impl Viewer {
     fn take_shot(&mut self, is: impl Fn(&Until) -> bool) -> Option<Shot> {
         let waiting = &mut self.controlled.waiting;
         let at = waiting.iter().position(|(_, until)| is(until))?;
-        if !self.shows_settings() {
+        if !self.is_settled() {
             return None;
         }
         match self.controlled.waiting.remove(at) {
@@ -232,24 +233,9 @@ impl Viewer {
         }
     }
 
-    /// Whether every mode has been compiled, or none will be before the next edit.
-    fn has_all_modes(&self) -> bool {
-        self.has_errors() || self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete())
-    }
-
-    fn has_errors(&self) -> bool {
-        self.errors().next().is_some()
-    }
-
-    /// The errors of the shaders. A watched expression that does not compile is none.
-    fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
-        let is_error = |found: &&Diagnostic| found.severity == Severity::Error && !is_about_expression(found);
-        self.session.diagnostics.iter().filter(is_error)
-    }
-
     /// Whether there are no shaders, and an edit is needed before there are.
     fn never_shows(&self) -> bool {
-        self.session.shaders.is_none() && !self.shader.compiling && self.has_errors()
+        self.session.shaders.is_none() && !self.threads.worker.is_compiling() && self.has_errors()
     }
 
     /// Answers a reload.

@@ -56,7 +56,6 @@ impl Viewer {
         if edits.is_empty() && self.edits.draft().is_none() {
             return Next::Done(Value::Null);
         }
-        self.shader.compiling = true;
         self.execute(Command::Draft(edits));
         Next::Wait(Until::Reloaded)
     }

@@ -45,7 +45,8 @@ impl Viewer {
             Message::Worker(WorkerMessage::DriverTold) => self.stages_changed(),
             // The message wakes the window, which draws the thumbnails.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
-            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
+            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source, edits }) => {
+                self.threads.worker.reloaded(edits);
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
                 self.shader.location = source.location().map(Into::into);
@@ -318,6 +319,7 @@ impl Viewer {
     fn on_panic(&mut self, task: TaskKind, text: &str) {
         let thread = match task {
             TaskKind::Worker => {
+                self.threads.worker.panicked();
                 self.shader.compiling = false;
                 "worker"
             }

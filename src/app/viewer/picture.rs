@@ -173,8 +173,7 @@ impl Viewer {
     pub(in crate::app) fn missing_thumbnail(&self, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
         let newest = self.shown_generation();
         // The thumbnail of the newest version waits until its lighting is complete.
-        let is_settled = self.is_complete && self.settled == Some(newest);
-        let shown = self.shown.as_ref().filter(|shown| is_settled && shown.scene.is_some());
+        let shown = self.shown.as_ref().filter(|shown| self.is_settled() && shown.scene.is_some());
         // A watched expression is no look of the version.
         let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
         let lacks = self.versions.without_thumbnail();
@@ -214,11 +213,6 @@ impl Viewer {
     /// The work that the picture waits for, and for how long it has waited.
     pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
         self.waits.map(|(waits, since)| (waits, since.elapsed()))
-    }
-
-    /// Whether the last frame shows the settings: no interim picture, no light from before, and the model if there is one.
-    pub(in crate::app) fn shows_settings(&self) -> bool {
-        self.shows_settings && !(self.model.loading && self.session.model().is_none())
     }
 
     /// The time of the last frame.

@@ -1,6 +1,8 @@
 //! Keeps the table of stages up to date, and lets the worker ask the driver about their code.
 
 use super::Viewer;
+use crate::shader::expression::is_about_expression;
+use crate::shader::{Diagnostic, Severity};
 
 impl Viewer {
     /// Updates the table of stages, if the shaders or the picture have changed.
@@ -22,10 +24,23 @@ impl Viewer {
         }
     }
 
-    /// Whether the newest shaders are on screen with all of their stages and light.
+    /// Whether the last frame is final, so that the same inputs draw the same picture again: no edit and no model is on its way, the
+    /// light of the settings is baked, and every stage is compiled. After an error, a stage that is missing stays so until the next edit.
     pub(in crate::app) fn is_settled(&self) -> bool {
-        let newest = self.session.shaders.as_ref().map(|shaders| shaders.generation);
-        self.is_complete && newest.is_some() && self.settled == newest
+        let is_complete = self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
+        let awaits = self.awaits_edit() || self.model.loading;
+        self.shows_settings && !awaits && (is_complete || self.has_errors())
+    }
+
+    /// Whether the shaders have errors.
+    pub(in crate::app) fn has_errors(&self) -> bool {
+        self.errors().next().is_some()
+    }
+
+    /// The errors of the shaders. A watched expression that does not compile is none.
+    pub(in crate::app) fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        let is_error = |found: &&Diagnostic| found.severity == Severity::Error && !is_about_expression(found);
+        self.session.diagnostics.iter().filter(is_error)
     }
 
     /// Takes note that what is known of the stages has changed.

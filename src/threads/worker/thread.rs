@@ -43,8 +43,6 @@ pub(super) struct Thread {
     pub(super) edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     pub(super) edits_taken: u64,
-    /// How many of `edits` the last finished reload contains.
-    pub(super) reloaded: Arc<AtomicU64>,
     /// Whether the first reload has begun.
     pub(super) has_compiled: bool,
     /// Panics since the last completed reload.
@@ -178,9 +176,8 @@ impl Thread {
         self.is_shown = false;
         let source = self.reloader.library().source().clone();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
-        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source };
+        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source, edits: taken };
         self.sender.send(Message::Worker(message));
-        self.reloaded.store(taken, Ordering::SeqCst);
         if let Some(set) = &set {
             self.build_ahead(set);
         }
