@@ -9,7 +9,7 @@
 #include "material/material.glsl"
 #include "material/user_surface.glsl"
 
-// One fragment of the model in a mode of random paths: what pbr.frag is for the picture.
+// One fragment of the model in a path-traced mode: what pbr.frag is for the picture.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;

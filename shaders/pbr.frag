@@ -11,7 +11,7 @@
 #include "material/user_surface.glsl"
 
 // One fragment of the model in the picture: scene-referred linear RGB as common/pixel.glsl stores it. debug.frag and
-// paths.frag do the same for the debug modes and for random paths.
+// paths.frag do the same for the debug modes and for path tracing.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;

@@ -28,7 +28,7 @@ layout(constant_id = USER_CONSTANTS + 1) const uint TOON_BANDS = 0u;   //@ui "To
 //     s.coverage *= step(0.3, f.uv0.y);    cuts a masked material, and its shadow
 //
 // s.f0 follows s.ior unless you set it; the frame s.t, s.b follows s.n. The debug modes show the surface as you leave it, and
-// shadow maps, ambient occlusion, the ground and random paths see it too. What random paths hit has no neighboring pixels:
+// shadow maps, ambient occlusion, the ground and path tracing see it too. A hit of path tracing has no neighboring pixels:
 // texture() reads level 0 there, dFdx, dFdy and fwidth are 0. They know one set of texture coordinates, that of the material's
 // textures, as f.uv0 and as f.uv1.
 void user_surface(inout Surface s, Fragment f, vec3 v) {

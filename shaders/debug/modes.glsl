@@ -21,7 +21,7 @@
 //   colors    sRGB colors of these names, which the legend shows; - for a color that follows the picture
 //   draw      lines: the edges of triangles; layers: the sum of all fragments, hidden or not
 //   tonemap   the value is light, so exposure and tone map apply
-//   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
+//   accumulate  the value is an estimate from frame.sample_count paths per pixel; the renderer accumulates frames
 //             of all frames since the picture changed, and frame.sample_index counts these frames
 //   stage     the stage that computes the value: debug.frag (default), paths.frag, pbr.frag (the picture alone), or one of
 //             your own, which says //@pass NAME draw=model to=picture instead=model
@@ -248,7 +248,7 @@ const uint MODE_FALSE_COLOR = 503u;
 const uint MODE_ALBEDO_RANGE = 504u;
 //@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" colors="-|#3f6cff|#ff4530" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180), and above 1."
 const uint MODE_F0_RANGE = 505u;
-// By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
+// By path tracing (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
 //@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths words="reference random samples" doc="The picture with an exact integral of the unoccluded environment."
 const uint MODE_MONTE_CARLO = 506u;
 //@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Exact integral of the unoccluded environment minus the picture's: by split sum or by samples."

@@ -1,4 +1,4 @@
-// Modes of random paths: the picture as it should be, and what the picture lacks, term by term.
+// Path-traced modes: the reference picture, and how the rasterized picture differs from it, term by term.
 //
 //   path-error = prefilter-error + split-sum-error + occlusion-error + shadow-error + bounce-error
 //

@@ -40,7 +40,7 @@ vec4 filtered_mean(vec3 n, float roughness) {
     return vec4(sum.rgb / sum.w, sum.w / float(task.samples));
 }
 
-// Without the suns, which are lit as lamps are (lighting/sun.glsl).
+// Without the suns, which are lit as directional lights (lighting/sun.glsl).
 vec3 small_light_sum(vec3 n, float roughness) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < listed_lights(); ++i) {

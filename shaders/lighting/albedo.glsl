@@ -4,7 +4,7 @@
 // Light that does not come from a single direction is reflected by the split sum (Karis 2013): the integral of a
 // product becomes the product of two integrals, the albedo and the lobe's mean incident radiance. In a white furnace
 // (all radiance 1) the product is exact. Each albedo is the integral of the lobe that evaluate_brdf returns for the
-// selected models, so lighting from the environment conserves energy exactly as far as lighting from lamps does.
+// selected models, so lighting from the environment conserves energy exactly as far as punctual lighting does.
 #ifndef LIGHTING_ALBEDO_GLSL
 #define LIGHTING_ALBEDO_GLSL
 
@@ -33,7 +33,7 @@ struct Albedo {
 // The fraction of light that enters the dielectric and leaves towards v.
 //
 // GltfSample: 1 - F(VoH), averaged over the half vectors of the diffuse lobe. The sum with the specular albedo exceeds
-// 1 at grazing angles, as it does for lamps; brdf/models.glsl claims no conservation for this coupling. Albedo: (1 -
+// 1 at grazing angles, as it does for punctual lights; brdf/models.glsl claims no conservation for this coupling. Albedo: (1 -
 // R(l)) (1 - R(v)) / (1 - R_avg) integrates to 1 - R(v), all that the boundary does not reflect.
 float entering_albedo(Surface s, float n_dot_v) {
     if (DIFFUSE_COUPLING == ALBEDO_COUPLING) return 1.0 - s.boundary;
@@ -73,7 +73,7 @@ Albedo directional_albedo(Surface s, vec3 v) {
     float enters = wide_base * (1.0 - s.metallic) * entering_albedo(s, n_dot_v);
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         // The transmitted lobe has the facet angles of the specular lobe, so F is that lobe's mean: its albedo over its
-        // albedo for F = 1. 1e-3: a D of 0. Without multiple scattering, light between the facets is lost, as for lamps
+        // albedo for F = 1. 1e-3: a D of 0. Without multiple scattering, light between the facets is lost, as for punctual lights
         // (brdf/layers/transmission.glsl).
         float fresnel = max_component(single_dielectric) / max(s.dfg.e, 1e-3);
         float passes = base * (1.0 - s.metallic) * s.transmission;

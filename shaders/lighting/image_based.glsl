@@ -1,7 +1,7 @@
 // Light from the environment, by the split sum (Karis 2013, "Real Shading in Unreal Engine 4"): each lobe's albedo
 // towards the eye (lighting/albedo.glsl) times its mean incident radiance, from maps that were prefiltered for a
 // lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
-// everywhere, and the product is exact. Suns of the map are lit as lamps are (lighting/sun.glsl).
+// everywhere, and the product is exact. Suns of the map are lit as directional lights (lighting/sun.glsl).
 //
 // With REFLECTION_SAMPLES, the specular lobe and the coat are sums over directions instead
 // (lighting/sampled_reflections.glsl).

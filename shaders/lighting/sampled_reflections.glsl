@@ -7,7 +7,7 @@
 // L_i is the mean radiance around l_i over 1 / (N p(l_i)) steradians, the solid angle that the sample stands for. So a few
 // samples cover the lobe without gaps, and every pixel can use the same ones: the picture has no noise.
 //
-// f and its F, D and V are those of lamps, for this l and v. So an edit of them needs no bake to show, and it changes the
+// f and its F, D and V are those of punctual lights, for this l and v. So an edit of them needs no bake to show, and it changes the
 // reflections where the edit says, where the split sum only knows the lobe's albedo and its shape for v = n.
 //
 // Limits: the samples draw from GGX. Of a D with two peaks they may miss one. The mean around a sample near the horizon
@@ -33,7 +33,7 @@ layout(constant_id = USER_CONSTANTS + 14) const uint REFLECTION_SAMPLES = PREFIL
 const bool REFLECTIONS_ARE_SAMPLED = REFLECTION_SAMPLES != PREFILTERED && HAS_ENVIRONMENT;
 
 // The filter is the GGX lobe around l whose peak is 1 / solid angle, with its alpha times this factor. We chose it by eye and by
-// the distance to random paths in the built-in environments: a wider filter blurs the lobe and lets in light from below the
+// the distance to the path-traced reference in the built-in environments: a wider filter blurs the lobe and lets in light from below the
 // horizon, a narrower one shows single samples as spots.
 const float FILTER_WIDTH = 0.75;
 

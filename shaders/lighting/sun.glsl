@@ -1,5 +1,5 @@
 // The suns of the environment: small bright sources of the map, which irradiance and prefiltered levels leave out
-// (ibl/small_lights/list.glsl). They light the surface as lamps do: evaluate_brdf has D, V and F for their own direction and the
+// (ibl/small_lights/list.glsl). They light the surface as punctual lights do: evaluate_brdf has D, V and F for their own direction and the
 // eye's, where the split sum has a lobe for v = n.
 //
 // Limits: a sun is a direction. Its size widens the specular lobes by its variance, and no others. Specular transmission

@@ -1,5 +1,5 @@
 // Calls user_surface, the hook into the material. Every stage that makes a surface calls apply_user_surface, so that what the
-// hook does to the picture, it also does to shadows, occlusion, the ground and random paths.
+// hook does to the picture, it also does to shadows, occlusion, the ground and path tracing.
 #ifndef MATERIAL_USER_SURFACE_GLSL
 #define MATERIAL_USER_SURFACE_GLSL
 
@@ -51,7 +51,7 @@ void follow_changes(Surface before, inout Surface s) {
     }
 }
 
-// Lets the author's hook change a surface that make_surface or a hit of a random path has made. `v`: towards the viewer, unit.
+// Lets the author's hook change a surface that make_surface or a hit of path tracing has made. `v`: towards the viewer, unit.
 void apply_user_surface(inout Surface s, Fragment f, vec3 v) {
     Surface before = s;
     user_surface(s, f, v);

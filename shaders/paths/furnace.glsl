@@ -1,4 +1,4 @@
-// The white furnace: a surface's albedo, measured with the directions that random paths take.
+// The white furnace: a surface's albedo, measured with the directions that path tracing samples.
 #ifndef PATHS_FURNACE_GLSL
 #define PATHS_FURNACE_GLSL
 

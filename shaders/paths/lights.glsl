@@ -1,4 +1,4 @@
-// Draws directions towards light: lamps, rectangles and the environment ("next event estimation").
+// Samples directions towards light: punctual lights, rectangles and the environment ("next event estimation").
 #ifndef PATHS_LIGHTS_GLSL
 #define PATHS_LIGHTS_GLSL
 
@@ -23,7 +23,7 @@ const float FAR_AWAY = 1e30;
 
 uint lamp_count() { return LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count; }
 
-// Probability of drawing towards the environment instead of a lamp.
+// Probability of sampling the environment instead of a light.
 float sky_probability(bool with_lamps) {
     if (!environment_has_light()) return 0.0;
     return with_lamps && lamp_count() > 0u ? 0.5 : 1.0;

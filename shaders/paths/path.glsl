@@ -1,11 +1,11 @@
-// Random paths: the rendering equation (Kajiya 1986) by Monte Carlo, with the picture's own evaluate_brdf.
+// Path tracing: the rendering equation (Kajiya 1986) by Monte Carlo, with the picture's own evaluate_brdf.
 //
 //   L(v) = L_e + integral of L(l) f(l, v) |NoL| dl  =  L_e + mean of L(l) f |NoL| / p(l) over directions l of density p
 //
 // At each point that a path visits, two directions are drawn: one towards a light and one of the BRDF's lobes, along which
 // the path goes on. Both may arrive at the same rectangle or part of the sky; the balance heuristic weights each by how
 // likely it was (Veach & Guibas 1995; Veach 1997, section 9.2). Nothing is prefiltered or clamped, so small bright things
-// that no light sampling knows, such as a lamp's reflection, cause bright dots ("fireflies") until enough paths have
+// that no light sampling knows, such as a light's reflection, cause bright dots ("fireflies") until enough paths have
 // accumulated.
 //
 // The first point is the fragment with its full material. paths/scene.glsl says what the points after it lack.
@@ -61,7 +61,7 @@ vec3 reflected(Surface s, vec3 l, vec3 v, bool is_point) {
     return value * abs(dot(s.n, l));
 }
 
-// One path from the surface `s`, seen from v. Without `traces`, it ends after one reflection and sees no lamps and no
+// One path from the surface `s`, seen from v. Without `traces`, it ends after one reflection and sees no punctual lights and no
 // obstacles. `facet_n`: normal of the triangle towards v.
 PathLight trace_path(Surface s, vec3 v, vec3 facet_n, uint path, bool traces) {
     PathLight light = PathLight(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0u);
@@ -89,7 +89,7 @@ PathLight trace_path(Surface s, vec3 v, vec3 facet_n, uint path, bool traces) {
             vec3 weight = throughput * reflected(s, drawn.l, v, towards.is_point) / drawn.pdf;
             if (!to_light) throughput = weight;
 
-            // The sky's light along l, whichever way l was drawn, and that of a lamp drawn on purpose.
+            // The sky's light along l, whichever way l was drawn, and that of a light sampled on purpose.
             float other = to_light ? (towards.is_point ? 0.0 : pdf_lobes(s, v, drawn.l))
                                    : sky_probability(traces) * pdf_environment(drawn.l);
             vec3 sky = vec3(0.0);

@@ -1,4 +1,4 @@
-// The model as random paths see it after their first hit: triangles in buffers, one struct per material, and base color,
+// The model as path tracing sees it after the first hit: triangles in buffers, one struct per material, and base color,
 // metallic-roughness and emission as small layers of one array texture.
 //
 // Materials are metallic-roughness there, with the index of refraction and KHR_materials_specular's factors. Left out:

@@ -19,7 +19,7 @@
 //     vertex.position += 0.01 * sin(phase) * n;
 //     vertex.normal = normalize(n - (gradient - dot(gradient, n) * n));
 //
-// Framing, focus and random paths still use the mesh as it was loaded. Modes that trace it say so.
+// Framing, focus and path tracing still use the mesh as it was loaded. Modes that trace it say so.
 void user_vertex(inout Vertex vertex) {
 }
 

@@ -1,4 +1,4 @@
-// Directional albedo of the lobes: tables over NoV and roughness, which ibl/*.comp bake with the functions that lamps
+// Directional albedo of the lobes: tables over NoV and roughness, which ibl/*.comp bake with the functions that punctual lights
 // use. So an edit of D, V, F or the diffuse model reaches light from all directions too, as soon as the tables follow.
 #ifndef BRDF_ENERGY_ALBEDO_GLSL
 #define BRDF_ENERGY_ALBEDO_GLSL
@@ -49,12 +49,12 @@ Dfg dfg_towards_eye(Surface s, vec3 v) {
     return dfg;
 }
 
-// B and `lost` towards a lamp.
+// B and the energy deficit `lost` towards a punctual light.
 vec2 lamp_texel(float cosine, float roughness) {
     return textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
 }
 
-// The lobe's moments towards a lamp. A follows from the two that the table holds.
+// The lobe's moments towards a punctual light. A follows from the two that the table holds.
 Dfg dfg_towards_lamp(Surface s, vec3 l) {
     float cosine = abs(dot(s.n, l));
     float roughness = table_roughness(s);

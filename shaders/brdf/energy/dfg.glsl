@@ -1,5 +1,5 @@
 // The moments of the specular lobe that lighting needs, for one direction or as a mean over directions. ibl/dfg.comp
-// integrates them with the D, V and F that lamps use; brdf/energy/albedo.glsl looks them up.
+// integrates them with the D, V and F that punctual lights use; brdf/energy/albedo.glsl looks them up.
 //
 // With c = VoH and integrals over all l, the lobe's albedo towards v is the integral of F(c) D V NoL dl. It splits in
 // two ways:

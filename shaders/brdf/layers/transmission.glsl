@@ -24,7 +24,7 @@ float transmission_roughness(float roughness, float ior) {
 // scales reflections). Without, it is lost, as in glTF. 1e-3: a D of 0. What is seen through the surface
 // keeps as much (lighting/albedo.glsl).
 //
-// Volumes refract what is seen through them (lighting/transmission.glsl), but light from a lamp inside or behind a
+// Volumes refract what is seen through them (lighting/transmission.glsl), but light from a source inside or behind a
 // volume is transmitted as through a thin wall.
 vec3 f_transmitted(Surface s, float n_dot_l, float n_dot_v, float n_dot_h, float sin2_h, vec3 f_dielectric) {
     float roughness = transmission_roughness(s.roughness, s.ior);

@@ -5,7 +5,7 @@
 // at a limit. The clipped light becomes a list of directions, which the bake adds exactly.
 //
 // With environment.suns, the brightest of these sources that are as small as a sun are not in the list: irradiance and
-// prefiltered levels leave them out, and lighting/sun.glsl lights the surface with them as with lamps. For a sun, a level would
+// prefiltered levels leave them out, and lighting/sun.glsl lights the surface with them as directional lights. For a sun, a level would
 // need texels much smaller than its lobe, and the split sum, whose lobe is that of v = n, would be off by up to half of the light.
 #ifndef IBL_SMALL_LIGHTS_LIST_GLSL
 #define IBL_SMALL_LIGHTS_LIST_GLSL
