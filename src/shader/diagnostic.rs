@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::message::{escape, escape_lines};
 
-/// Whether the shader set may be used all the same.
+/// Whether the shader set may be used despite the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -118,8 +118,8 @@ impl Diagnostic {
         format!("{place}: {}: {}", self.severity, escape_lines(&self.message.replace('\n', " ")))
     }
 
-    /// Several lines of plain text: the message, the place, the line of source with a caret, help and notes. Control
-    /// characters are escaped, but for tabs and line breaks.
+    /// Several lines of plain text: the message, the place, the line of source with a caret, help and notes. Control characters
+    /// except tabs and line breaks are escaped.
     pub fn render(&self) -> String {
         self.escaped().render_escaped()
     }
@@ -161,7 +161,7 @@ impl Diagnostic {
         let config = term::Config { chars: term::Chars::ascii(), ..term::Config::default() };
         match term::emit_into_string(&config, &excerpt, &rendered) {
             Ok(text) => text.trim_end().to_owned() + "\n",
-            // Only a range outside of the excerpt could fail, and `under` accepts none.
+            // Only a range outside of the excerpt could fail, and `under` ignores those.
             Err(_) => self.one_line() + "\n",
         }
     }
@@ -173,7 +173,7 @@ impl Diagnostic {
         format!("{}\n{rest}", self.one_line()).trim_end().to_owned()
     }
 
-    /// The same diagnostic with at most `characters` (at least 8) of its source line, so that the caret is in them.
+    /// The same diagnostic with at most `characters` (at least 8) of its source line around the caret.
     #[must_use]
     pub fn within(mut self, characters: usize) -> Self {
         let excerpt: Vec<char> = self.excerpt.iter().flat_map(|excerpt| excerpt.trim_end().chars()).collect();

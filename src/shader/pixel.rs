@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use super::{Mode, Numbers};
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
 
-/// Maximum number of samples per pixel for which the mean still separates coverage and flags.
+/// Most samples per pixel for which the average still separates coverage and flags.
 const MOST_SAMPLES: f32 = 8.0;
-/// The share of a flag in the mean if one sample has it.
+/// The contribution of a flag to the average if one sample has it.
 const ONE_NO_DATA: f32 = FLAG_NO_DATA as f32 / MOST_SAMPLES;
 const ONE_NOT_FINITE: f32 = FLAG_NOT_FINITE as f32 / MOST_SAMPLES;
 /// Characters of a number in [`PixelValue::text`].
@@ -19,14 +19,14 @@ pub struct PixelValue {
     /// Linear RGB times coverage, before exposure, and coverage, 0..1. The shader replaces NaN by 0 and infinity by the largest
     /// value of the HDR target.
     pub value: [f32; 4],
-    /// Whether the mode has no data at one of the pixel's samples or more. The picture shows a checkerboard there.
+    /// Whether the mode has no data at one or more of the pixel's samples. The display shows a checkerboard there.
     pub no_data: bool,
-    /// Whether the value is NaN or infinite at one of the pixel's samples or more.
+    /// Whether the value is NaN or infinite at one or more of the pixel's samples.
     pub not_finite: bool,
 }
 
 impl PixelValue {
-    /// Decodes a texel of the HDR target: one sample, or the mean of up to 8.
+    /// Decodes a texel of the HDR target: one sample, or the average of up to 8.
     ///
     /// Coverage is exact unless a transparent surface is blended over a flag.
     pub fn decode([r, g, b, alpha]: [f32; 4]) -> Self {
@@ -42,8 +42,9 @@ impl PixelValue {
         }
     }
 
-    /// A value that was read on its own, as text: one number per component of the mode, the unit, and whether the value is before
-    /// exposure; or what its number means; or `no data`; or `NaN`, which also stands for infinity. The width depends only on the mode.
+    /// The text of a value that was read on its own: one number per component of the mode, the unit, and whether the value is
+    /// before exposure; or the meaning of its number; or `no data`; or `NaN`, which includes infinity. The width depends only on
+    /// the mode.
     pub fn text(&self, mode: &Mode) -> String {
         match &mode.numbers {
             Some(numbers) => self.meaning(numbers),
@@ -51,7 +52,8 @@ impl PixelValue {
         }
     }
 
-    /// The value of a picture's pixel as text. Unlike [`PixelValue::text`], it is a color where the picture shows one for each number.
+    /// The text of a pixel's value in the frame. Unlike [`PixelValue::text`], this is a color where the display shows one for
+    /// each number.
     pub fn text_in_picture(&self, mode: &Mode) -> String {
         match self.parts_in_picture(mode) {
             [text, unit] if unit.is_empty() => text,
@@ -83,7 +85,7 @@ impl PixelValue {
         [format!("{words:>width$}"), " ".repeat(unit.chars().count())]
     }
 
-    /// A value that was read on its own, in JSON: null is no data, "NaN" is not finite. A number that stands for something is an integer
+    /// The JSON of a value that was read on its own: null is no data, "NaN" is not finite. A number with a meaning is an integer
     /// or a name; all others are RGB times coverage, and coverage.
     pub fn json(&self, mode: &Mode) -> Value {
         match (self, &mode.numbers) {
@@ -100,12 +102,12 @@ impl PixelValue {
         }
     }
 
-    /// Whether anything covers the pixel. Where nothing does, its color is 0 and stands for no number.
+    /// Whether anything covers the pixel. Where nothing does, its color is 0 and has no meaning.
     fn is_covered(&self) -> bool {
         self.value[3] > 0.0
     }
 
-    /// The number that a color of the picture stands for.
+    /// The number that a color of the display stands for.
     fn number(&self) -> u32 {
         self.value[0].round() as u32
     }
@@ -123,7 +125,8 @@ impl PixelValue {
         format!("{text:>width$}")
     }
 
-    /// The value in words, for units that people read so: `-2.1 EV`, `level 0`, `3 layers`, `1,024 texels/m`. Always of the same width.
+    /// The value in words, for units that read better so: `-2.1 EV`, `level 0`, `3 layers`, `1,024 texels/m`. Always of the same
+    /// width.
     fn words(&self, mode: &Mode) -> Option<String> {
         let number = self.value[0];
         let (text, width) = match &*mode.unit {
@@ -178,7 +181,7 @@ mod tests {
     const NO_DATA: f32 = FLAG_NO_DATA as f32;
     const NOT_FINITE: f32 = FLAG_NOT_FINITE as f32;
 
-    /// The mean of samples, resolved to a half-float target.
+    /// The average of samples, resolved to a half-float target.
     fn resolved(samples: &[f32]) -> f32 {
         let sum: f32 = samples.iter().map(|alpha| f16::from_f32(*alpha).to_f32()).sum();
         f16::from_f32(sum / samples.len() as f32).to_f32()
@@ -265,7 +268,7 @@ mod tests {
         for absent in [PixelValue { no_data: true, ..PixelValue::default() }, PixelValue::default()] {
             assert_eq!((absent.text(&mode).trim(), absent.json(&mode)), ("no data", Value::Null));
         }
-        // A picture shows colors.
+        // The display shows colors.
         let green = PixelValue { value: [0.0, 0.5, 0.0, 1.0], ..PixelValue::default() };
         assert_eq!(green.text_in_picture(&mode).split_whitespace().count(), 3);
     }

@@ -14,8 +14,8 @@ type Values = BTreeMap<String, ShaderValue>;
 /// Specialization constants: ids and the bits of their values.
 type Specialization = Vec<(u32, u32)>;
 
-/// The values of all specialization constants by ascending id, so that equal values give equal pipelines. A constant whose
-/// value does not fit has its default.
+/// The values of all specialization constants by ascending id, so that equal values give equal pipelines. A constant whose value
+/// does not fit gets its default.
 pub(crate) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
     let set = |c: &Constant| values.get(&c.name).and_then(|value| constant_bits(c, value).ok());
     constants.iter().map(|c| (c.id, set(c).unwrap_or(c.default))).collect()
@@ -47,7 +47,7 @@ pub(super) fn constant_number(constant: &Constant, value: &ShaderValue) -> Resul
     Ok(number)
 }
 
-/// The `PARAMS_SIZE` bytes of the uniform block `Params`. A parameter whose value does not fit has its default.
+/// The `PARAMS_SIZE` bytes of the uniform block `Params`. A parameter whose value does not fit gets its default.
 pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {

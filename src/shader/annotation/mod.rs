@@ -70,7 +70,7 @@ pub struct Annotations {
 }
 
 impl Annotations {
-    /// A message if no constant has the `name` that stands after `when=`.
+    /// A message if no constant has the `name` that follows `when=`.
     pub fn unknown_constant(&self, name: &str) -> Option<String> {
         let mut known = self.constants.iter().map(|constant| constant.name.as_str());
         if known.clone().any(|constant| constant == name) {
@@ -161,9 +161,9 @@ pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Ite
 /// The first occurrence of each name.
 #[derive(Default)]
 struct Seen {
-    /// Where it is, and whether that file is as it was shipped.
+    /// Where the name occurs, and whether that file is unchanged from the shipped one.
     first: BTreeMap<(&'static str, String), (Place, bool)>,
-    /// Whether the file that is being read is as it was shipped.
+    /// Whether the file that is being read is unchanged from the shipped one.
     is_shipped: bool,
 }
 
@@ -196,7 +196,7 @@ impl Seen {
     fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
         let now = (place.clone(), self.is_shipped);
         let Some((first, was_shipped)) = self.first.insert((what, value.to_owned()), now) else { return Ok(()) };
-        // The author's file is the one to change.
+        // Report the author's file, not the shipped one.
         let (wrong, other) = if self.is_shipped && !was_shipped { (&first, place) } else { (place, &first) };
         let error = wrong.error_at(value, format!("{what} `{value}` is given twice"));
         Err(Box::new(error.with_note(format!("the other is at {}:{}", other.file, other.line))))

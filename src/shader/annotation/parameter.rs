@@ -25,11 +25,12 @@ pub struct Constant {
     /// Description of each choice, with its source; may be empty.
     #[serde(skip)]
     pub choice_docs: Vec<String>,
-    /// Choices that claim never to reflect more light than arrives. `None` if the constant does not affect that.
+    /// Choices that guarantee never to reflect more light than arrives (`conserves=`). `None` if the constant does not affect
+    /// that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conserves: Option<Vec<String>>,
-    /// Choices that claim to be reciprocal: the same with light and eye exchanged. `None` if the constant does not
-    /// affect that.
+    /// Choices that guarantee reciprocity: the same value with light and eye swapped (`reciprocal=`). `None` if the constant does
+    /// not affect that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reciprocal: Option<Vec<String>>,
     /// Heading under which the window shows it; empty for none.
@@ -114,7 +115,7 @@ pub struct Parameter {
     /// Description of each choice, with its source; may be empty.
     #[serde(skip)]
     pub choice_docs: Vec<String>,
-    /// The constant without which it changes nothing: the window shows it only while that is not 0.
+    /// The constant that must not be 0 for it to have an effect: the window shows it only then.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub when: Option<String>,
     /// Heading under which the window shows it; empty for none.

@@ -11,10 +11,10 @@ use crate::shader::diagnostic::Diagnostic;
 /// Number of images that every device can draw to in one pass.
 const MOST_IMAGES: usize = 4;
 
-/// How often a pass draws the model at most.
+/// Most instances of the model that a pass draws.
 pub const MOST_COPIES: u32 = 1024;
 
-/// How many quads a pass draws at most.
+/// Most quads that a pass draws.
 const MOST_QUADS: u32 = 1 << 20;
 
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
@@ -40,7 +40,7 @@ const OPTIONS: [&str; 16] = [
     "instead",
 ];
 
-/// The pass from the HDR picture to the displayed picture. Every tree declares it, with `to=display`.
+/// The pass from the HDR target to the LDR output. Every tree declares it, with `to=display`.
 pub const TONEMAP: &str = "tonemap";
 
 /// The pass that draws the model in the final picture. Every tree declares it, with `draw=model to=picture`.
@@ -49,14 +49,14 @@ pub const MODEL: &str = "model";
 /// The size of a pass's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum PassSize {
-    /// The picture's size divided by a whole number, rounded up.
+    /// The frame's size divided by a whole number, rounded up.
     Divided(u32),
     /// Width and height, pixels.
     Pixels(u32, u32),
 }
 
 impl PassSize {
-    /// Width and height in pixels, for a picture of this size. At least 1.
+    /// Width and height in pixels, for a frame of this size. At least 1.
     pub fn pixels(self, (width, height): (u32, u32)) -> (u32, u32) {
         match self {
             Self::Divided(by) => (width.div_ceil(by).max(1), height.div_ceil(by).max(1)),
@@ -127,16 +127,16 @@ pub enum Dispatch {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
-    /// One of its own, with the name of the pass.
+    /// An image of its own, with the name of the pass.
     #[default]
     Image,
-    /// The picture.
+    /// The HDR target.
     Picture,
     /// One color from the samples of each pixel.
     Resolve,
-    /// The mean of all frames, in modes that accumulate.
+    /// The accumulation buffer, in modes that accumulate.
     Mean,
-    /// The displayed picture.
+    /// The LDR output.
     Display,
 }
 
@@ -144,11 +144,11 @@ pub enum Target {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Cull {
-    /// None.
+    /// No faces.
     None,
-    /// Those that face the camera.
+    /// Faces towards the camera.
     Front,
-    /// Those that face away from it.
+    /// Faces away from it.
     Back,
 }
 
@@ -161,12 +161,12 @@ pub enum Instances {
     Lights,
 }
 
-/// A declared pass.
+/// The description of a declared pass.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct PassDesc {
     /// Name of the pass and of its image.
     pub name: String,
-    /// Name for people.
+    /// Display name.
     pub label: String,
     /// Size of its image.
     pub size: PassSize,
@@ -174,7 +174,7 @@ pub struct PassDesc {
     pub format: PassFormat,
     /// Further images that it draws, with their formats: those of the outputs at locations 1 and up.
     pub also: Vec<(String, PassFormat)>,
-    /// Whether its image has mip levels, which are made after the pass.
+    /// Whether its image has mip levels, which are generated after the pass.
     pub mips: bool,
     /// Whether the image of the previous frame is kept, as `before_NAME`.
     pub keep: bool,
@@ -198,7 +198,7 @@ pub struct PassDesc {
     pub cull: Option<Cull>,
     /// Whether its colors, premultiplied by alpha, are blended with the picture.
     pub blend: bool,
-    /// The author's constant that switches the pass on. It also tells the stages that read its image.
+    /// The author's constant that switches the pass on. Stages that read its image can read the constant, too.
     pub when: Option<String>,
     /// A description of the pass.
     pub doc: String,
@@ -210,13 +210,12 @@ pub struct PassDesc {
 }
 
 impl PassDesc {
-    /// Whether it gives what it draws to the picture, so that it has no image of its own.
+    /// Whether it draws to the picture, so that it has no image of its own.
     pub fn to_picture(&self) -> bool {
         self.to == Target::Picture
     }
 
-    /// Whether it belongs to the picture that Specula itself composes: the model, what may stand in its place, and the steps to
-    /// the display.
+    /// Whether it is one of the built-in steps of the picture: the model, what may replace it, and the steps to the display.
     pub fn is_built_in(&self) -> bool {
         matches!(self.to, Target::Resolve | Target::Mean | Target::Display)
             || self.instead.is_some()
@@ -228,7 +227,7 @@ impl PassDesc {
         self.to == Target::Image && self.images().any(|(name, _)| name == image)
     }
 
-    /// The images that it draws if they are its own: names and formats, by location.
+    /// The names and formats of its own images, by location; empty if it draws to another target.
     pub fn images(&self) -> impl Iterator<Item = (&str, PassFormat)> {
         let also = self.also.iter().map(|(name, format)| (name.as_str(), *format));
         std::iter::once((self.name.as_str(), self.format)).chain(also)
@@ -239,7 +238,7 @@ impl PassDesc {
         self.model.is_some() && !self.quads
     }
 
-    /// Whether it draws to the multisampled picture, together with the model.
+    /// Whether it draws to the multisampled target, together with the model.
     pub fn is_drawn_with_model(&self) -> bool {
         self.to_picture() && (self.model.is_some() || self.background)
     }

@@ -14,7 +14,7 @@ pub enum Wrap {
     /// The texture repeats.
     #[default]
     Repeat,
-    /// The texels at the edge continue.
+    /// The texels at the edge are repeated.
     Clamp,
 }
 
@@ -36,7 +36,7 @@ pub struct TextureDesc {
     pub mips: bool,
     /// Whether the first row of each picture, face, layer and slice is at the bottom, as in OpenGL.
     pub flip: bool,
-    /// Number of layers or slices that lie in one image, 1 to 65536.
+    /// Number of layers or slices in one image, 1 to 65536.
     pub layers: Option<u32>,
     /// Location of the annotation.
     #[serde(skip)]

@@ -59,10 +59,10 @@ pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<us
     Ok((bytes, out))
 }
 
-/// The keys of claims.
+/// The keys of guaranteed properties.
 const CLAIMS: [&str; 2] = ["conserves=", "reciprocal="];
 
-/// The claim that comes next, without its `=`.
+/// The next guaranteed property, without its `=`.
 pub fn claim(cursor: &mut Cursor<'_>) -> Option<&'static str> {
     CLAIMS.into_iter().find(|claim| cursor.peek_text(claim)).map(|claim| claim.trim_end_matches('='))
 }
@@ -81,12 +81,12 @@ pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec
     }
 }
 
-/// The option before the cursor whose value is for people: `group`, `doc` or `unit`.
+/// The option before the cursor if its value is free text: `group`, `doc` or `unit`.
 pub fn text_key(cursor: &mut Cursor<'_>) -> Option<&'static str> {
     ["group=", "doc=", "unit="].into_iter().find(|key| cursor.peek_text(key)).map(|key| key.trim_end_matches('='))
 }
 
-/// Names and values of choices, and what each does, which may be empty.
+/// Names and values of choices, and the description of each, which may be empty.
 pub type Choices = (Vec<(String, i64)>, Vec<String>);
 
 /// Parses `A=0 B=1 "What B does"` and so on, with values of the type.

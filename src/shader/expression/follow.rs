@@ -2,8 +2,8 @@
 
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
-/// The number, from 1, of the line of `new` that was the line `number` of `old`. A line that was itself edited keeps its place
-/// among its neighbors.
+/// The line of `new`, from 1, that corresponds to line `number` of `old`. A line that was itself edited keeps its place among its
+/// neighbors.
 pub fn follow(old: &str, new: &str, number: u32) -> u32 {
     let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
     let index = number.saturating_sub(1) as usize;
@@ -12,7 +12,7 @@ pub fn follow(old: &str, new: &str, number: u32) -> u32 {
     let holds = |operation: &&DiffOp| operation.old_range().contains(&index);
     let found = operations.iter().find(holds).map_or(index, |operation| {
         let (before, after) = (operation.old_range(), operation.new_range());
-        // Of lines that were replaced by fewer, the last ones share a place.
+        // If several lines were replaced by fewer, the last ones share a place.
         (after.start + index - before.start).min(after.end.saturating_sub(1).max(after.start))
     });
     u32::try_from(found + 1).unwrap_or(number)

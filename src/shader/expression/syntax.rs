@@ -95,11 +95,11 @@ pub struct Statement {
     pub kind: Kind,
     /// All of its bytes.
     pub bytes: Range<usize>,
-    /// The bytes that belong to none of its parts: the parentheses of a condition or of a loop.
+    /// The bytes that belong to none of its substatements: the parentheses of a condition or of a loop.
     pub header: Range<usize>,
     /// The statements in it.
     pub parts: Vec<Statement>,
-    /// Whether it is a statement of a block, so that others may stand beside it.
+    /// Whether it is a statement of a block, so that others may be inserted beside it.
     pub is_in_block: bool,
 }
 
@@ -133,7 +133,7 @@ pub fn functions(tokens: &[Token<'_>]) -> Vec<Function> {
                 }
                 first = at;
             }
-            // A struct or a block of the interface; its declaration goes on to the `;`.
+            // A struct or a block of the interface; its declaration extends to the `;`.
             "{" => at = closing(tokens, at).map_or(tokens.len(), |end| end + 1),
             _ => at += 1,
         }
@@ -178,14 +178,14 @@ impl Parser<'_, '_> {
         self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).map_or(0, |token| token.bytes.end)
     }
 
-    /// Passes over brackets. Returns their bytes.
+    /// Skips brackets. Returns their bytes.
     fn brackets(&mut self) -> Option<Range<usize>> {
         let start = self.start();
         self.at = closing(self.tokens, self.at)? + 1;
         Some(start..self.end())
     }
 
-    /// Passes over everything up to and with a `;`.
+    /// Skips everything up to and including a `;`.
     fn skip_statement(&mut self) -> Option<()> {
         loop {
             match self.text() {

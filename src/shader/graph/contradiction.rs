@@ -3,7 +3,7 @@
 use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassDesc, PassFormat, PassSize, Target};
 use crate::shader::compile::StageKind;
 
-/// The word of the annotation that is wrong, and a message.
+/// The contradictory word of the annotation, and a message.
 pub(super) fn contradiction(desc: &PassDesc, kind: StageKind) -> Option<(&'static str, &'static str)> {
     let is_compute = kind == StageKind::Compute;
     if desc.to != Target::Image && is_compute {

@@ -32,7 +32,7 @@ const PASS_MEMBERS: [(&str, &str); 6] = [
 const SAMPLERS: &str = "sampler2D, samplerCube, sampler3D, sampler2DArray";
 
 impl Input {
-    /// Whether it may be another one in each picture, whatever else has changed.
+    /// Whether it may change in every frame, even if nothing else has changed.
     pub fn is_of_picture(&self) -> bool {
         match self {
             Self::Picture
@@ -71,9 +71,9 @@ pub fn inputs_of<'s, 't: 's>(
     Ok(all)
 }
 
-/// Leaves out the images that no output of a pass depends on. A pass that draws the model calls the author's hooks, but may use a part of
-/// what they change: a shadow map takes the holes alone. So an image that only a color comes from is no input of the shadow map.
-/// Otherwise no hook could read the occlusion, which is made of the model's distance.
+/// Removes the images on which no output of a pass depends. A pass that draws the model calls the author's hooks, but may use
+/// only a part of what they change: a shadow map uses only the holes. So an image that only affects a color is no input of the
+/// shadow map. Otherwise no hook could read the ambient occlusion, which is computed from the model's distance.
 pub fn without_dead(mut inputs: Inputs, desc: &PassDesc, stage: &PassStage<'_>) -> Inputs {
     let is_dead = |binding: u32, input: &Input| {
         matches!(input, Input::Image(_)) && binding < VERTEX_BINDINGS && !(stage.live)().contains(&binding)
@@ -185,7 +185,7 @@ fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>
     }
 }
 
-/// The images that Specula gives to a pass, by name.
+/// The images that Specula provides to a pass, by name.
 fn given(desc: &PassDesc) -> &'static [(&'static str, Input)] {
     match desc.to {
         Target::Resolve => &[],
@@ -216,7 +216,8 @@ fn sampled(desc: &PassDesc, name: &str, names: &Names<'_>) -> Result<Input, Refu
     }
 }
 
-/// The image that a name reads as it was one frame ago: `glow` for `before_glow`. Passes of the tree keep `picture` and `depth`.
+/// The image that a name reads with a delay of one frame: `glow` for `before_glow`. Passes of the tree keep `picture` and
+/// `depth`.
 pub fn read_later(name: &str) -> Option<&str> {
     match name.strip_prefix("before_")? {
         "picture" => Some("last_picture"),
@@ -225,7 +226,7 @@ pub fn read_later(name: &str) -> Option<&str> {
     }
 }
 
-/// The image of a pass, of now or one frame ago, or a texture. `None` if nothing has this name.
+/// The image of a pass, of this frame or the previous one, or a texture. `None` if nothing has this name.
 fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
     let find = |name: &str| names.passes.iter().find(|pass| pass.name == name || pass.draws(name));
     if let Some((before, pass)) = read_later(name).and_then(|before| Some((before, find(before)?))) {
@@ -247,7 +248,7 @@ fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
     }
 }
 
-/// A texture that is no `sampler2D`. Only files of the tree are such textures.
+/// A texture other than a `sampler2D`. Only files of the tree can be such textures.
 fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Refusal> {
     if names.textures.iter().any(|texture| texture.name == name) {
         return Ok(Input::Texture(name.to_owned(), kind));
@@ -264,7 +265,7 @@ fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Re
     Err((message, format!("declare it: //@texture {name} \"{name}{example}")))
 }
 
-/// Refuses to read `picture`, `depth` or what a pass made of the picture one frame later: only images of passes are kept.
+/// Refuses to read `picture`, `depth` or a pass that draws to the picture one frame later: only images of passes are kept.
 fn not_kept(name: &str) -> Refusal {
     let is_image = matches!(name, "picture" | "depth" | "behind");
     let message = match is_image {
@@ -278,7 +279,7 @@ fn not_kept(name: &str) -> Refusal {
     (message, help)
 }
 
-/// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
+/// Refuses an unknown name. `given` are the images that Specula provides to the stage.
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
     let images = |pass: &PassDesc| -> Vec<String> { pass.images().map(|(name, _)| name.to_owned()).collect() };

@@ -7,7 +7,7 @@ use crate::message::did_you_mean;
 use crate::shader::annotation::pass::TONEMAP;
 use crate::shader::diagnostic::Diagnostic;
 
-/// The passes in the order in which they are drawn.
+/// The passes in drawing order.
 ///
 /// # Errors
 /// An unknown name after `after=`, a cycle, or an image that is read before it is drawn.
@@ -53,7 +53,7 @@ fn names(pass: &GraphPass) -> impl Iterator<Item = String> {
     std::iter::once(pass.name().to_owned()).chain(pass.desc.also.iter().map(|(name, _)| name.clone()))
 }
 
-/// A pass that follows the tone map, or reads the image of a pass that does, is drawn after the tone map itself.
+/// A pass that follows the tone map, or reads the image of such a pass, is drawn after the tone map.
 fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let mut changed = true;
     while std::mem::take(&mut changed) {
@@ -71,7 +71,7 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     }
 }
 
-/// The passes whose images the model or the background reads are drawn before the model, and so are those that they read in turn.
+/// Moves the passes whose images the model or the background reads before the model, with all passes that they read.
 fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let is_reader = |pass: &&GraphPass| {
@@ -108,8 +108,8 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// The compute passes whose buffers the model, the background or quads read are drawn before the model, and so are those that they need,
-/// unless one of them reads the picture of this frame: then the model reads what they wrote in the frame before.
+/// Moves the compute passes whose buffers the model, the background or quads read before the model, with the passes that they
+/// need, unless one of them reads the picture of this frame: then the model reads what they wrote in the previous frame.
 fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     let is_read = |at: &usize| {
         let mut readers = passes
@@ -140,7 +140,7 @@ fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, u
     }
 }
 
-/// The names of the buffers that a pass has, of those for which `is_wanted` returns true of whether it may write them.
+/// The names of the buffers of a pass for which `is_wanted` returns true when called with whether the pass may write them.
 fn buffers(pass: &GraphPass, is_wanted: impl Fn(bool) -> bool) -> BTreeSet<&str> {
     let name = |input| match input {
         &Input::Buffer(ref name, _, is_written) if is_wanted(is_written) => Some(name.as_str()),
@@ -154,7 +154,7 @@ fn writes_buffer_of(pass: &GraphPass, reader: &GraphPass) -> bool {
     pass.is_compute && !buffers(pass, |is_written| is_written).is_disjoint(&buffers(reader, |is_written| !is_written))
 }
 
-/// A pass, and all that `next` leads to from it.
+/// A pass, and all passes that `next` reaches from it.
 fn reached(from: usize, next: impl Fn(usize) -> Vec<usize>) -> BTreeSet<usize> {
     let (mut found, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(at) = open.pop() {
@@ -165,13 +165,13 @@ fn reached(from: usize, next: impl Fn(usize) -> Vec<usize>) -> BTreeSet<usize> {
     found
 }
 
-/// The passes that a pass names: those of the images that it reads, and that of `after=`.
+/// The passes that a pass depends on: those of the images that it reads, and that of `after=`.
 fn needs(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Vec<usize> {
     let names = pass.desc.after.as_deref().into_iter().chain(images(&pass.inputs));
     names.filter_map(|name| index.get(name).copied()).collect()
 }
 
-/// The names of the images that are read as they are in this frame.
+/// The names of the images of this frame that are read.
 fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {
     inputs.values().filter_map(|input| match input {
         Input::Image(name) => Some(name.as_str()),
@@ -194,7 +194,7 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
     Some(error.with_help(format!("there are {}", known.join(", "))))
 }
 
-/// An error if a pass is drawn in an earlier part of the frame than the pass that its `after=` names.
+/// An error if a pass is drawn in an earlier phase than the pass that its `after=` names.
 fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
     let other = &passes[*index.get(pass.desc.after.as_deref()?)?];
     if other.phase <= pass.phase {
@@ -224,7 +224,7 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
-    /// Appends a pass to the order, after all passes that it needs. `path`: the passes that wait for it.
+    /// Appends a pass to the order, after all passes that it depends on. `path`: the passes that wait for it.
     fn emit(&mut self, at: usize, path: &mut Vec<usize>) -> Result<(), Box<Diagnostic>> {
         match self.state[at] {
             State::Done => return Ok(()),
@@ -236,7 +236,7 @@ impl Order<'_> {
         for need in needs(pass, self.index) {
             self.emit(need, path)?;
         }
-        // Before a pass that reads a buffer come the compute passes that write it, except those that wait for the reader.
+        // Compute passes that write a buffer come before its readers, except those that wait for the reader.
         let writers = (0..self.passes.len()).filter(|other| self.passes[*other].phase == pass.phase);
         for writer in writers.filter(|writer| *writer != at && writes_buffer_of(&self.passes[*writer], pass)) {
             let waits = reached(writer, |at| needs(&self.passes[at], self.index));

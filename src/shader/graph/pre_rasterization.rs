@@ -24,7 +24,7 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 use crate::shader::spirv::primitive::Primitive;
 
-/// The stages of a pass before the rasterizer, by their paths.
+/// The pre-rasterization stages of a pass, by their paths.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct PreRasterization {
     /// Its own vertex stage, that of the model, or [`FULL_SCREEN`]. It does not run if there is a mesh stage.
@@ -35,7 +35,7 @@ pub struct PreRasterization {
     pub geometry: Option<String>,
     /// The stages that run in place of all of these.
     pub mesh: Option<MeshStages>,
-    /// The only primitives of the model that the stages take; `None` for all.
+    /// The only primitives of the model that the stages accept; `None` for all.
     pub takes: Option<Primitive>,
 }
 
@@ -66,9 +66,9 @@ impl PreRasterization {
         Self { vertex: FULL_SCREEN.to_owned(), ..Self::default() }
     }
 
-    /// Finds the files of a pass. Stages that lie beside its own stage are its own. A pass that draws the model takes what it
-    /// lacks from `model`, the stage of the model's pass: all stages if it has none of its own, otherwise the vertex stage. A mesh
-    /// stage goes before a vertex stage.
+    /// Finds the files of a pass. Stages beside its own stage belong to it. A pass that draws the model takes the rest from
+    /// `model`, the stage of the model's pass: all stages if it has none of its own, otherwise the vertex stage. A mesh stage
+    /// takes precedence over a vertex stage.
     ///
     /// # Errors
     /// - A pass that draws quads has no vertex stage, or a stage that reads what only a model has.
@@ -118,7 +118,7 @@ impl PreRasterization {
         }
     }
 
-    /// Sets which primitives the stages take, and how many. `stages`: the compiled stages.
+    /// Sets which primitives the stages accept, and how many. `stages`: the compiled stages.
     ///
     /// # Errors
     /// The geometry stage takes other primitives than it gets, or the message of the task stage is not that of the mesh stage.
@@ -175,7 +175,7 @@ impl MeshStages {
     }
 }
 
-/// Errors of stages whose inputs are not the outputs of the stage before. `paths`: those of a pipeline, in their order.
+/// Errors of stages whose inputs do not match the outputs of the previous stage. `paths`: those of a pipeline, in their order.
 pub fn unlike_neighbors<'p>(
     paths: impl Iterator<Item = &'p str>,
     stages: &BTreeMap<String, PassStage<'_>>,
@@ -198,7 +198,7 @@ pub fn unlike_neighbors<'p>(
     errors
 }
 
-/// The path of the stage of this kind that another stage may have beside it.
+/// The path of the stage of this kind beside another stage.
 pub fn stage_beside(stage: &str, kind: StageKind) -> String {
     format!("{}.{}", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem), kind.extension())
 }
@@ -207,7 +207,7 @@ fn stage_name(path: &str) -> &'static str {
     StageKind::of(&TreePath::from(path)).map_or("", StageKind::name)
 }
 
-/// Whether a stage that gives points uses `gl_PointSize`, as one that gives other primitives need not.
+/// Whether a stage that outputs points uses `gl_PointSize`. Stages with other primitives need not.
 fn has_point_size(stage: &PassStage<'_>) -> bool {
     /// SPIR-V's capabilities TessellationPointSize and GeometryPointSize.
     const POINT_SIZE: std::ops::RangeInclusive<u32> = 23..=24;
@@ -219,7 +219,7 @@ fn exists(path: &str, snapshot: &Snapshot<'_>) -> bool {
     snapshot.read(&TreePath::from(path)) != Err(SourceError::Missing)
 }
 
-/// Holds the stages of a pass with draw=quads against what it offers: `vertex` and `mesh` lie beside its stage.
+/// Checks the stages of a pass with draw=quads: `vertex` and `mesh` lie beside its stage.
 fn check_quads(
     desc: &PassDesc,
     vertex: Option<&str>,

@@ -11,7 +11,7 @@ use crate::shader::compile::StageKind;
 use crate::shader::contract::check_fragment_outputs;
 use crate::shader::diagnostic::Diagnostic;
 
-/// The part of the frame that an annotation itself determines.
+/// The phase that an annotation alone determines.
 pub(super) fn phase(desc: &PassDesc) -> RenderPhase {
     match desc.to {
         Target::Resolve => RenderPhase::Resolve,
@@ -22,7 +22,7 @@ pub(super) fn phase(desc: &PassDesc) -> RenderPhase {
     }
 }
 
-/// Errors of passes with a name or an option that belongs to another kind of pass.
+/// Errors of passes with a name or an option that is reserved for another kind of pass.
 pub(super) fn misplaced(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
     let passes = &annotations.passes;
     passes.iter().filter_map(|desc| {
@@ -71,7 +71,7 @@ pub(super) fn wrong_outputs(desc: &PassDesc, stage: &PassStage<'_>) -> Vec<Diagn
     errors
 }
 
-/// An error about the first debug mode that accumulates, if no pass makes the mean.
+/// An error about the first debug mode that accumulates, if no pass draws to the accumulation buffer.
 pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
     let mode = annotations.modes.iter().find(|mode| mode.accumulate)?;
     if annotations.passes.iter().any(|desc| desc.to == Target::Mean) {
@@ -82,7 +82,7 @@ pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
     Some(error.with_help("write `//@pass mean to=mean` in the fragment stage that adds a frame to the mean"))
 }
 
-/// Errors about debug modes whose stage no pass draws the model with, one for each stage.
+/// Errors about debug modes with a stage that no pass draws the model with, one for each stage.
 pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
     let draws = |desc: &&PassDesc| desc.is_drawn_with_model() && desc.is_built_in();
     let known: Vec<&str> = annotations.passes.iter().filter(draws).map(|desc| desc.stage.as_str()).collect();
@@ -99,7 +99,7 @@ pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = D
     })
 }
 
-/// The word of an annotation that is wrong, and a message.
+/// The misplaced word of an annotation, and a message.
 fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str, String)> {
     let draws_model = desc.draws_model() && desc.to_picture();
     let name = desc.name.as_str();

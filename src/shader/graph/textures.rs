@@ -39,7 +39,7 @@ impl TextureKind {
         }
     }
 
-    /// The kind that a sampler in GLSL reads. `None` for samplers that Specula has no textures for.
+    /// The kind that a sampler in GLSL reads. `None` for samplers without such textures.
     pub fn of(glsl: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.glsl() == glsl)
     }
@@ -54,7 +54,7 @@ pub struct TextureFile {
     pub bytes: Arc<[u8]>,
 }
 
-/// An image of the tree that stages sample.
+/// An image file of the tree that stages sample.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     /// The kind that a stage declares. A texture that is declared as several kinds is several textures.
@@ -66,7 +66,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Whether its only file is a table of colors.
+    /// Whether its only file is a color lookup table.
     pub fn is_table(&self) -> bool {
         is_table(&self.desc)
     }
@@ -117,7 +117,7 @@ pub(super) fn read_texture(
             Err(error) => Some(Err(refuse(format!("{shown} {error}")))),
         }
     };
-    // Without a `*`, the paths are places of the same file.
+    // Without a `*`, the paths are alternatives for the same file.
     let most = if is_pattern { paths.len() } else { 1 };
     let files: Vec<TextureFile> = paths.iter().filter_map(read).take(most).collect::<Result<_, _>>()?;
     if files.is_empty() {
@@ -170,7 +170,7 @@ fn contradiction(desc: &TextureDesc, kind: TextureKind) -> Option<(String, Strin
     }
 }
 
-/// The files that match a pattern, by what is in place of the `*`.
+/// The files that match a pattern, by the text in place of the `*`.
 fn matching(pattern: Pattern<'_>, path: &TreePath, snapshot: &Snapshot<'_>) -> BTreeMap<String, TreePath> {
     let folder = path.as_str().rsplit_once('/').map_or("", |(folder, _)| folder);
     let names = snapshot.source().folder(folder);
@@ -189,7 +189,7 @@ fn faces(
     snapshot: &Snapshot<'_>,
 ) -> Result<Vec<TreePath>, String> {
     let folders: Vec<_> = candidates.iter().map(|path| matching(pattern, path, snapshot)).collect();
-    // The set of which most files exist, and among equals the first.
+    // The set with the most existing files; of equal ones the first.
     let mut best: (Vec<TreePath>, [&str; 6]) = (Vec::new(), FACES[0]);
     for found in &folders {
         for set in FACES {
@@ -217,8 +217,7 @@ fn faces(
     Err(format!("\"{}\" has no {}; expected the six faces {}", desc.image, missing.join(", no "), set.join(" ")))
 }
 
-/// The files of layers or slices, in the order of what is in place of the `*`: numbers by their value, then others by the
-/// alphabet.
+/// The files of layers or slices, sorted by the text in place of the `*`: numbers by value, then others alphabetically.
 fn parts(
     desc: &TextureDesc,
     pattern: Pattern<'_>,

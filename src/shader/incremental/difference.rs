@@ -23,8 +23,8 @@ pub fn changed_functions(old: &Files, new: &Files) -> Option<BTreeSet<Box<str>>>
             _ => return None,
         }
     }
-    // A function that was added or removed may change the meaning of every call of its name: it may hide another
-    // function, or be the better overload.
+    // A function that was added or removed may change the meaning of every call of its name: it may hide another function, or be
+    // a better overload.
     if !moved.is_empty() {
         for file in new.values().flatten() {
             let parts = file.parts()?;

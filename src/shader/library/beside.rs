@@ -10,14 +10,14 @@ use crate::shader::graph::stage_beside;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
-/// Whether the file of a stage that needs a pass beside it. A vertex stage may also be for the stages that Specula itself draws
-/// with.
+/// Whether the file is a stage that needs a pass beside it. A vertex stage may also belong to the stages that Specula itself
+/// draws with.
 pub(super) fn may_be_beside(path: &TreePath) -> bool {
     let kind = StageKind::of(path).filter(|kind| *kind != StageKind::Vertex);
     kind.is_some_and(StageKind::is_pre_rasterization)
 }
 
-/// The stage that declares the pass of a stage: itself, or the fragment stage beside one that runs before the rasterizer.
+/// The stage that declares the pass of a stage: itself, or the fragment stage beside a pre-rasterization stage.
 pub(super) fn fragment_of(path: &TreePath) -> TreePath {
     match StageKind::of(path) {
         Some(kind) if kind.is_pre_rasterization() => beside(path, StageKind::Fragment),
@@ -30,7 +30,7 @@ fn beside(path: &TreePath, kind: StageKind) -> TreePath {
 }
 
 impl Library {
-    /// Adds the stages that lie beside the stages of passes, and removes those whose pass is gone.
+    /// Adds the stages beside the stages of passes, and removes those whose pass is gone.
     pub(super) fn find_stages_beside(&mut self, snapshot: &Snapshot<'_>) {
         let passes = self.slots.iter().skip(self.fixed);
         let passes = passes.filter(|slot| StageKind::of(&slot.path) == Some(StageKind::Fragment));

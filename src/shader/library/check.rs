@@ -28,7 +28,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let is_ours = |path: &TreePath| path.extension() == Some("glsl") || StageKind::of(path).is_some();
     let compiler = library.compiler();
     // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier(). The includes
-    // are those in the texts, since a stage with an error has not compiled.
+    // are read from the texts, since a stage with an error has not compiled.
     let mut kinds: BTreeMap<TreePath, Vec<StageKind>> = BTreeMap::new();
     for stage in library.stages() {
         for file in files_of(&snapshot, stage) {
@@ -36,12 +36,13 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
         }
     }
     let kind_of = |path: &TreePath| match (StageKind::of(&path.stem().into()), kinds.get(path).map(Vec::as_slice)) {
-        // The name says it, as model.geom.glsl.
+        // The name gives the kind, as model.geom.glsl.
         (Some(named), _) => named,
         (None, Some([first, others @ ..])) if others.iter().all(|kind| kind == first) => *first,
         _ => StageKind::Fragment,
     };
-    // A library of mesh stages that no stage includes is left out: it calls `user_vertex`, which may use what only vertex stages have.
+    // A library of mesh stages that no stage includes is skipped: it calls `user_vertex`, which may use what only vertex stages
+    // have.
     let is_unused = |path: &TreePath| {
         StageKind::of(&path.stem().into()).is_some_and(StageKind::is_of_mesh_pipeline) && !kinds.contains_key(path)
     };

@@ -14,15 +14,15 @@ use crate::shader::expression::{Expression, Overlay, STAGE, follow};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::{Read, Snapshot};
 
-/// A watched expression, and where its line is now.
+/// A watched expression, and the current place of its line.
 pub(super) struct Watched {
     expression: Expression,
     line: u32,
-    /// The file when `line` was found, and its text then.
+    /// The file when `line` was found, and its text at that time.
     file: Option<(TreePath, Arc<str>)>,
 }
 
-/// One version of the tree, as its stages see it.
+/// A snapshot of the tree with the stage of the watched expression.
 pub(super) struct View<'a> {
     pub snapshot: Snapshot<'a>,
     /// Snapshot and overlay for the stage of the watched expression.
@@ -38,7 +38,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The outcome of a stage that cannot be compiled, since its expression has no place.
+    /// The outcome of a stage that cannot be compiled, since the line of its expression was not found.
     pub fn refused(&self, stage: &TreePath) -> Option<Done> {
         let (snapshot, overlay) = self.watched.as_ref().filter(|_| is_watched(stage))?;
         let diagnostics = vec![overlay.error.clone()?];
@@ -48,7 +48,7 @@ impl<'a> View<'a> {
         Some(Done { outcome: Err(Broken { hash, dependencies, diagnostics }), ms: None })
     }
 
-    /// The outcome of a stage with diagnostics for the author of its text.
+    /// The outcome of a stage, with diagnostics for the author.
     pub fn explained(&self, stage: &TreePath, mut done: Done) -> Done {
         let Some((snapshot, overlay)) = self.watched.as_ref().filter(|_| is_watched(stage)) else { return done };
         let rename = |diagnostic: Diagnostic| overlay.renamed(diagnostic, snapshot);
@@ -69,12 +69,12 @@ pub(super) fn is_watched(stage: &TreePath) -> bool {
 }
 
 impl Library {
-    /// Watches another expression, or none. Returns what the next update must name, if anything differs.
+    /// Watches another expression, or none. Returns the paths that the next update must name, if anything differs.
     pub fn watch(&mut self, expression: Option<Expression>) -> Option<Change> {
         if self.watched.as_ref().map(|watched| &watched.expression) == expression.as_ref() {
             return None;
         }
-        // The same with the line where it is now.
+        // The same expression with the current place of its line.
         if let (Some(watched), Some(new)) = (&mut self.watched, &expression)
             && (Expression { line: watched.line, ..watched.expression.clone() }) == *new
         {
@@ -85,12 +85,12 @@ impl Library {
         Some(Change::Paths(BTreeSet::from([TreePath::from(STAGE)])))
     }
 
-    /// The watched expression, and its line now, after edits above it.
+    /// The watched expression and its line, after edits above it.
     pub(super) fn watched(&self) -> Option<(Expression, u32)> {
         self.watched.as_ref().map(|watched| (watched.expression.clone(), watched.line))
     }
 
-    /// The tree as its stages see it. Finds the watched expression in it.
+    /// The snapshot for a stage. Finds the line of the watched expression in it.
     pub(super) fn view<'a>(&mut self, snapshot: Snapshot<'a>) -> View<'a> {
         self.find_watched();
         let Some(watched) = &mut self.watched else { return View { snapshot, watched: None } };

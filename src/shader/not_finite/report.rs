@@ -5,16 +5,16 @@ use serde_json::{Value, json};
 use super::FirstNotFinite;
 use crate::shader::{Mode, PixelValue, expression};
 
-/// The result of a search for the first statement that makes NaN or infinity in a mode.
+/// The result of a search for the first statement that computes NaN or infinity in a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotFinite {
     /// Slug of the mode.
     pub mode: String,
-    /// The statement; none if the stage of the mode makes neither, or a message.
+    /// The statement; `None` if the stage of the mode computes neither, or a message.
     pub found: Result<Option<FirstNotFinite>, String>,
 }
 
-/// Why a search finds nothing.
+/// Why a search has no result.
 pub const ELSEWHERE: &str =
     "no statement of the stage makes it at this pixel: look at passes after the model and random paths";
 

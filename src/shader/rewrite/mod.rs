@@ -16,7 +16,7 @@ pub use literals::{Literal, literals, spelled_like};
 pub struct Edit {
     /// The file.
     pub path: TreePath,
-    /// The parameter, constant or number that it is about, for people.
+    /// The display name of the parameter, constant or number that is changed.
     pub name: String,
     /// From 1.
     pub line: u32,
@@ -29,7 +29,7 @@ pub struct Edit {
 }
 
 impl Edit {
-    /// The text that is replaced; empty where text is only added.
+    /// The text that is replaced; empty if text is only added.
     pub fn old(&self) -> &str {
         self.before.get(self.bytes.clone()).unwrap_or_default()
     }

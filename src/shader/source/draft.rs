@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::{Source, SourceError, TreePath};
 
-/// A text in memory, and the text of the file that it was made from.
+/// A text in memory, and the file's text from which it was made.
 #[derive(Clone, Debug)]
 pub struct DraftText {
     /// The text of the file.
@@ -18,7 +18,7 @@ pub struct DraftText {
     pub text: Arc<str>,
 }
 
-/// A tree and the texts that are read instead of some of its files.
+/// A tree, some of whose files are replaced by texts in memory.
 #[derive(Debug)]
 pub struct Draft {
     tree: Source,
@@ -26,8 +26,8 @@ pub struct Draft {
 }
 
 impl Source {
-    /// The tree with other texts of these files, each as long as the file's own text is `base`: an edit of the file wins. Replaces an
-    /// earlier draft.
+    /// The tree with other texts of these files. Each applies only while the file's own text equals `base`, so an edit of the
+    /// file wins. Replaces an earlier draft.
     #[must_use]
     pub fn with_draft(&self, texts: BTreeMap<TreePath, DraftText>) -> Self {
         Self::Draft(Arc::new(Draft { tree: self.without_draft().clone(), texts }))

@@ -84,7 +84,7 @@ impl Quarantine {
     }
 }
 
-/// A hash of a file's text, or of the reason why it cannot be read, that is the same in every process.
+/// A hash of a file's text, or of the reason why it cannot be read. It is the same in every process.
 pub fn text_hash(read: &Result<String, SourceError>) -> u64 {
     match read {
         Ok(text) => xxh3_64(text.as_bytes()),

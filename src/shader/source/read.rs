@@ -33,7 +33,7 @@ pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, SourceError>
 
 fn io_error(error: io::Error) -> SourceError {
     match error.kind() {
-        // NotADirectory means that a part of the path is a file. To the user, the path does not exist.
+        // NotADirectory means that a part of the path is a file. For the user, the path does not exist.
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SourceError::Missing,
         io::ErrorKind::IsADirectory => SourceError::Directory,
         _ => SourceError::Io(error.to_string()),

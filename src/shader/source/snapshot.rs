@@ -14,7 +14,7 @@ pub type Read = Result<Arc<str>, SourceError>;
 pub struct Snapshot<'a> {
     source: &'a Source,
     files: Arc<Mutex<BTreeMap<TreePath, Read>>>,
-    /// Texts that this snapshot has in place of those in `files`.
+    /// Texts that replace those in `files` in this snapshot.
     over: BTreeMap<TreePath, Read>,
 }
 
@@ -24,7 +24,7 @@ impl<'a> Snapshot<'a> {
         Self::holding(source, BTreeMap::new())
     }
 
-    /// A snapshot that has these files already.
+    /// A snapshot that already contains these files.
     pub fn holding(source: &'a Source, files: BTreeMap<TreePath, Read>) -> Self {
         Self { source, files: Arc::new(Mutex::new(files)), over: BTreeMap::new() }
     }

@@ -3,7 +3,7 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
-/// For larger files (models, images), size and modification time stand for the content.
+/// For larger files (models, images), size and modification time replace the content.
 const MAX_HASHED_BYTES: u64 = 4 << 20;
 
 /// Equal for equal content.

@@ -32,16 +32,16 @@ use fingerprint::{Fingerprint, fingerprint};
 use notifier::Notifier;
 use state::{State, Touched};
 
-/// A save of one file that is there and closed is complete; this long covers an editor's own backup file beside it.
+/// A save of one existing, closed file is complete; this delay covers an editor's backup file beside it.
 const SETTLE_SAVE: Duration = Duration::from_millis(2);
-/// A batch with more files (a checkout), or with a file that is gone (an editor that deletes and creates), is delivered when
-/// nothing happened for this long.
+/// A batch with more files (a checkout), or with a missing file (an editor that deletes and creates), is delivered after this
+/// long without events.
 const SETTLE: Duration = Duration::from_millis(30);
 /// A batch is delivered at the latest this long after its first event.
 const SETTLE_CAP: Duration = Duration::from_millis(150);
-/// Without notifications, the watcher looks at all files this often.
+/// Polling interval without notifications.
 const POLL: Duration = Duration::from_millis(500);
-/// The environment variable that makes the watcher do without notifications.
+/// The environment variable that disables notifications.
 const POLL_VARIABLE: &str = "SPECULA_POLL";
 
 /// Files that changed together.
@@ -54,7 +54,7 @@ pub struct Batch {
     pub first_event: Instant,
 }
 
-/// Why watching cannot begin.
+/// Why watching cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum WatchError {
     /// The root does not exist, or is not a directory.
@@ -65,7 +65,7 @@ pub enum WatchError {
         /// The system's message.
         source: std::io::Error,
     },
-    /// The system grants no thread.
+    /// The system cannot start a thread.
     #[error("cannot start the thread that watches for changes: {0}")]
     Thread(std::io::Error),
 }
@@ -84,8 +84,8 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// Watches all of `root` (if any) and `files`, wherever they are; `on_batch` is called on the watcher's thread. A file
-    /// need not exist yet. Relative paths are meant from the working directory.
+    /// Watches all of `root` (if any) and `files`, wherever they are; `on_batch` is called on the watcher's thread. A file need
+    /// not exist yet. Relative paths are resolved against the working directory.
     ///
     /// Create the watcher *before* reading the files: it reports changes from the content that it finds now.
     ///
@@ -101,7 +101,7 @@ impl Watcher {
         Self::start(root, files, without, on_batch)
     }
 
-    /// `without` is a reason to do without notifications.
+    /// `without` is a reason to poll instead of using notifications.
     fn start(
         root: Option<&Path>,
         files: &[PathBuf],
@@ -109,13 +109,13 @@ impl Watcher {
         on_batch: impl FnMut(Batch) + Send + 'static,
     ) -> Result<Self, WatchError> {
         if let Some(path) = root {
-            // This fails for anything but a directory, with the system's words.
+            // This fails for anything but a directory, with the system's message.
             std::fs::read_dir(path).map_err(|source| WatchError::Root { path: path.to_owned(), source })?;
         }
         let (messages, inbox) = unbounded();
         let events = messages.clone();
         let send = move |event| {
-            // After a stop nobody listens, and nobody needs to.
+            // After a stop there is no receiver, and none is needed.
             let _ = events.send(Message::Event(event));
         };
         let notifier = Notifier::new(without.map_or(Ok(send), Err));
@@ -144,7 +144,7 @@ impl Drop for Watcher {
 /// Changes that have not settled yet.
 struct Pending {
     files: BTreeSet<PathBuf>,
-    /// The content of files that were found by looking: no event tells when their writers are done.
+    /// The content of files that polling has found: no event reports when their writers are done.
     looked: BTreeMap<PathBuf, Option<Fingerprint>>,
     first: Instant,
     last: Instant,
@@ -161,7 +161,7 @@ impl Pending {
         (self.last + if is_save { SETTLE_SAVE } else { SETTLE }).min(self.first + SETTLE_CAP)
     }
 
-    /// Whether a file that was found by looking has changed again. Its writer gets more time, up to the cap.
+    /// Whether a file that polling has found has changed again. Its writer gets more time, up to the cap.
     fn is_moving(&mut self, now: Instant) -> bool {
         let mut moving = false;
         for (path, content) in &mut self.looked {
@@ -190,7 +190,7 @@ fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Bat
         match message {
             Ok(message) => {
                 let mut touched = Touched::default();
-                // Directories are looked at once for all events that are there.
+                // Directories are read once for all pending events.
                 for message in std::iter::once(message).chain(inbox.try_iter()) {
                     match message {
                         Message::Event(Ok(event)) => state.note(&event, &mut touched),

@@ -24,7 +24,7 @@ pub struct Notifier {
 }
 
 impl Notifier {
-    /// `send` receives events on a thread of the system's watcher. `Err` in place of `send` is a reason to do without.
+    /// `send` receives events on a thread of the system's watcher. `Err` in place of `send` is a reason to poll instead.
     pub fn new(send: Result<impl FnMut(notify::Result<Event>) + Send + 'static, String>) -> Self {
         let system = send.and_then(|mut send| {
             let filtered = move |event: notify::Result<Event>| {
@@ -64,7 +64,7 @@ impl Notifier {
             }
             Err(error) => {
                 let is = |kind| matches!(&error.kind, notify::ErrorKind::Io(error) if error.kind() == kind);
-                // The directory is gone again, which is an event of the directory above.
+                // The directory is gone again, which is an event of its parent.
                 let is_gone = matches!(error.kind, notify::ErrorKind::PathNotFound) || is(std::io::ErrorKind::NotFound);
                 // Directories above the user's own often cannot be read, and they rarely change.
                 let is_foreign = !has_content && is(std::io::ErrorKind::PermissionDenied);
@@ -76,7 +76,7 @@ impl Notifier {
         }
     }
 
-    /// Ends a plan: lets the directories go that the plan has no use for.
+    /// Ends a plan: stops watching the directories that it does not contain.
     pub fn end(&mut self, is_planned: impl Fn(&Path) -> bool) {
         let gone: Vec<PathBuf> = self.watched.iter().filter(|directory| !is_planned(directory)).cloned().collect();
         for directory in gone {
@@ -84,8 +84,8 @@ impl Notifier {
         }
     }
 
-    /// Drops the watches of `path` and of all below it, which hang on directories that may be elsewhere now. Returns
-    /// whether there were any.
+    /// Drops the watches of `path` and everything below it, which belong to directories that may have moved. Returns whether
+    /// there were any.
     pub fn forget_below(&mut self, path: &Path) -> bool {
         let below: Vec<PathBuf> =
             self.watched.range(path.to_owned()..).take_while(|watched| watched.starts_with(path)).cloned().collect();
@@ -108,14 +108,14 @@ impl Notifier {
         self.fresh.contains(directory)
     }
 
-    /// Whether some changes are found only by looking.
+    /// Whether some changes are found only by polling.
     pub fn must_poll(&self) -> bool {
         self.system.is_err() || !self.polled.is_empty()
     }
 
-    /// Says once why changes are found by looking. `main` is the directory that the user knows.
+    /// Reports once why polling is needed. `main` is the directory that the user knows.
     pub fn tell(&mut self, main: Option<&Path>) {
-        // The outermost directory that holds content stands for all.
+        // The outermost directory with content represents all.
         let polled = self.polled.iter().find(|(_, (has_content, _))| *has_content).or(self.polled.iter().next());
         let (directory, why) = match (&self.system, polled) {
             (Err(why), _) => (main, why),
@@ -151,7 +151,7 @@ fn matters(kind: EventKind) -> bool {
         EventKind::Access(AccessKind::Close(AccessMode::Write)) => true,
         EventKind::Access(_) => false,
         EventKind::Modify(ModifyKind::Name(_)) | EventKind::Remove(_) | EventKind::Create(_) => true,
-        // Only Linux reports that a file was closed. Elsewhere the settling time has to be enough.
+        // Only Linux reports that a file was closed. Elsewhere the settling time must suffice.
         EventKind::Modify(_) | EventKind::Any => cfg!(not(target_os = "linux")),
         EventKind::Other => false,
     }

@@ -27,9 +27,8 @@ pub struct Place {
 }
 
 impl Plan {
-    /// Walks the tree and follows the paths of `files`. `watch` is called with each directory before the directory is read,
-    /// so that no change falls between, and with whether the directory holds content: a link or a file, and not only a
-    /// further directory.
+    /// Walks the tree and follows the paths of `files`. `watch` is called with each directory before it is read, so that no
+    /// change is missed, and with whether the directory has content: a link or a file, and not only a further directory.
     pub fn new(root: Option<&Path>, files: &BTreeSet<PathBuf>, watch: &mut dyn FnMut(&Path, bool)) -> Self {
         let mut plan = Self::default();
         for path in files {

@@ -32,7 +32,7 @@ pub struct State {
 }
 
 impl State {
-    /// Watches `root` and `files`, and takes their present content as known.
+    /// Watches `root` and `files`, and records their present content.
     pub fn new(root: Option<PathBuf>, files: &[PathBuf], notifier: Notifier) -> Self {
         let files = files.iter().cloned().collect();
         let mut state = Self { root, files, notifier, plan: Plan::default(), known: BTreeMap::new() };
@@ -42,7 +42,7 @@ impl State {
         state
     }
 
-    /// Replaces the single files. The present content of the new ones is taken as known.
+    /// Replaces the single files. The present content of the new ones is recorded.
     pub fn set_files(&mut self, files: &[PathBuf]) {
         self.files = files.iter().cloned().collect();
         self.replan();
@@ -63,7 +63,7 @@ impl State {
     /// Adds what an event may have changed to `touched`.
     pub fn note(&mut self, event: &Event, touched: &mut Touched) {
         if event.need_rescan() {
-            // Events were lost. Every directory is watched anew, so that each counts as one in which anything happened.
+            // Events were lost. Watch every directory from scratch, so that each counts as changed.
             self.notifier.forget_below(Path::new(""));
             touched.directories = true;
             touched.files.extend(self.known.keys().cloned());
@@ -92,7 +92,7 @@ impl State {
             let is_way = path.symlink_metadata().is_ok_and(|now| now.is_dir() || now.is_symlink());
             touched.directories |= was_way || was_directory || is_way;
         }
-        // While a new file is empty, its writer has it open, and closing it is an event of its own.
+        // A new, empty file is still open in its writer, and closing it is another event.
         if is_creation(kind) && is_being_written(path) {
             return;
         }
@@ -107,8 +107,8 @@ impl State {
         self.root.as_deref() != Some(path) || self.files.contains(path)
     }
 
-    /// Looks again which directories to watch. Returns the files that this makes worth a look: they came, went or lie
-    /// elsewhere now, or may have changed before their directory was watched.
+    /// Updates which directories are watched. Returns the files to check: they appeared, disappeared or moved, or may have
+    /// changed before their directory was watched.
     pub fn replan(&mut self) -> BTreeSet<PathBuf> {
         let notifier = &mut self.notifier;
         notifier.begin();
@@ -123,7 +123,7 @@ impl State {
             let is_fresh = real.parent().is_some_and(|folder| self.notifier.is_fresh(folder));
             match old.files.get(*path) {
                 Some(before) => is_fresh || before != *real,
-                // The creation of a file in a directory that was watched already is an event of its own.
+                // The creation of a file in a directory that is already watched is an event of its own.
                 None => is_fresh || !old.has_directory_of(path, real),
             }
         };
@@ -131,12 +131,12 @@ impl State {
         gone.chain(found).cloned().collect()
     }
 
-    /// Whether some changes are found only by looking.
+    /// Whether some changes are found only by polling.
     pub fn must_poll(&self) -> bool {
         self.notifier.must_poll()
     }
 
-    /// Looks at every file; returns those whose content differs from what is known, and what their content is.
+    /// Checks every file; returns those whose content differs from the recorded one, with their content.
     pub fn look(&mut self) -> BTreeMap<PathBuf, Option<Fingerprint>> {
         self.replan();
         let all = self.plan.files.keys().chain(self.known.keys());
@@ -144,14 +144,14 @@ impl State {
         found.filter(|(path, found)| self.known.get(path) != found.as_ref()).collect()
     }
 
-    /// Whether these files are one save: all are there. A file that is gone and was never known is an editor's temporary one.
+    /// Whether these files are one save: all exist. A missing file that was never recorded is an editor's temporary one.
     pub fn is_save(&self, files: &BTreeSet<PathBuf>) -> bool {
         let mut real = files.iter().filter(|path| path.is_file() || self.known.contains_key(*path));
         let (one, two, more) = (real.next(), real.next(), real.next());
         more.is_none() && [one, two].into_iter().flatten().all(|path| path.is_file())
     }
 
-    /// Those of `files` whose content differs from what is known. The present content is known from now on.
+    /// Those of `files` whose content differs from the recorded one, which is then updated.
     pub fn changed(&mut self, files: BTreeSet<PathBuf>) -> BTreeSet<PathBuf> {
         let mut out = BTreeSet::new();
         // The caller may have replaced the files since the event.

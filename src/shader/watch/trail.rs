@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 /// Linux gives up after this many links, too.
 const MAX_LINKS: usize = 40;
 
-/// The way of a path.
+/// The resolution of a path.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Trail {
     /// Each directory, without symbolic links, and the name that was looked up in it. The last step is the entry where the

@@ -7,11 +7,11 @@ use crate::message::{best, likeness};
 use crate::shader::source::pattern::Pattern;
 use crate::shader::source::read::names_in;
 
-/// Names of images that are no files.
+/// Names of images that are not files.
 const SPECIAL: [&str; 2] = ["self", "keyboard"];
-/// The endings of files that a channel can name.
+/// The extensions of files that a channel can name.
 const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "hdr", "exr", "cube", "glsl", "frag", "fs"];
-/// Files that a help text lists at most.
+/// Most files that a help text lists.
 const LISTED: usize = 8;
 
 /// Whether a file exists, or with a `*` in its name one of several.
@@ -32,7 +32,7 @@ pub(super) fn not_found(folder: &Path, own: &str, name: &str, file: &str) -> (St
     let like = |candidate: &str| likeness(stem(file), stem(candidate));
     let special = best(SPECIAL.into_iter().map(|name| (like(name), name)));
     let beside = best(files.iter().map(|name| (like(name), name.as_str())));
-    // A name without an ending is hardly one of a file.
+    // A name without an extension is hardly that of a file.
     let hint = if file.contains('.') { beside.or(special) } else { special.or(beside) };
     let hint = hint.map(|name| format!(" Did you mean \"{name}\"?")).unwrap_or_default();
     let message = format!("\"{name}\" not found in {}.{hint}", folder.display());
@@ -62,7 +62,7 @@ fn can_be_named(name: &str) -> bool {
     ENDINGS.iter().any(|known| known.eq_ignore_ascii_case(ending))
 }
 
-/// A name without its ending, so that names with the same ending are not alike for that.
+/// A name without its extension, so that a shared extension does not count as similarity.
 fn stem(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

@@ -36,7 +36,7 @@ impl Sampler {
         }
     }
 
-    /// How Shadertoy reads such an image: it turns pictures upside down, but neither faces nor slices.
+    /// How Shadertoy reads such an image: it flips 2D images vertically, but neither faces nor slices.
     pub(super) fn options(self) -> &'static str {
         match self {
             Self::Flat => "linear mips flip",
@@ -46,7 +46,7 @@ impl Sampler {
     }
 }
 
-/// The endings of files that draw an image.
+/// The extensions of files that draw an image.
 pub(super) const SHADERS: [&str; 3] = [".glsl", ".frag", ".fs"];
 
 /// Shadertoy has four channels.

@@ -61,7 +61,7 @@ impl Toy {
         Self { file }
     }
 
-    /// Whether `path` can be opened: a shader that lies in no Specula tree.
+    /// Whether `path` can be opened: a shader outside of Specula trees.
     pub fn is_toy(path: &Path) -> bool {
         let is_shader = path.extension().and_then(|extension| extension.to_str());
         let in_tree = || path.ancestors().skip(1).any(super::is_specula_tree);
@@ -127,7 +127,7 @@ impl Toy {
         out
     }
 
-    /// The path for messages: that of the file on disk, if there is one.
+    /// The path for messages: that of the file on disk, if it exists.
     pub fn display_path(&self, path: &TreePath) -> String {
         match below(path.as_str(), OPENED) {
             Some(relative) => self.folder().join(relative).display().to_string(),
@@ -135,7 +135,7 @@ impl Toy {
         }
     }
 
-    /// The errors of the opened files in lines that GLSL does not have, and of files without an entry point.
+    /// The errors in lines of the opened files that GLSL does not have, and errors of files without an entry point.
     pub fn problems(&self) -> Vec<Diagnostic> {
         let mut out = Vec::new();
         for Drawing { file, text, .. } in self.drawings() {
@@ -146,7 +146,7 @@ impl Toy {
                     let message = "expected `void mainImage(out vec4 fragColor, in vec2 fragCoord)` or `void main()`";
                     out.push(Diagnostic::error(shown.clone(), message));
                 }
-                // The line that names a file says that it is missing.
+                // The line that names a file reports that it is missing.
                 Err(SourceError::Missing) if file != self.name() => {}
                 Ok(_) => {}
                 Err(error) => out.push(Diagnostic::error(shown.clone(), format!("{shown} {error}"))),
@@ -173,7 +173,7 @@ impl Toy {
         names.iter().map(|name| self.folder().join(name)).collect()
     }
 
-    /// The paths of the tree that a change of `file` on disk reaches. Stages depend on the files beside them, too.
+    /// The paths of the tree that depend on `file` on disk. Stages depend on the files beside them, too.
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
         let stages = self.drawings().into_iter().map(|drawing| drawing.pass).chain(BUFFERS.map(str::to_owned));
@@ -199,8 +199,8 @@ impl Toy {
         self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Names that the file of a buffer, or of what all share, may have: first one of this toy alone.
-    /// `Buffer A.glsl` is Shadertoy's own name for `buffer_a.glsl`.
+    /// Candidate names for the file of a buffer, or of the shared code, starting with one for this toy alone. `Buffer A.glsl` is
+    /// Shadertoy's own name for `buffer_a.glsl`.
     fn candidates(&self, name: &str) -> [String; 3] {
         let words = name.split('_').map(|word| word[..1].to_ascii_uppercase() + &word[1..]);
         let words: Vec<String> = words.collect();
@@ -215,8 +215,7 @@ impl Toy {
         })
     }
 
-    /// The files that draw images, in the order in which they are drawn: Shadertoy's buffers, others after what they read,
-    /// and last the file itself.
+    /// The files that draw images, in drawing order: Shadertoy's buffers, others after what they read, and the file itself last.
     fn drawings(&self) -> Vec<Drawing> {
         let mut out = Vec::new();
         for buffer in BUFFERS {
@@ -296,7 +295,7 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
             continue;
         }
         let mut kind = Sampler::Flat;
-        // A channel reads what was drawn before it in this frame, or else in the frame before.
+        // A channel reads what was drawn earlier in this frame, or otherwise the previous frame.
         let of_frame = |place: usize| match place < index {
             true => drawings[place].pass.clone(),
             false => format!("before_{}", drawings[place].pass),
@@ -330,7 +329,7 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
     lines.into_iter().collect()
 }
 
-/// The name of the pass that draws a file that is none of Shadertoy's buffers.
+/// The name of the pass of a file other than Shadertoy's buffers.
 fn buffer_name(file: &str) -> String {
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
     let name: String =

@@ -59,7 +59,7 @@ fn a_link_to_another_tree_is_swapped() {
     told.expect(&[&shader, &new]);
     fs::write(directory.path().join("v2/a.glsl"), "edit").unwrap();
     told.expect(&[&shader]);
-    // The old tree is no longer of interest.
+    // The old tree is no longer watched.
     fs::write(directory.path().join("v1/a.glsl"), "old").unwrap();
     fs::write(&new, "newer").unwrap();
     told.expect(&[&new]);
@@ -105,7 +105,7 @@ fn the_target_of_a_link_is_saved_in_place() {
     told.expect(&[&shader]);
     fs::write(elsewhere.path().join("a.glsl"), "again").unwrap();
     told.expect(&[&shader]);
-    // The link in the middle is made to lead to another file.
+    // The link in the middle is changed to another file.
     fs::write(elsewhere.path().join("b.glsl"), "another").unwrap();
     relink(&elsewhere.path().join("b.glsl"), &elsewhere.path().join("between.glsl"));
     told.expect(&[&shader]);

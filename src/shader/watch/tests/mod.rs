@@ -64,7 +64,7 @@ impl Tree {
         self.directory.path().join("tree").join(name)
     }
 
-    /// Waits until all `names` were told, and returns how many batches that took. Nothing else may be told.
+    /// Waits until all `names` were reported, and returns how many batches that took. Nothing else may be reported.
     #[track_caller]
     fn expect(&self, names: &[&str]) -> usize {
         let mut wanted: BTreeSet<PathBuf> = names.iter().map(|name| self.path(name)).collect();
@@ -82,7 +82,7 @@ impl Tree {
         unreachable!()
     }
 
-    /// Nothing was told up to a change made now.
+    /// Checks that nothing was reported up to a change made now.
     #[track_caller]
     fn expect_nothing(&self) {
         fs::write(self.path("marker"), format!("{:?}", Instant::now())).unwrap();
@@ -154,7 +154,7 @@ fn the_root_moves_away_and_back() {
     tree.expect(&["a.glsl", "b.glsl"]);
     fs::write(tree.path("a.glsl"), "back").unwrap();
     tree.expect(&["a.glsl"]);
-    // Another directory takes its place.
+    // Another directory replaces it.
     fs::rename(&root, &away).unwrap();
     tree.expect(&["a.glsl", "b.glsl"]);
     fs::create_dir(&root).unwrap();
@@ -192,7 +192,7 @@ fn single_files_elsewhere() {
     let model = elsewhere.path().canonicalize().unwrap().join("model.gltf");
     fs::write(&model, "one").unwrap();
     tree.watcher.set_files(std::slice::from_ref(&model));
-    // The command and the events share one queue, so a change in the tree tells that the files are set.
+    // The command and the events share one queue, so a report of a change in the tree proves that the files are set.
     tree.expect_nothing();
     fs::write(elsewhere.path().join("unrelated"), "x").unwrap();
     fs::write(&model, "two").unwrap();
