@@ -66,8 +66,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Builds the pipelines of every mode, and of the picture with every declared choice, since a shader that compiles may still
-/// fail for one value of a specialization constant. Returns the number of pipelines, or `None` without a device.
+/// Builds the pipelines of every mode, and of the final picture with every declared choice, since a shader that compiles may
+/// still fail for one value of a specialization constant. Returns the number of pipelines, or `None` without a device.
 fn build_choices(
     args: &Args,
     shaders: &Arc<ShaderSet>,
@@ -151,7 +151,7 @@ fn build_choices(
     Ok(Some(count))
 }
 
-/// Errors of passes that take more memory than the settings allow, for a picture of this size: with the settings as they are, with each
+/// Errors of passes that take more memory than the settings allow, for a frame of this size: with the current settings, with each
 /// pass that is off, and with what each constant switches on.
 fn beyond_memory_when_on(
     shaders: &ShaderSet,

@@ -35,7 +35,7 @@ pub struct Args {
     json: bool,
 }
 
-/// The comparison of two pictures, or why they cannot be compared.
+/// The comparison of two pictures, or the reason why they cannot be compared.
 struct Pair {
     name: String,
     compared: Result<Comparison, String>,
@@ -132,7 +132,7 @@ fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     Ok(names)
 }
 
-/// Writes maps of the differences. The map of two EXRs is an EXR too, so the ending of the file must fit.
+/// Writes maps of the differences. The map of two EXRs is an EXR too, so the extension of the file must match.
 fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), Failure> {
     if !folders {
         return pairs.iter().flat_map(|pair| &pair.compared).try_for_each(|found| {

@@ -137,7 +137,7 @@ fn triangles(model: &Model) -> usize {
     placed.map(triangles).sum()
 }
 
-/// Materials of the file, without glTF's default one.
+/// Materials of the file, except glTF's default one.
 fn materials(model: &Model) -> usize {
     model.materials.len().saturating_sub(1)
 }

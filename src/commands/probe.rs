@@ -108,7 +108,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         }
     }
     tell_left_out(if hit { left_out } else { 0 });
-    // The layers also report what is found when objects are destroyed.
+    // The validation layers also report errors when objects are destroyed.
     drop(headless);
     check_validation(&gpu)
 }
@@ -116,11 +116,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
 /// The modes to print.
 struct Chosen {
     modes: Vec<Mode>,
-    /// Modes of random paths that were neither named nor asked for.
+    /// Path-traced modes that were neither named nor requested.
     left_out: usize,
 }
 
-/// The modes of these slugs; or all, those of random paths only with `paths` or by name.
+/// The modes with these slugs; or all, with the path-traced ones only if `paths` is set or they are named.
 fn chosen(shaders: &ShaderSet, slugs: &[String], paths: bool) -> Result<Chosen, Failure> {
     slugs.iter().filter(|slug| *slug != "all").try_for_each(|slug| check_mode(shaders, slug))?;
     let all = slugs.is_empty() || slugs.iter().any(|slug| slug == "all");
@@ -134,7 +134,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String], paths: bool) -> Result<Chosen, 
     Ok(Chosen { modes: modes.into_iter().cloned().collect(), left_out: left_out.len() })
 }
 
-/// The first statement that makes NaN or infinity: in the final picture, or else in the first of these modes that has one.
+/// The first statement that computes NaN or infinity: in the final picture, or else in the first of these modes that has one.
 fn first_not_finite(headless: &mut Headless, at: (u32, u32), values: &[(&Mode, PixelValue)]) -> Option<NotFinite> {
     let mode = NotFinite::mode_of(values.iter().map(|(mode, value)| (*mode, value)))?;
     let found = headless.first_not_finite(at, mode).map_err(|error| error.to_string());
@@ -172,8 +172,8 @@ fn position(light: &Light) -> [f32; 3] {
     [x, y, z]
 }
 
-/// A light with everything that a program needs to redo the shading. A directional light has no position; `range` is there only
-/// if the light has an end.
+/// A light with everything that a program needs to recompute the shading. A directional light has no position; `range` is present
+/// only if the light has one.
 fn light(light: &Light) -> Value {
     let placed = (light.kind != LIGHT_DIRECTIONAL).then(|| position(light));
     let mut value = json!({ "kind": kind(light), "position": placed, "direction": light.direction_ws,

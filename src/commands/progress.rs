@@ -16,10 +16,10 @@ const IN_TERMINAL: Duration = Duration::from_millis(200);
 /// Time between two lines in a file or a pipe.
 const IN_FILE: Duration = Duration::from_secs(5);
 
-/// The progress of a command. A thread shows it, so that it also shows while the device or a compiler works.
+/// The progress of a command. A thread prints it, so that it also appears while the device or a compiler works.
 pub struct Progress {
     state: Arc<Mutex<State>>,
-    /// Its end ends the thread.
+    /// Dropping it ends the thread.
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -32,7 +32,7 @@ struct State {
     part_start: Instant,
     /// The current part, as `path-traced`, or its number among several; empty while nothing is shown.
     what: String,
-    /// How far the current part is.
+    /// The progress of the current part.
     step: Option<Step>,
     /// Whether the part is one of several.
     is_one_of_several: bool,
@@ -68,12 +68,12 @@ impl Progress {
         Self { state, end: Some(end), thread: Some(thread) }
     }
 
-    /// Says what the command is doing now.
+    /// Sets what the command is doing now.
     pub fn say(&self, what: &str) {
         self.set(escape(what), false);
     }
 
-    /// Begins part `number`, from 0, of `of`: `picture 3 of 90: roughness`. A single part has its name alone.
+    /// Starts part `number`, from 0, of `of`: `picture 3 of 90: roughness`. A single part is shown by its name alone.
     pub fn begin(&self, kind: &str, (number, of): (usize, usize), name: &str) {
         let name = escape(name);
         let what = match (of, name.is_empty()) {
@@ -91,7 +91,7 @@ impl Progress {
         (state.step, state.part_start) = (None, Instant::now());
     }
 
-    /// Reports how far the current part is.
+    /// Reports the progress of the current part.
     pub fn step(&self, step: &Step) {
         locked(&self.state).step = Some(*step);
     }
@@ -118,7 +118,7 @@ fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
 }
 
 impl State {
-    /// Shows the line, if it is time for one.
+    /// Prints the line, if it is due.
     fn show(&mut self) {
         let now = Instant::now();
         let pause = if self.is_terminal { IN_TERMINAL } else { IN_FILE };
@@ -127,7 +127,7 @@ impl State {
             None => now.duration_since(self.start) < pause.max(PATIENCE),
         };
         let line = self.line();
-        // In a terminal another message may have taken the place of the line.
+        // In a terminal another message may have replaced the line.
         let is_known = !self.is_terminal && line == self.last_line;
         if is_early || is_known || self.what.is_empty() {
             return;
@@ -141,7 +141,7 @@ impl State {
     }
 
     fn line(&self) -> String {
-        // How long the other parts take is not known: modes differ a hundredfold.
+        // The time of the other parts is unknown: modes differ a hundredfold.
         let Some(Step { done, of, unit }) = self.step.filter(|step| step.of > 1) else { return self.what.clone() };
         let left = self.part_start.elapsed().as_secs_f64() * (of - done) as f64 / done.max(1) as f64;
         let of_it = if self.is_one_of_several { " of it" } else { "" };

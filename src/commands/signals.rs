@@ -1,7 +1,7 @@
 //! Signals that end the program: temporary files are removed before.
 
-/// Starts a thread that waits for SIGHUP, SIGINT and SIGTERM, removes unfinished pictures, and lets the signal end the
-/// program as if nobody had waited.
+/// Starts a thread that waits for SIGHUP, SIGINT and SIGTERM, removes unfinished pictures, and lets the signal end the program by
+/// its default action.
 #[cfg(unix)]
 pub fn clean_up_on_end() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -18,15 +18,15 @@ pub fn clean_up_on_end() {
             let _ = emulate_default_handler(signal);
         }
     };
-    // Without the thread, signals end the program as they do by default.
+    // If the thread cannot start, signals end the program as they do by default.
     let _ = std::thread::Builder::new().name("specula-signals".to_owned()).spawn(clean_up);
 }
 
-/// Other systems have other ways to end a program.
+/// Other systems end programs differently.
 #[cfg(not(unix))]
 pub fn clean_up_on_end() {}
 
-/// Whether whoever started the program wants it to ignore a signal, as `nohup` and background jobs of shells do. Linux only;
+/// Whether the parent process wants the program to ignore a signal, as `nohup` and background jobs of shells do. Linux only;
 /// elsewhere, no signal counts as ignored.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {

@@ -56,7 +56,7 @@ impl Look {
 pub struct Scene {
     /// The model that was loaded.
     loaded: Arc<Model>,
-    /// The model where the settings place it.
+    /// The model at the place that the settings give it.
     model: Arc<Model>,
     look: Arc<Look>,
     /// Whether each instance is drawn. `None` draws all.
@@ -133,7 +133,7 @@ impl Scene {
         self
     }
 
-    /// The model where the settings place it.
+    /// The model at the place that the settings give it.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }

@@ -16,10 +16,10 @@ use crate::commands::progress::Progress;
 
 /// The passes that the picture is drawn with, as `--set` takes them.
 const WITH: [&str; 3] = ["SHADOWS=Hard", "AMBIENT_OCCLUSION=true", "BLOOM=true"];
-/// Passes of one pixel in the chain that costs no more than its bookkeeping.
+/// Passes of one pixel in the chain, whose cost is only their bookkeeping.
 const MANY: usize = 100;
 
-/// Times frames in turn: as the settings say, with [`WITH`], and with [`MANY`] passes of one pixel that read each other.
+/// Times frames in turn: with the current settings, with [`WITH`], and with [`MANY`] passes of one pixel that read each other.
 pub(super) fn passes(
     args: &Args,
     gpu: &Arc<Gpu>,
@@ -74,7 +74,7 @@ pub(super) fn passes(
     }))
 }
 
-/// The text of a pass of one pixel that reads the one before. The last one reaches the picture.
+/// The text of a pass of one pixel that reads the previous pass. The last one draws to the picture.
 fn pass_of_chain(index: usize) -> String {
     let read = index.checked_sub(1).map_or("depth".to_owned(), |before| format!("chain_{before}"));
     let (options, picture, add) = match index + 1 == MANY {

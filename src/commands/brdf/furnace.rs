@@ -11,7 +11,7 @@ use crate::commands::{Failure, print_json};
 /// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.
 const MOST: f64 = 1.005;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
-/// A grid that is just fine enough to find out whether a choice changes the albedo.
+/// A coarse grid, just fine enough to detect whether a choice changes the albedo.
 const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
 
 /// Options of `brdf furnace`.

@@ -14,7 +14,7 @@ use crate::commands::common::{TIMEOUT_S, check_mode, check_validation, compiler,
 use crate::commands::progress::Progress;
 use crate::commands::{Failure, print_json};
 
-/// The sphere of this model is measured.
+/// The model whose sphere is measured.
 const MODEL: &str = "material-override";
 const SIDE: u32 = 64;
 const ROWS: u32 = 10;

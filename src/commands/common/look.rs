@@ -9,8 +9,8 @@ use specula::shader::Source;
 use super::{Common, Failure};
 
 impl Common {
-    /// Takes a shader file that stands where the model may stand for the shader tree. What the command line leaves open is that of
-    /// the look.
+    /// Treats a shader file in the model's position as the shader tree. Options that the command line does not give come from the
+    /// look.
     ///
     /// # Errors
     /// The look cannot be read, or a file that it names is gone.
@@ -42,7 +42,7 @@ impl Common {
     }
 }
 
-/// Reads a look. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
+/// Reads a look. An unknown name or value is a usage error; a file that is not TOML is an input error.
 pub(super) fn read_look(path: &Path) -> Result<Look, Failure> {
     picture::read_look(path).map_err(|error| match error {
         ReadError::File(message) => Failure::Input(message),

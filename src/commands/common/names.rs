@@ -9,12 +9,12 @@ use specula::scene::{self, BUILT_IN};
 
 use crate::commands::Failure;
 
-/// Whether a text looks like a name: it is no option, and has neither an ending nor a folder as files do.
+/// Whether a text looks like a name: it is not an option, and has neither an extension nor a folder, as files do.
 pub fn is_word(text: &str) -> bool {
     !text.starts_with('-') && Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
 }
 
-/// Fails when there is neither such a file nor a built-in model of that name, and when the file is no model.
+/// Fails when there is neither such a file nor a built-in model of that name, and when the file is not a model.
 pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else { return Ok(()) };
     check_kind(path)?;
@@ -38,7 +38,7 @@ fn suggest(name: Option<&str>) -> String {
     name.map(|name| format!(" Did you mean '{name}'?")).unwrap_or_default()
 }
 
-/// Refuses what is told apart from a model by its name or by its content as a folder.
+/// Refuses what its name, or its content as a folder, shows not to be a model.
 fn check_kind(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -67,7 +67,7 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
     Err(Failure::Usage(message))
 }
 
-/// Paths of the models in a folder, in order; none where it cannot be read.
+/// Paths of the models in a folder, sorted; none where it cannot be read.
 fn models_in(folder: &Path) -> Vec<String> {
     let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let names = std::fs::read_dir(place).into_iter().flatten().flatten().map(|entry| folder.join(entry.file_name()));
@@ -78,7 +78,7 @@ fn models_in(folder: &Path) -> Vec<String> {
     models
 }
 
-/// Fails when an environment is a word that no built-in one has. A missing file is found where it is opened.
+/// Fails when an environment is a word but not a built-in name. A missing file is reported where it is opened.
 pub fn check_environment(name: &str) -> Result<(), Failure> {
     let known = || scene::environment::BUILT_IN.into_iter().chain(["none"]);
     if known().any(|known| known == name) || !is_word(name) || Path::new(name).exists() {

@@ -24,13 +24,13 @@ pub(super) struct Stages {
     compile_ms: BTreeMap<String, f64>,
     /// Time of all pipelines, milliseconds.
     pipeline_ms: f64,
-    /// Whether the driver tells of its machine code, and how long asking took in milliseconds.
+    /// Whether the driver reports statistics, and how long the query took in milliseconds.
     tells: bool,
     ask_ms: f64,
 }
 
 impl Stages {
-    /// Compiles the tree, and builds the pipelines of the picture, without those of earlier runs.
+    /// Compiles the tree, and builds the frame's pipelines without those of earlier runs.
     pub(super) fn new(common: &Common, model: Model) -> Result<Self, Failure> {
         let (settings, source) = (common.settings()?, common.source()?);
         let gpu = common.gpu_without_pipelines()?;
@@ -54,7 +54,7 @@ impl Stages {
         Ok(stages)
     }
 
-    /// As JSON. Numbers of the driver are null where it tells nothing.
+    /// The JSON report. The driver's statistics are null where it reports none.
     pub(super) fn json(&self) -> Value {
         let of = |(stage, report): (&String, &StageReport)| {
             json!({
@@ -74,7 +74,7 @@ impl Stages {
         })
     }
 
-    /// As a table: the stages of the picture, and below how many others there are.
+    /// The table: the stages of the frame, and below it the number of other stages.
     pub(super) fn print(&self) {
         out!("\nStages of the picture");
         let shown = || self.reports.iter().filter(|(stage, _)| self.on_screen.contains(*stage));

@@ -12,7 +12,7 @@ use super::{Args, Failure, Progress};
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;
 
-/// Whether one of the two is asked for.
+/// Whether one of the two is requested.
 pub fn is_asked(args: &Args) -> bool {
     args.sheet.is_some() || args.turntable.is_some()
 }

@@ -37,7 +37,8 @@ impl Modes {
         Self::Named(names)
     }
 
-    /// The modes of the shaders, in the order in which they were named. `paths`: with those of random paths, if all are written.
+    /// The modes of the shaders, in the order in which they were named. `paths`: includes the path-traced ones, if all are
+    /// written.
     pub fn in_shaders<'a>(&self, shaders: &'a ShaderSet, paths: bool) -> Result<Vec<&'a Mode>, Failure> {
         let Self::Named(names) = self else {
             return Ok(shaders.modes.iter().filter(|mode| paths || !mode.follows_paths()).collect());

@@ -165,7 +165,7 @@ impl Input {
                 line.clear();
             }
         };
-        // Without the thread, the window gets no commands and works as ever.
+        // If the thread cannot start, the window gets no commands from this input.
         let _ = std::thread::Builder::new().name("specula-input".to_owned()).spawn(read);
     }
 

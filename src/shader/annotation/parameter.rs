@@ -11,7 +11,7 @@ pub struct Constant {
     pub name: String,
     /// `constant_id`
     pub id: u32,
-    /// Name for people.
+    /// Display name.
     pub label: String,
     /// Type.
     #[serde(skip)]
@@ -97,7 +97,7 @@ impl ParameterType {
 pub struct Parameter {
     /// Name in GLSL; the key in `settings.shader`.
     pub name: String,
-    /// Name for people.
+    /// Display name.
     pub label: String,
     /// Bytes from the start of `Params`; `None` for a member of a pass's own block.
     pub offset: Option<u32>,

@@ -43,7 +43,7 @@ impl Toy {
                         keys, as Key_A and Key_LeftArrow";
             return if has_keys { diagnostic } else { diagnostic.with_help(help) };
         }
-        // The passes of the built-in tree are no business of a toy.
+        // Hide built-in passes from messages about Shadertoy files.
         let unknown = message.strip_prefix("no pass or texture is named `").and_then(|rest| rest.split('`').next());
         if let Some(name) = unknown.map(str::to_owned) {
             let message = format!("nothing gives the image `{name}`");
