@@ -29,6 +29,8 @@ pub(crate) use reply::Reply;
 pub(crate) use request::{Open, Request, VersionsRequest};
 pub use socket::{Socket, socket_path};
 
+use crate::message::warn;
+
 /// A command, and the client that waits for its answer.
 pub(crate) struct Asked {
     pub(crate) request: Request,
@@ -68,8 +70,9 @@ impl Control {
             reader::read(input, &client, &sender);
             then();
         };
-        // If the thread cannot start, there are no commands from this input.
-        let _ = std::thread::Builder::new().name("specula-stdin".to_owned()).spawn(work);
+        if let Err(error) = std::thread::Builder::new().name("specula-stdin".to_owned()).spawn(work) {
+            warn(format_args!("no command from standard input is carried out: {error}"));
+        }
     }
 
     /// Accepts clients on a socket, whose file is removed with this value.

@@ -15,17 +15,18 @@
 //!   statistics (`AskDriver`), thumbnails. It takes one such pipeline at a time, so an edit waits for one at most.
 //!   Pipelines of thumbnails are built on a thread beside the worker.
 //! - **The loader** parses, decodes and uploads a model. It may touch the device only through a gate that closing
-//!   shuts, so closing never waits for a file. The newest request wins.
+//!   shuts, so closing never waits for a file. The newest request wins: an older load stops before its next file or
+//!   image.
 //! - **The baker** bakes environments, one submission per pass, and the BRDF lookup tables, reads measured BRDFs, and
 //!   builds what path tracing needs. A map that is still being decoded when a newer one is requested is left to a
-//!   thread of its own (`cancel.rs`). The newest request wins.
+//!   thread of its own (`cancel.rs`), and the newer one is decoded after it. The newest request wins.
 //! - **The measurer** measures the BRDF of the inspected pixel's material, with one `BrdfMeter` for the newest shaders
 //!   and one for the previous ones, which it compiles itself, on a pool of one thread.
 //! - **The checker** measures the goals of an exercise with a `Headless` of its own, once an edit has settled. A file
 //!   event ends it between two goals.
 //! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
 //!   new frame or pixel ends its work before the next step.
-//! - **Captures** are drawn by a thread with a clone of `Resources`. A second shader tree has a thread as long as it is
+//! - **Captures** are drawn by one thread, one after the other, each with a clone of `Resources`. A second shader tree has a thread as long as it is
 //!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
 //!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
 //!   the file dialog.
@@ -40,6 +41,7 @@ pub(crate) mod checker;
 pub(crate) mod finder;
 pub(crate) mod loader;
 pub(crate) mod measurer;
+mod newest;
 pub(crate) mod second_tree;
 pub(crate) mod worker;
 
@@ -47,19 +49,19 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread::JoinHandle;
 
-use crossbeam_channel::Receiver;
+use crossbeam_channel::{Receiver, Sender, unbounded};
 use image::{RgbaImage, imageops};
 use winit::event_loop::EventLoopProxy;
 
 use crate::comparison::{Comparison, Picture, Still};
 use crate::control::Asked;
 use crate::frame::{MeasuredKey, TablesKey};
-use crate::gpu::{Gpu, Rect, SetLayouts};
+use crate::gpu::{Gpu, Rect, SetLayouts, fault};
 use crate::learn::Exercise;
-use crate::message::panic_text;
+use crate::message::{panic_text, warn};
 use crate::picture::Look;
 use crate::render::tools::Tools;
 use crate::render::{PathTracingKey, Readback};
@@ -136,6 +138,7 @@ impl From<egui_winit::accesskit_winit::Event> for Message {
 }
 
 /// The work of a thread, with its number or key.
+#[derive(Clone)]
 pub(crate) enum TaskKind {
     Worker,
     Loader(u64),
@@ -203,18 +206,23 @@ impl MessageSender {
     pub(crate) fn pass_on(&self, asked: Receiver<Asked>) {
         let sender = self.clone();
         let work = move || asked.iter().for_each(|asked| sender.send(Message::Asked(Box::new(asked))));
-        // If the thread cannot start, these commands never complete.
-        let _ = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work);
+        if let Err(error) = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work) {
+            warn(format_args!("no command from outside is carried out: {error}"));
+        }
     }
 
-    /// Runs `body` on a new thread. If it panics, the window receives a message.
-    fn spawn(&self, task: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
-        let sender = self.clone();
-        std::thread::spawn(move || {
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&sender))) {
-                sender.send(Message::Panicked(task, panic_text(&*panic).to_owned()));
-            }
-        })
+    /// Runs `body` on a new thread. If it panics, or the system has no more threads, the window receives a message.
+    fn spawn(&self, task: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> Option<JoinHandle<()>> {
+        let (sender, its_task) = (self.clone(), task.clone());
+        let thread = std::thread::Builder::new().spawn(move || sender.guarded(its_task, body));
+        thread.map_err(|error| self.send(Message::Panicked(task, error.to_string()))).ok()
+    }
+
+    /// Runs `body`. If it panics, the window receives a message.
+    fn guarded(&self, task: TaskKind, body: impl FnOnce(&Self)) {
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(self))) {
+            self.send(Message::Panicked(task, panic_text(&*panic).to_owned()));
+        }
     }
 }
 
@@ -234,6 +242,12 @@ impl DeviceGate {
     }
 }
 
+/// A capture that waits to be drawn.
+struct Capture {
+    number: u64,
+    draw: Box<dyn FnOnce(&MessageSender) + Send>,
+}
+
 /// All threads. Dropping this ends the threads that use the device and waits for them, but not for a model that is still being
 /// parsed.
 pub(crate) struct Threads {
@@ -248,12 +262,13 @@ pub(crate) struct Threads {
     pub(crate) measurer: Measurer,
     pub(crate) finder: Finder,
     gpu: Arc<Gpu>,
-    /// Threads that look for the line of a loop, make the pipelines of tools, scale pictures or compile a second shader tree.
+    /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
+    /// compile a second shader tree.
     device_threads: Vec<JoinHandle<()>>,
-    /// Threads that draw captures, and what cancels each.
-    capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
-    /// Held by the capture that is being drawn, so that captures run one after the other.
-    capturing: Arc<Mutex<()>>,
+    /// The queue and the thread of captures, which starts with the first.
+    capturer: Option<(Sender<Capture>, Option<JoinHandle<()>>)>,
+    /// What cancels each capture that has not ended.
+    captures: Vec<Weak<AtomicBool>>,
     sender: MessageSender,
 }
 
@@ -278,15 +293,15 @@ impl Threads {
             finder: Finder::new(device.0, sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
-            capturers: Vec::new(),
-            capturing: Arc::default(),
+            capturer: None,
+            captures: Vec::new(),
             sender: sender.clone(),
         }
     }
 
     /// Compares a part of two pictures, whose copies have finished, on a thread of its own. The result carries this number.
-    pub(crate) fn compare(&self, number: u64, pictures: [Side; 2], part: Rect) {
-        self.wait(move || {
+    pub(crate) fn compare(&mut self, number: u64, pictures: [Side; 2], part: Rect) {
+        self.use_device(TaskKind::External, move |sender| {
             let of = |side: Side| {
                 let whole = side.pixels()?;
                 Some(imageops::crop_imm(&*whole, part.x, part.y, part.width, part.height).to_image())
@@ -294,48 +309,52 @@ impl Threads {
             let [a, b] = pictures.map(|side| of(side).map(Picture::Display));
             let compared = a.zip(b).ok_or_else(|| "a picture was not read whole".to_owned());
             let compared = compared.and_then(|(a, b)| Comparison::new(&a, &b));
-            Some(Message::Compared(number, compared.map(Box::new)))
+            sender.send(Message::Compared(number, compared.map(Box::new)));
         });
     }
 
     /// Scales the picture of a file to the size of the window's frame, and uploads it. The result carries this number.
     pub(crate) fn scale(&mut self, number: u64, picture: Arc<Picture>, size: (u32, u32)) {
-        self.device_threads.retain(|thread| !thread.is_finished());
         let gpu = self.gpu.clone();
-        self.device_threads.push(self.sender.spawn(TaskKind::ImageScaling(number), move |sender| {
+        self.use_device(TaskKind::ImageScaling(number), move |sender| {
             let still = Still::new(&gpu, &picture, size).map(Arc::new).map_err(|error| error.to_string());
             sender.send(Message::PictureFits(number, still));
-        }));
+        });
     }
 
-    /// Keeps a thread that uses the device until it ends. Closing waits for it.
-    pub(crate) fn keep(&mut self, thread: JoinHandle<()>) {
+    /// Runs `work`, which uses the device or holds objects of it, on a thread of its own. Closing waits for it.
+    pub(crate) fn use_device(&mut self, task: TaskKind, work: impl FnOnce(&MessageSender) + Send + 'static) {
         self.device_threads.retain(|thread| !thread.is_finished());
-        self.device_threads.push(thread);
+        self.device_threads.extend(self.sender.spawn(task, work));
     }
 
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
     pub(crate) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
-        self.device_threads.retain(|thread| !thread.is_finished());
-        self.device_threads.push(self.sender.spawn(TaskKind::LoopDiagnosis(words), move |sender| {
+        self.use_device(TaskKind::LoopDiagnosis(words), move |sender| {
             sender.send(Message::EndlessLoop(words, find().map(Box::new)));
-        }));
+        });
     }
 
-    /// Draws the capture with this number on a thread of its own, after earlier ones. Closing cancels it and waits for it.
+    /// Draws the capture with this number on the thread of captures, after earlier ones. Closing cancels it and waits for it.
     pub(crate) fn capture(
         &mut self,
         number: u64,
-        canceled: Arc<AtomicBool>,
-        work: impl FnOnce(&MessageSender) + Send + 'static,
+        canceled: &Arc<AtomicBool>,
+        draw: impl FnOnce(&MessageSender) + Send + 'static,
     ) {
-        self.capturers.retain(|(_, thread)| !thread.is_finished());
-        let capturing = self.capturing.clone();
-        let thread = self.sender.spawn(TaskKind::Capture(number), move |sender| {
-            let _alone = capturing.lock().unwrap_or_else(PoisonError::into_inner);
-            work(sender);
+        self.captures.retain(|capture| capture.strong_count() > 0);
+        self.captures.push(Arc::downgrade(canceled));
+        let (queue, _) = self.capturer.get_or_insert_with(|| {
+            let (queue, captures) = unbounded::<Capture>();
+            let draw_all = move |sender: &MessageSender| {
+                captures.iter().for_each(|capture| sender.guarded(TaskKind::Capture(capture.number), capture.draw));
+            };
+            (queue, self.sender.spawn(TaskKind::Capture(number), draw_all))
         });
-        self.capturers.push((canceled, thread));
+        if queue.send(Capture { number, draw: Box::new(draw) }).is_err() {
+            // The thread did not start, which the window has been told. The next capture tries again.
+            self.capturer = None;
+        }
     }
 
     /// The sender of messages to the window, for work that answers later.
@@ -345,8 +364,7 @@ impl Threads {
 
     /// Sends the pipelines that `make` returns.
     pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
-        self.device_threads
-            .push(self.sender.spawn(TaskKind::ToolPipelines, |sender| sender.send(Message::Tools(make()))));
+        self.use_device(TaskKind::ToolPipelines, |sender| sender.send(Message::Tools(make())));
     }
 
     /// Runs `work`, which waits and uses no device, on a thread of its own, and sends its message. The thread may outlive the
@@ -397,11 +415,13 @@ impl Threads {
 
 impl Drop for Threads {
     fn drop(&mut self) {
-        self.capturers.iter().for_each(|(canceled, _)| canceled.store(true, Ordering::Relaxed));
-        let capturers = self.capturers.drain(..).map(|(_, thread)| thread);
-        for thread in self.device_threads.drain(..).chain(capturers) {
+        self.captures.iter().filter_map(Weak::upgrade).for_each(|canceled| canceled.store(true, Ordering::Relaxed));
+        // Without its queue, the thread ends after the last capture.
+        let capturer = self.capturer.take().and_then(|(_, thread)| thread);
+        for thread in self.device_threads.drain(..).chain(capturer) {
             let _ = thread.join();
         }
+        fault::delay("closing-delay-ms");
     }
 }
 

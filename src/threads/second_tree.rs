@@ -67,10 +67,9 @@ impl SecondTree {
         let watcher = source.location().is_some().then(|| watch(&source, jobs.clone())).transpose()?;
         let reloader = Reloader::new(&threads.gpu, layouts, compiler, source);
         let mut tree = Tree { reloader, snapshot, canceled: canceled.clone() };
-        let thread = threads.sender.spawn(TaskKind::SecondTree(number), move |sender| {
+        threads.use_device(TaskKind::SecondTree(number), move |sender| {
             tree.run(&inbox, |message| sender.send(Message::SecondTree(number, message)));
         });
-        threads.keep(thread);
         Ok(Self { _watcher: watcher, jobs, canceled, number })
     }
 

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use crossbeam_channel::{Sender, unbounded};
 
-use super::MessageSender;
+use super::{MessageSender, TaskKind};
 use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
@@ -166,9 +166,9 @@ impl Worker {
             recorder: recorder.clone(),
             sender: sender.clone(),
         };
-        let thread = std::thread::spawn(move || state.run());
+        let thread = sender.spawn(TaskKind::Worker, move |_| state.run());
         let jobs = Some(Jobs { sender: jobs, edits });
-        Self { jobs, reloaded: 0, snapshot, asked: VecDeque::new(), thread: Some(thread) }
+        Self { jobs, reloaded: 0, snapshot, asked: VecDeque::new(), thread }
     }
 
     /// Sets what the next reload builds pipelines for.

@@ -22,6 +22,8 @@ use crate::render::Texel;
 use crate::shader::{Compiler, Source};
 use crate::threads::Message;
 
+/// Most captures that are drawn or wait. Each keeps the images of its picture on the device.
+const MOST: usize = 64;
 /// Time between two reports of progress.
 const REPORT: Duration = Duration::from_millis(100);
 /// Size of a picture of a sheet, pixels.
@@ -180,6 +182,17 @@ pub(in crate::app) struct Captures {
 }
 
 impl Captures {
+    /// Adds a capture. Returns its number and what cancels it.
+    fn begin(&mut self, title: &'static str) -> Result<(u64, Arc<AtomicBool>), String> {
+        if self.running.len() >= MOST {
+            return Err(format!("{MOST} captures are waiting already; send this one again when one of them has ended"));
+        }
+        self.last += 1;
+        let canceled = Arc::new(AtomicBool::new(false));
+        self.running.push(Running { number: self.last, title, done: 0, of: 0, canceled: canceled.clone() });
+        Ok((self.last, canceled))
+    }
+
     pub(in crate::app) fn iter(&self) -> impl Iterator<Item = &Running> {
         self.running.iter()
     }
@@ -202,13 +215,12 @@ impl Captures {
 }
 
 impl Viewer {
-    /// Begins to draw on a thread of its own.
+    /// Draws on the thread of captures.
     pub(super) fn begin_capture(&mut self, reply: Reply, job: Job) {
-        let captures = &mut self.controlled.captures;
-        captures.last += 1;
-        let (number, canceled) = (captures.last, Arc::new(AtomicBool::new(false)));
-        let title = job.title();
-        captures.running.push(Running { number, title, done: 0, of: 0, canceled: canceled.clone() });
+        let (number, canceled) = match self.controlled.captures.begin(job.title()) {
+            Ok(begun) => begun,
+            Err(message) => return reply.error(message),
+        };
         let versions = match job {
             Job::Timeline { .. } => self.version_pictures(),
             _ => Vec::new(),
@@ -217,7 +229,8 @@ impl Viewer {
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
         let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.session_state());
-        self.threads.capture(number, canceled.clone(), move |sender| {
+        let cancels = canceled.clone();
+        self.threads.capture(number, &cancels, move |sender| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {
                 if last.is_none_or(|last| last.elapsed() >= REPORT) {
@@ -244,5 +257,19 @@ impl Viewer {
                 Err(error) => reply.error(error.to_string()),
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_capture_is_refused_while_too_many_wait() {
+        let mut captures = Captures::default();
+        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture").unwrap().0).collect();
+        assert!(captures.begin("Picture").unwrap_err().contains("64 captures are waiting"));
+        captures.ended(begun[0]);
+        assert!(captures.begin("Picture").is_ok());
     }
 }

@@ -12,6 +12,7 @@ use crate::gpu::Buffer;
 use crate::picture;
 use crate::recovery::SessionState;
 use crate::render::Capture;
+use crate::threads::TaskKind;
 
 impl Viewer {
     /// Writes the picture of the screen, and answers.
@@ -31,8 +32,8 @@ impl Viewer {
     }
 
     /// Writes the picture of the window, whose copy to `pixels` has finished, and answers.
-    pub(in crate::app) fn write_window_shot(&self, shot: Shot, pixels: Arc<Buffer>, (width, height): (u32, u32)) {
-        self.threads.wait(move || {
+    pub(in crate::app) fn write_window_shot(&mut self, shot: Shot, pixels: Arc<Buffer>, (width, height): (u32, u32)) {
+        self.threads.use_device(TaskKind::External, move |_| {
             let Shot { reply, file } = shot;
             let mut bgra = pixels.read();
             for pixel in bgra.chunks_exact_mut(4) {
@@ -47,7 +48,6 @@ impl Viewer {
                 Ok(()) => reply.done(json!({ "file": path_text(&file), "width": width, "height": height })),
                 Err(message) => reply.error(message),
             }
-            None
         });
     }
 }

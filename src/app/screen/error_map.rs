@@ -107,7 +107,7 @@ impl Screen {
     }
 
     /// Sends copies whose frame has finished to the thread that compares them.
-    pub(super) fn take_copies(&mut self, viewer: &Viewer) {
+    pub(super) fn take_copies(&mut self, viewer: &mut Viewer) {
         let is_finished = |copied: &mut Copied| self.frames.is_finished(copied.slot);
         if let Some(Copied { pictures, part, .. }) = self.error_map.copied.take_if(is_finished) {
             viewer.threads.compare(self.error_map.number, pictures, part);

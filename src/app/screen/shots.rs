@@ -126,7 +126,7 @@ impl Screen {
     }
 
     /// Writes the picture of the window once the frame that copied it has finished.
-    pub(super) fn finish_window_shot(&mut self, viewer: &Viewer) {
+    pub(super) fn finish_window_shot(&mut self, viewer: &mut Viewer) {
         let frames = &self.frames;
         if let Some(WindowShot { pixels, size, shot, .. }) =
             self.window_shot.take_if(|shot| frames.is_finished(shot.slot))
