@@ -2,12 +2,9 @@
 //! The newest request wins.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread::JoinHandle;
 use std::time::Instant;
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
-
+use super::newest::{Newest, Turn};
 use super::{Message, MessageSender, TaskKind};
 use crate::gpu::Gpu;
 use crate::measure::{BrdfMeter, Curves, Material, prepare};
@@ -36,75 +33,26 @@ pub(crate) struct Measured {
     pub(crate) ms: f64,
 }
 
-/// The window's handle of the thread, which starts with the first request. Dropping it ends the thread and waits for it.
+/// The thread. Dropping this ends its work before the next step and waits for that.
 pub(crate) struct Measurer {
     gpu: Arc<Gpu>,
-    sender: MessageSender,
-    jobs: Option<Sender<(u64, CurvesRequest)>>,
-    /// Number of the newest request. The work of older ones ends before its next step.
-    newest: Arc<AtomicU64>,
-    thread: Option<JoinHandle<()>>,
+    thread: Newest<CurvesRequest>,
 }
 
 impl Measurer {
     pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
-        Self { gpu: gpu.clone(), sender: sender.clone(), jobs: None, newest: Arc::default(), thread: None }
+        Self { gpu: gpu.clone(), thread: Newest::new(TaskKind::Measurer, sender) }
     }
 
     /// Starts a measurement and drops the previous request. Returns the number of the request.
     pub(crate) fn measure(&mut self, compiler: &Arc<Compiler>, request: CurvesRequest) -> u64 {
-        let number = self.cancel();
-        let is_over = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
-        if self.jobs.is_none() || is_over {
-            let (sender, inbox) = unbounded();
-            let meters = BrdfMeters { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
-            let newest = self.newest.clone();
-            self.thread =
-                Some(self.sender.spawn(TaskKind::Measurer, move |sender| run(meters, &inbox, &newest, sender)));
-            self.jobs = Some(sender);
-        }
-        if let Some(jobs) = &self.jobs {
-            // Fails only after the thread has panicked, which the window reports.
-            let _ = jobs.send((number, request));
-        }
-        number
-    }
-
-    /// Cancels the last request before its next step. Returns a new number.
-    pub(crate) fn cancel(&mut self) -> u64 {
-        self.newest.fetch_add(1, Ordering::SeqCst) + 1
-    }
-}
-
-impl Drop for Measurer {
-    fn drop(&mut self) {
-        self.cancel();
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
-    }
-}
-
-fn run(mut meters: BrdfMeters, inbox: &Receiver<(u64, CurvesRequest)>, newest: &AtomicU64, sender: &MessageSender) {
-    while let Ok(first) = inbox.recv() {
-        let (number, request) = inbox.try_iter().last().unwrap_or(first);
-        let is_canceled = || newest.load(Ordering::SeqCst) != number;
-        if is_canceled() {
-            continue;
-        }
-        let start = Instant::now();
-        let [now, before] = &request.shaders;
-        meters.made.retain(|(of, _)| request.shaders.iter().flatten().any(|kept| Arc::ptr_eq(kept, of)));
-        let Some(now) = now else { continue };
-        let now = meters.curves(now, &request);
-        let before = before.as_ref().filter(|_| !is_canceled()).map(|before| meters.curves(before, &request));
-        if is_canceled() {
-            continue;
-        }
-        let before = before.and_then(Result::ok);
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        sender.send(Message::Curves(Box::new(Measured { number, now, before, ms })));
+        self.thread.request(request, || {
+            let mut meters = BrdfMeters { gpu: self.gpu.clone(), compiler: compiler.clone(), made: Vec::new() };
+            move |sender, turn, request| {
+                let measured = meters.measure(turn, &request);
+                measured.into_iter().for_each(|measured| sender.send(Message::Curves(Box::new(measured))));
+            }
+        })
     }
 }
 
@@ -117,6 +65,17 @@ struct BrdfMeters {
 }
 
 impl BrdfMeters {
+    /// `None` without shaders, or if a newer request has come.
+    fn measure(&mut self, turn: &Turn<'_>, request: &CurvesRequest) -> Option<Measured> {
+        let start = Instant::now();
+        let [now, before] = &request.shaders;
+        self.made.retain(|(of, _)| request.shaders.iter().flatten().any(|kept| Arc::ptr_eq(kept, of)));
+        let now = self.curves(now.as_ref()?, request);
+        let before = before.as_ref().filter(|_| !turn.is_superseded()).map(|before| self.curves(before, request));
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        (!turn.is_superseded()).then(|| Measured { number: turn.number, now, before: before.and_then(Result::ok), ms })
+    }
+
     fn curves(&mut self, shaders: &Arc<ShaderSet>, request: &CurvesRequest) -> Result<Curves, String> {
         // Only the author's constants and parameters count.
         let settings = Settings { shader: request.settings.shader.clone(), ..Settings::default() };
