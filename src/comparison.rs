@@ -3,12 +3,15 @@
 mod fit;
 mod still;
 
+use std::io::BufReader;
 use std::path::Path;
 
 use image::{DynamicImage, Rgb32FImage, RgbImage, Rgba32FImage, RgbaImage};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
 
 pub use still::Still;
+
+use crate::regular_file;
 
 /// A picture as stored in a file.
 pub enum Picture {
@@ -25,8 +28,12 @@ impl Picture {
     /// A message if the file cannot be read or decoded.
     pub fn open(path: &Path) -> Result<Self, String> {
         let error = |e: &dyn std::fmt::Display| format!("cannot read {}: {e}", path.display());
-        let reader = image::ImageReader::open(path).map_err(|e| error(&e))?;
-        let decoded = reader.with_guessed_format().map_err(|e| error(&e))?.decode().map_err(|e| error(&e))?;
+        let file = BufReader::new(regular_file::open(path).map_err(|e| error(&e))?);
+        let decoded = image::ImageReader::new(file)
+            .with_guessed_format()
+            .map_err(|e| error(&e))?
+            .decode()
+            .map_err(|e| error(&e))?;
         Ok(match decoded {
             DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => Self::Raw(decoded.into_rgba32f()),
             _ => Self::Display(decoded.into_rgba8()),

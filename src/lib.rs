@@ -46,6 +46,7 @@ pub mod message;
 pub mod picture;
 pub mod pipeline;
 pub mod recovery;
+mod regular_file;
 pub mod render;
 pub mod scene;
 pub mod session;

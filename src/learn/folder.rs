@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Exercise, exercises};
 use crate::picture::replace_file;
+use crate::regular_file;
 use crate::shader::is_specula_tree;
 
 /// The text of the exercise, for the student's editor. Its last line says which exercise the tree is of.
@@ -46,7 +47,7 @@ pub fn prepare(parent: &Path, exercise: &Exercise) -> Result<PathBuf, String> {
 
 /// The exercise whose tree this folder holds.
 pub fn exercise_of(folder: &Path) -> Option<&'static Exercise> {
-    let text = std::fs::read_to_string(folder.join(TEXT)).ok()?;
+    let text = regular_file::read_text(&folder.join(TEXT)).ok()?;
     let name = text.lines().rev().find_map(|line| line.strip_prefix(MARK))?.split_whitespace().next()?;
     exercises().iter().find(|exercise| exercise.name == name)
 }

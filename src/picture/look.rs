@@ -2,13 +2,13 @@
 //! the keyword `specula-files` the model, the shader tree and other files, with paths from the picture's folder.
 
 use std::fmt;
-use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::recovery::SessionState;
+use crate::regular_file;
 use crate::render::Capture;
 use crate::scene::BUILT_IN;
 use crate::settings::{LookError, Settings};
@@ -144,7 +144,7 @@ pub fn read_checked_look(path: &Path) -> Result<Look, String> {
 
 /// The texts of settings and of files in a PNG file.
 fn decode(path: &Path) -> Result<(String, Option<String>), String> {
-    let file = File::open(path).map_err(|e| format!("cannot be read: {e}"))?;
+    let file = regular_file::open(path).map_err(|e| format!("cannot be read: {e}"))?;
     let decoder = png::Decoder::new(BufReader::new(file));
     let reader = decoder.read_info().map_err(|e| format!("no PNG file: {e}"))?;
     let text = |keyword: &str| {

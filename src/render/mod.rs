@@ -20,7 +20,7 @@ pub use brdf::tables::{Tables, wrong_values};
 pub use environment::bake::{BakeControl, BakeError};
 pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{PathTracing, PathTracingError, PathTracingKey, PathTracingRequest};
-pub use resources::{Missing, ProvideError, Resources, read_measured};
+pub use resources::{Missing, ProvideError, Resources};
 pub use scene::{GpuModel, UploadError};
 pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};
 pub use view::{Capture, Output, PixelAt, PixelModes, RangeSample, Readback, Redraw, Thumbnails, View, beyond_memory};

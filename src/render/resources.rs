@@ -316,9 +316,10 @@ impl Resources {
             self.bake_after(key, before.as_ref(), true)?;
         }
         if let Some(key) = missing.measured {
-            let read = read_measured(&self.gpu, &key);
-            self.set_measured(key, read.as_ref().ok().cloned());
-            read?;
+            let read = Measured::open(&key.path).map_err(ProvideError::from);
+            let uploaded = read.and_then(|measured| Ok(measured_buffer(&self.gpu, Some(&measured))?));
+            self.set_measured(key, uploaded.as_ref().ok().cloned());
+            uploaded?;
         }
         if missing.pipelines {
             set.build(&state.pipelines)?;
@@ -400,13 +401,4 @@ pub enum ProvideError {
 /// Whether the pipelines of `state` light the model with every sun that the images of the environment leave out.
 fn adds_suns_of(state: &FrameState, environment: &GpuEnvironment) -> bool {
     state.environment.is_none() || state.pipelines.sun_count >= environment.sun_count()
-}
-
-/// Reads a measured BRDF and uploads it. Any thread may call this.
-///
-/// # Errors
-/// A bad file, or no memory left.
-pub fn read_measured(gpu: &Arc<Gpu>, key: &MeasuredKey) -> Result<Arc<Buffer>, ProvideError> {
-    let measured = Measured::open(&key.path)?;
-    Ok(measured_buffer(gpu, Some(&measured))?)
 }

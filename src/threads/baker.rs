@@ -6,13 +6,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use super::{Message, MessageSender, TaskKind};
+use crate::cancel::Running;
 use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::pipeline::PipelineSet;
 use crate::render::{
     BakeControl, BakeError, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables,
-    read_measured,
+    measured_buffer,
 };
+use crate::scene::Measured;
 
 /// Messages of the baker.
 pub(crate) enum BakeMessage {
@@ -48,12 +50,14 @@ pub(crate) struct Baker {
     tracing: Option<PathTracingKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
+    /// Number of the newest read. Nobody waits for older ones.
+    newest_read: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
 }
 
 impl Baker {
     pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
-        let (newest, threads) = Default::default();
+        let (newest, newest_read, threads) = Default::default();
         Self {
             gpu: gpu.clone(),
             sender: sender.clone(),
@@ -62,6 +66,7 @@ impl Baker {
             reading: None,
             tracing: None,
             newest,
+            newest_read,
             threads,
         }
     }
@@ -118,9 +123,15 @@ impl Baker {
     pub(crate) fn read(&mut self, key: Option<MeasuredKey>) {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
-        let gpu = self.gpu.clone();
+        let number = self.newest_read.fetch_add(1, Ordering::SeqCst) + 1;
+        let (gpu, newest) = (self.gpu.clone(), self.newest_read.clone());
         self.spawn(TaskKind::MeasuredBrdf(key.clone()), move |sender| {
-            let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
+            let path = key.path.clone();
+            let read = Running::start(move || Measured::open(&path));
+            let Some(read) = read.wait_unless(&|| newest.load(Ordering::SeqCst) != number) else { return };
+            let result = read.map_err(|error| error.to_string());
+            let result =
+                result.and_then(|measured| measured_buffer(&gpu, Some(&measured)).map_err(|error| error.to_string()));
             drop(gpu);
             sender.send(Message::Bake(BakeMessage::Measured(key, result)));
         });
@@ -170,13 +181,14 @@ impl Baker {
 
     fn spawn(&mut self, task: TaskKind, body: impl FnOnce(&MessageSender) + Send + 'static) {
         self.threads.retain(|thread| !thread.is_finished());
-        self.threads.push(self.sender.spawn(task, body));
+        self.threads.extend(self.sender.spawn(task, body));
     }
 }
 
 impl Drop for Baker {
     fn drop(&mut self) {
         self.newest.fetch_add(1, Ordering::SeqCst);
+        self.newest_read.fetch_add(1, Ordering::SeqCst);
         for thread in self.threads.drain(..) {
             let _ = thread.join();
         }

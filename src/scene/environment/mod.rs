@@ -16,9 +16,11 @@ mod suns;
 #[cfg(test)]
 mod tests;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use xxhash_rust::xxh3::xxh3_128_with_seed;
+
+use crate::regular_file;
 
 pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
@@ -88,7 +90,7 @@ impl EnvironmentFile {
             return Ok(Self { name: name.to_owned(), files: Vec::new(), fingerprint, given, source });
         }
         let path = std::path::absolute(&given).unwrap_or_else(|_| given.clone());
-        let bytes = read(&path).map_err(|source| EnvironmentError {
+        let bytes = regular_file::read(&path, MAX_FILE_BYTES).map_err(|source| EnvironmentError {
             file: given.clone(),
             problem: EnvironmentProblem::Read { source, built_in: BUILT_IN.join(", ") },
             files: vec![path.clone()],
@@ -119,17 +121,4 @@ impl EnvironmentFile {
 
 fn fingerprint(bytes: &[u8]) -> u128 {
     xxh3_128_with_seed(bytes, DECODER_VERSION)
-}
-
-/// Reads a regular file. Reading a device or a pipe might never end.
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        let size = format!("it has {} bytes; Specula reads at most {MAX_FILE_BYTES}", metadata.len());
-        return Err(std::io::Error::other(size));
-    }
-    std::fs::read(path)
 }

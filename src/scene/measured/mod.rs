@@ -19,12 +19,12 @@ mod tests;
 mod utia;
 
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
+use crate::regular_file;
 pub use error::{MeasuredError, MeasuredProblem};
 
 /// Negative values are failed measurements. If more than this fraction of all values is negative, the user is warned.
@@ -122,11 +122,11 @@ struct Decoded {
 /// Reads the whole file once its first bytes and its length determine the format. The header's dimensions are only
 /// compared, never used as a size.
 fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
-    let mut file = File::open(path).map_err(MeasuredProblem::Read)?;
-    let metadata = file.metadata().map_err(MeasuredProblem::Read)?;
+    let metadata = std::fs::metadata(path).map_err(MeasuredProblem::Read)?;
     if !metadata.is_file() {
         return Err(MeasuredProblem::NotAFile);
     }
+    let mut file = regular_file::open(path).map_err(MeasuredProblem::Read)?;
     let mut bytes = Vec::new();
     (&mut file).take(merl::HEADER_BYTES as u64).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
     let kind = recognize(&bytes, metadata.len(), path.extension())?;

@@ -100,6 +100,25 @@ fn pipes_and_devices_are_written_to() {
     assert_eq!(names_in(directory.path()), ["full.exr", "null.png", "out.png", "pipe.png"]);
 }
 
+/// Opening a pipe waits for a program that writes to it, and closing a window waits for its readers.
+#[test]
+fn nothing_that_reads_a_file_waits_for_a_pipe() {
+    use specula::scene::{EnvironmentFile, LoadOptions, Measured, load};
+    let directory = tempfile::tempdir().unwrap();
+    let pipe = directory.path().join("EXERCISE.md");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let refuses = |name: &str, fails: fn(&Path) -> bool| {
+        let ((sender, failed), pipe) = (channel(), pipe.clone());
+        std::thread::spawn(move || sender.send(fails(&pipe)));
+        assert!(failed.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{name} waits")), "{name} was read");
+    };
+    refuses("a measured BRDF", |pipe| Measured::open(pipe).is_err());
+    refuses("an environment", |pipe| EnvironmentFile::open(pipe.to_str().unwrap()).is_err());
+    refuses("a model", |pipe| load(pipe, &LoadOptions::default()).is_err());
+    refuses("a picture", |pipe| specula::comparison::Picture::open(pipe).is_err());
+    refuses("an exercise", |pipe| specula::learn::exercise_of(pipe.parent().unwrap()).is_none());
+}
+
 /// Sends the program each signal while it writes pictures, as soon as its temporary file appears.
 #[test]
 fn a_signal_leaves_no_temporary_files() {
