@@ -253,7 +253,8 @@ impl Viewer {
         };
         viewer.watch_tree(&source);
         viewer.find_exercise();
-        viewer.begin_loading(options.model, early.reading);
+        viewer.threads.loader.upload(early.reading);
+        viewer.begin_loading(options.model);
         viewer.report_loss();
         viewer.compare_at_start(options.compare);
         Ok(viewer)

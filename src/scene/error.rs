@@ -130,6 +130,9 @@ pub enum Problem {
         /// Found in the file.
         found: String,
     },
+    /// The result is no longer needed.
+    #[error("is no longer needed: the load was canceled.")]
+    Canceled,
     /// The loader or a decoder panicked.
     #[error(
         "was refused: the loader stopped at something it did not expect ({found}). \

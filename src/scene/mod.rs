@@ -11,6 +11,7 @@ mod error;
 mod features;
 mod gltf;
 mod lights;
+mod load_options;
 mod material;
 mod measured;
 pub mod mips;
@@ -34,6 +35,7 @@ pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use gltf::triangles;
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
+pub use load_options::{Canceled, LoadOptions};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
@@ -42,22 +44,23 @@ pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
 pub use replace::{factor, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};
 
-/// Options of a load.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LoadOptions {
-    /// Whether the model may name files by absolute paths or outside its folder (`--allow-outside`).
-    pub allow_outside: bool,
-}
-
 /// Loads a file, or else the built-in model of that name. Without a path, loads the first built-in model.
 ///
 /// # Errors
 /// As [`load`].
 pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadError> {
+    open_unless(path, options, &|| false)
+}
+
+/// As [`open`], until `canceled` says so. It is asked before each file and each image.
+///
+/// # Errors
+/// As [`load`], or [`Problem::Canceled`].
+pub fn open_unless(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
     let name = path.map_or(Some(BUILT_IN[0]), |path| if path.exists() { None } else { path.to_str() });
     match (name.and_then(built_in), path) {
         (Some(model), _) => model,
-        (None, path) => load(path.unwrap_or(Path::new("")), options),
+        (None, path) => load_unless(path.unwrap_or(Path::new("")), options, canceled),
     }
 }
 
@@ -67,8 +70,12 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
 /// Fails if the file or a file that it names cannot be read or is invalid, or requires an unsupported extension. Never
 /// panics, whatever the content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
+    load_unless(path, options, &|| false)
+}
+
+fn load_unless(path: &Path, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
     let mut files = Vec::new();
-    let loaded = gltf::load_file(path, options, &mut files);
+    let loaded = gltf::load_file(path, options, canceled, &mut files);
     loaded.map_err(|problem| LoadError { file: path.to_owned(), problem: Box::new(problem), files })
 }
 

@@ -14,7 +14,7 @@ use crate::threads::loader::Loaded;
 
 impl Viewer {
     pub(super) fn on_loaded(&mut self, loaded: Loaded) {
-        if loaded.number != self.threads.loader.newest {
+        if !self.threads.loader.is_newest(loaded.number) {
             return;
         }
         self.model.loading = false;

@@ -324,7 +324,7 @@ impl Viewer {
                 "worker"
             }
             TaskKind::Loader(number) => {
-                self.model.loading &= number != self.threads.loader.newest;
+                self.model.loading &= !self.threads.loader.is_newest(number);
                 "loader"
             }
             TaskKind::Baker(number) => {
@@ -351,7 +351,6 @@ impl Viewer {
                 "explainer"
             }
             TaskKind::Checker => {
-                self.threads.checker.failed();
                 self.learning.checking = None;
                 "checking"
             }

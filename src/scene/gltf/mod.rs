@@ -19,37 +19,43 @@ use std::time::Instant;
 use gltf::json;
 use rayon::prelude::*;
 
-use self::file::buffers::{Buffers, Files, read_regular};
+use self::file::buffers::{Buffers, Files};
 use self::file::container;
 use self::geometry::accessor::Reader;
 use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
-use super::LoadOptions;
 use super::error::Problem;
+use super::load_options::{Canceled, LoadOptions};
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
 use crate::message::panic_text;
+use crate::regular_file;
 
 /// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is then still finite in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
 /// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.
-pub fn load_file(path: &Path, options: &LoadOptions, tried: &mut Vec<PathBuf>) -> Result<Model, Problem> {
+pub fn load_file(
+    path: &Path,
+    options: &LoadOptions,
+    canceled: Canceled<'_>,
+    tried: &mut Vec<PathBuf>,
+) -> Result<Model, Problem> {
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
     tried.push(path.clone());
-    let bytes = read_regular(&path).map_err(Problem::Read)?;
+    let bytes = regular_file::read(&path, u64::MAX).map_err(Problem::Read)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = path.parent().map(Path::to_owned);
-    guarded(&name, &bytes, Files { folder, allow_outside: options.allow_outside, tried }, start)
+    guarded(&name, &bytes, Files::new(folder, options.allow_outside, canceled, tried), start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files { folder: None, allow_outside: false, tried: &mut Vec::new() }, Instant::now())
+    guarded(name, bytes, Files::new(None, false, &|| false, &mut Vec::new()), Instant::now())
 }
 
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
@@ -68,8 +74,14 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     let encoded = images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
     let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials, variants.len())?;
     let parse_ms = milliseconds(start);
-    let ((images, decode_ms), (meshes, tangents_ms)) =
-        rayon::join(|| timed(|| images::decode(encoded)), || timed(|| finish_meshes(meshes, &materials)));
+    let canceled = files.canceled;
+    let ((images, decode_ms), (meshes, tangents_ms)) = rayon::join(
+        || timed(|| images::decode(encoded, canceled)),
+        || timed(|| finish_meshes(meshes, &materials, canceled)),
+    );
+    if canceled() {
+        return Err(Problem::Canceled);
+    }
     let (images, failures): (Vec<Image>, Vec<_>) = images.into_iter().map(|i| (i.image, i.failure)).unzip();
 
     warnings.extend(scene.warnings);
@@ -126,10 +138,11 @@ fn read_meshes(
     used.into_par_iter().map(|index| Ok((index, mesh::read(reader, index, materials, variants)?))).collect()
 }
 
-fn finish_meshes(mut meshes: Meshes, materials: &[Material]) -> Meshes {
+fn finish_meshes(mut meshes: Meshes, materials: &[Material], canceled: Canceled<'_>) -> Meshes {
     meshes
         .par_iter_mut()
         .flat_map(|(_, geometries)| geometries)
+        .take_any_while(|_| !canceled())
         .for_each(|geometry| tangents::complete(geometry, materials));
     meshes
 }

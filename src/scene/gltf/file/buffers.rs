@@ -1,25 +1,43 @@
 //! Reads buffers and the files that contain them.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use gltf::json;
 
 use super::uri::{self, Target};
+use crate::regular_file;
 use crate::scene::error::Problem;
 use crate::scene::gltf::place;
+use crate::scene::load_options::Canceled;
 
 /// The model's folder, and the files that the loader has looked for.
 pub struct Files<'t> {
     /// The model's folder; `None` for a model in memory, which has no files.
-    pub folder: Option<PathBuf>,
+    folder: Option<PathBuf>,
     /// `--allow-outside`.
-    pub allow_outside: bool,
+    allow_outside: bool,
+    /// Whether the load is no longer needed.
+    pub canceled: Canceled<'t>,
     /// Every file read or looked for so far, absolute.
     pub tried: &'t mut Vec<PathBuf>,
+    /// The same files, for a model that names many.
+    known: HashSet<PathBuf>,
 }
 
-impl Files<'_> {
+impl<'t> Files<'t> {
+    /// The files of a model in `folder`.
+    pub fn new(
+        folder: Option<PathBuf>,
+        allow_outside: bool,
+        canceled: Canceled<'t>,
+        tried: &'t mut Vec<PathBuf>,
+    ) -> Self {
+        let known = tried.iter().cloned().collect();
+        Self { folder, allow_outside, canceled, tried, known }
+    }
+
     /// Loads the bytes of a URI. `place` is for messages.
     pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
         let named = match uri::parse(uri, place, self.allow_outside)? {
@@ -31,7 +49,10 @@ impl Files<'_> {
             return Err(Problem::invalid(place, "all data inside of a built-in model", found));
         };
         let path = folder.join(&named);
-        if !self.tried.contains(&path) {
+        if (self.canceled)() {
+            return Err(Problem::Canceled);
+        }
+        if self.known.insert(path.clone()) {
             self.tried.push(path.clone());
         }
         // The text of a path does not show where its links lead.
@@ -40,7 +61,7 @@ impl Files<'_> {
                 let found = format!("a link to {}", end.display());
                 Err(Problem::Outside { place: place.into(), uri: named.display().to_string(), found })
             }
-            found => found.and_then(|_| read_regular(&path)).map_err(|source| Problem::External {
+            found => found.and_then(|_| regular_file::read(&path, u64::MAX)).map_err(|source| Problem::External {
                 place: place.into(),
                 path,
                 source,
@@ -53,12 +74,6 @@ impl Files<'_> {
 fn linked_outside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>> {
     let end = path.canonicalize()?;
     Ok(if end.starts_with(folder.canonicalize()?) { None } else { Some(end) })
-}
-
-/// Reads a regular file. Reading a device or pipe might never end.
-pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
-    let kind = std::fs::metadata(path)?;
-    if kind.is_file() { std::fs::read(path) } else { Err(std::io::Error::other("it is not a regular file")) }
 }
 
 /// The contents of all buffers. A buffer without data is an error only when something reads it.

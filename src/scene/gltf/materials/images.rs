@@ -14,6 +14,7 @@ use super::textures::Origin;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
 use crate::scene::gltf::place;
+use crate::scene::load_options::Canceled;
 use crate::scene::model::Image;
 
 /// Maximum width and height of an image, in pixels.
@@ -108,9 +109,9 @@ fn reason(problem: Problem) -> String {
     }
 }
 
-/// Decodes images in parallel, and frees the encoded bytes of each as soon as it is decoded.
-pub fn decode(encoded: Vec<Encoded<'_>>) -> Vec<Decoded> {
-    encoded.into_par_iter().map(decode_one).collect()
+/// Decodes images in parallel, and frees the encoded bytes of each as soon as it is decoded. Stops early if the load is `canceled`.
+pub fn decode(encoded: Vec<Encoded<'_>>, canceled: Canceled<'_>) -> Vec<Decoded> {
+    encoded.into_par_iter().map(|image| (!canceled()).then(|| decode_one(image))).while_some().collect()
 }
 
 fn decode_one(encoded: Encoded<'_>) -> Decoded {

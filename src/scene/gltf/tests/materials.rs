@@ -1,6 +1,7 @@
 //! Materials, textures, images, files.
 
 use std::io::Cursor;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 
@@ -221,4 +222,23 @@ fn a_failed_load_names_the_files_whose_repair_to_wait_for() {
     std::fs::write(&all[2], png(2, 2)).unwrap();
     assert_eq!((opened().files.as_slice(), opened().warnings.len()), (&all[..], 0));
     assert!(load_bytes("ball", b"nonsense").unwrap_err().files.is_empty());
+}
+
+#[test]
+fn a_load_that_is_canceled_stops_before_the_next_image() {
+    let mut builder = Builder::square();
+    for slot in ["baseColorTexture", "metallicRoughnessTexture"] {
+        builder.image(slot, &png(2, 2));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.glb");
+    std::fs::write(&path, builder.glb()).unwrap();
+    let open = |images: usize| {
+        let asked = AtomicUsize::new(0);
+        open_unless(Some(&path), &LoadOptions::default(), &|| asked.fetch_add(1, Ordering::Relaxed) >= images)
+    };
+    assert_eq!(open(usize::MAX).unwrap().images.len(), 2);
+    for images in 0..2 {
+        assert!(matches!(*open(images).unwrap_err().problem, Problem::Canceled));
+    }
 }
