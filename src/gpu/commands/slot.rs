@@ -43,6 +43,8 @@ pub(in crate::gpu) struct Slot {
     queries: vk::QueryPool,
     /// Whether the fence belongs to a submission that nobody has waited for.
     pending: bool,
+    /// How long a wait may take.
+    timeout: Duration,
     /// The timed passes of the last submission; `None` before the first.
     passes: Option<Vec<TimedPass>>,
     counts: DrawCounts,
@@ -62,6 +64,8 @@ impl Slot {
             fence: vk::Fence::null(),
             queries: vk::QueryPool::null(),
             pending: false,
+            // A watchdog ends the process at its limit, before a wait ends.
+            timeout: FENCE_TIMEOUT.max(watchdog::limit().unwrap_or_default().saturating_mul(2)),
             passes: None,
             counts: DrawCounts::default(),
             kept: Vec::new(),
@@ -95,12 +99,14 @@ impl Slot {
             // Arm the watchdog only while blocking. Nobody waits for the last frame of an idle window.
             let _watched = watch(self.passes.as_deref());
             fault::delay("frame-hang-ms");
-            // A watchdog ends the process at its limit, before this wait ends.
-            let timeout = FENCE_TIMEOUT.max(watchdog::limit().unwrap_or_default().saturating_mul(2));
-            let timeout_ns = u64::try_from(timeout.as_nanos()).unwrap_or(u64::MAX);
+            let timeout_ns = u64::try_from(self.timeout.as_nanos()).unwrap_or(u64::MAX);
             // SAFETY: the fence is live, and a submission signals it.
             match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, timeout_ns) } {
-                Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
+                Err(vk::Result::TIMEOUT) => {
+                    // Whoever asks again, as `Drop` does, gets the answer at once.
+                    self.timeout = Duration::ZERO;
+                    return Err(GpuError::DeviceLost("waiting a minute for a frame"));
+                }
                 other => other.context("waiting for a frame")?,
             }
             fault::lose("waiting for a frame")?;
@@ -124,8 +130,10 @@ impl Slot {
     /// The words that name a loop of the last submission that did not end; `None` if all ended. The submission must be finished.
     pub(in crate::gpu) fn endless_loop(&self) -> Option<[u32; 2]> {
         let (buffer, _) = (self.loops.0.as_ref()?, self.loops.1.then_some(())?);
-        let word = |at: usize| buffer.content().get(at..at + 4)?.try_into().ok().map(u32::from_ne_bytes);
-        Some([word(0)?, word(4)?]).filter(|words| *words != [0; 2])
+        let content = buffer.read();
+        let (words, _) = content.as_chunks::<4>();
+        let [a, b, ..] = words else { return None };
+        Some([a, b].map(|word| u32::from_ne_bytes(*word))).filter(|words| *words != [0; 2])
     }
 
     /// The buffer that [`Slot::endless_loop`] reads.
@@ -233,13 +241,53 @@ fn watch(passes: Option<&[TimedPass]>) -> Option<Watched> {
 
 impl Drop for Slot {
     fn drop(&mut self) {
-        // SYNC: the device may still run the commands. An error means a lost device, which runs nothing.
-        let _ = self.wait();
+        // SYNC: the device may still run the commands. An error means a lost device, which runs nothing, or that the wait has timed out.
+        // SAFETY: the fence is live.
+        if self.wait().is_err() && unsafe { self.gpu.device.get_fence_status(self.fence) } == Ok(false) {
+            // The device may use everything at any later time, so nothing is freed, and the device is never destroyed.
+            std::mem::forget((std::mem::take(&mut self.kept), self.loops.0.take(), self.gpu.clone()));
+            return;
+        }
         // SAFETY: the device has run the commands, or is lost. Vulkan ignores null handles.
         unsafe {
             self.gpu.device.destroy_query_pool(self.queries, None);
             self.gpu.device.destroy_fence(self.fence, None);
             self.gpu.device.destroy_command_pool(self.pool, None);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::GpuOptions;
+
+    #[test]
+    fn what_the_device_still_uses_outlives_a_slot_whose_wait_has_timed_out() {
+        let gpu = Gpu::new(&GpuOptions::default()).unwrap();
+        let device = &gpu.device;
+        let buffer = Buffer::new(&gpu, "kept", 4, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Device).unwrap();
+        let mut slot = Slot::new(&gpu, "hangs", false).unwrap();
+        slot.timeout = Duration::ZERO;
+        let mut encoder = slot.begin().unwrap();
+        encoder.keep(&buffer);
+        // SAFETY: the device is live, and the slot's command buffer is being recorded.
+        let event = unsafe {
+            let event = device.create_event(&vk::EventCreateInfo::default(), None).unwrap();
+            let (from, to) = (vk::PipelineStageFlags::HOST, vk::PipelineStageFlags::ALL_COMMANDS);
+            device.cmd_wait_events(encoder.raw, &[event], from, to, &[], &[], &[]);
+            event
+        };
+        slot.submit(encoder, Submission::default()).unwrap();
+        let kept = Arc::downgrade(&buffer);
+        drop((buffer, slot));
+        let is_kept = kept.strong_count() > 0;
+        // SAFETY: the event is live, and once the device is idle, nothing uses it.
+        unsafe {
+            device.set_event(event).unwrap();
+            gpu.wait_idle();
+            device.destroy_event(event, None);
+        }
+        assert!(is_kept, "a buffer that the device uses was freed");
     }
 }
