@@ -175,7 +175,7 @@ impl TexelReadback {
     /// The texels. SYNC: after the fence of the submission.
     pub fn finish(self) -> Vec<Texel> {
         let texel = |(place, buffer): (TexelPlace, Arc<Buffer>)| {
-            let stored = buffer.content().first_chunk().copied()?;
+            let stored = buffer.read().first_chunk().copied()?;
             Some(Texel { place, stored })
         };
         self.0.into_iter().filter_map(texel).collect()

@@ -1,6 +1,6 @@
 //! Buffers.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -27,6 +27,8 @@ pub struct Buffer {
     pub(in crate::gpu) raw: vk::Buffer,
     allocation: Option<Allocation>,
     size: u64,
+    /// Held by the thread that accesses the mapped memory.
+    access: Mutex<()>,
 }
 
 impl Buffer {
@@ -47,7 +49,7 @@ impl Buffer {
         // SAFETY: the device is live.
         let raw = unsafe { gpu.device.create_buffer(&info, None) }.context_of("creating the buffer", &what)?;
         // From here on, `Drop` frees what is already there when a later step fails.
-        let mut buffer = Self { gpu: gpu.clone(), raw, allocation: None, size };
+        let mut buffer = Self { gpu: gpu.clone(), raw, allocation: None, size, access: Mutex::default() };
         gpu.name(raw, name);
         let allocation = buffer.allocation.insert(allocate(
             gpu,
@@ -83,26 +85,38 @@ impl Buffer {
     }
 
     /// Copies `bytes` to `offset`, clipped to the buffer's end. For [`Memory::Upload`]. The caller must have waited for the
-    /// fence of the last submission that reads the buffer.
+    /// fence of the last submission that reads the buffer, or the device reads a mixture.
     pub fn write(&self, offset: u64, bytes: &[u8]) {
+        self.fill(offset, bytes.len(), |target| target.copy_from_slice(&bytes[..target.len()]));
+    }
+
+    /// Lets `fill` write `length` bytes at `offset`, clipped to the buffer's end, and nothing if the CPU cannot see the buffer. Otherwise as
+    /// [`Buffer::write`]. `fill` cannot rely on what the bytes were before.
+    pub fn fill(&self, offset: u64, length: usize, fill: impl FnOnce(&mut [u8])) {
         let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_ptr) else { return };
-        let length = bytes.len().min(self.size.saturating_sub(offset) as usize);
-        // SAFETY: the mapping is `size` bytes long and `offset + length` stays within; source and target cannot overlap.
-        unsafe {
+        let Some(room) = self.size.checked_sub(offset) else { return };
+        let _access = self.access.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: `offset` and `length` lie within the mapping, whose bytes have no invalid values. The lock keeps other threads from
+        // them, and no shader writes a buffer that the CPU writes.
+        fill(unsafe {
             let target = mapped.as_ptr().cast::<u8>().add(offset as usize);
-            std::ptr::copy_nonoverlapping(bytes.as_ptr(), target, length);
-        }
+            std::slice::from_raw_parts_mut(target, length.min(room as usize))
+        });
     }
 
-    /// Copies the contents out. For [`Memory::Readback`], after the fence of the submission that wrote them.
+    /// Copies the content out; empty where the CPU cannot see it. For [`Memory::Readback`]. The caller must have waited for the fence of
+    /// the submission that writes the buffer, or gets a mixture.
     pub fn read(&self) -> Vec<u8> {
-        self.content().to_vec()
-    }
-
-    /// The mapped content; empty where the CPU cannot see it. For `Memory::Readback`, after the writing submission's fence.
-    pub fn content(&self) -> &[u8] {
-        let mapped = self.allocation.as_ref().and_then(Allocation::mapped_slice);
-        mapped.map(|m| &m[..self.size as usize]).unwrap_or_default()
+        let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_ptr) else { return Vec::new() };
+        let mut content = Vec::with_capacity(self.size as usize);
+        let _access = self.access.lock().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the mapping and the vector have room for `size` bytes and do not overlap. The lock keeps other threads from the
+        // mapping. No reference to it exists, since the device may write it, and every byte that it writes is a valid one.
+        unsafe {
+            std::ptr::copy_nonoverlapping(mapped.as_ptr().cast::<u8>(), content.as_mut_ptr(), self.size as usize);
+            content.set_len(self.size as usize);
+        }
+        content
     }
 }
 
@@ -113,5 +127,40 @@ impl Drop for Buffer {
         if let Some(allocation) = self.allocation.take() {
             let _ = self.gpu.lock_allocator().free(allocation);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::GpuOptions;
+
+    fn buffer(size: u64) -> Arc<Buffer> {
+        let gpu = Gpu::new(&GpuOptions::default()).unwrap();
+        Buffer::new(&gpu, "test", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload).unwrap()
+    }
+
+    #[test]
+    fn a_reader_sees_all_of_a_write_or_nothing_of_it() {
+        let size = 1 << 20;
+        let buffer = buffer(size as u64);
+        buffer.write(0, &vec![0; size]);
+        std::thread::scope(|scope| {
+            scope.spawn(|| (0..100).for_each(|number| buffer.write(0, &vec![number; size])));
+            for _ in 0..100 {
+                let read = buffer.read();
+                assert!(read.iter().all(|byte| *byte == read[0]), "bytes of two writes");
+            }
+        });
+    }
+
+    #[test]
+    fn a_write_beyond_the_end_is_clipped() {
+        let buffer = buffer(4);
+        buffer.write(0, &[1; 9]);
+        buffer.write(3, &[2; 2]);
+        buffer.write(4, &[3]);
+        buffer.write(u64::MAX, &[4; 4]);
+        assert_eq!(buffer.read(), [1, 1, 1, 2]);
     }
 }

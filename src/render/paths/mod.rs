@@ -215,7 +215,7 @@ fn alias_table_of(gpu: &Arc<Gpu>, cube: &Arc<Image>) -> Result<Arc<Buffer>, GpuE
         encoder.copies_done();
         Ok(())
     })?;
-    let texels: Vec<[half::f16; 4]> = bytemuck::pod_collect_to_vec::<u8, [u16; 4]>(texels.content())
+    let texels: Vec<[half::f16; 4]> = bytemuck::pod_collect_to_vec::<u8, [u16; 4]>(&texels.read())
         .into_iter()
         .map(|texel| texel.map(half::f16::from_bits))
         .collect();

@@ -178,7 +178,15 @@ impl<'a> Staging<'a> {
             places.push((*source, image, used));
             used += staged_bytes(source, model);
         }
-        places.par_iter().for_each(|(source, _, offset)| self.fill(*source, model, *offset));
+        self.buffer.fill(0, used as usize, |mut rest| {
+            let mut targets = Vec::new();
+            for source in sources {
+                let (target, after) = rest.split_at_mut(staged_bytes(source, model) as usize);
+                targets.push((*source, target));
+                rest = after;
+            }
+            targets.into_par_iter().for_each(|(source, target)| fill(target, source, model));
+        });
         one_shot(self.gpu, |encoder| {
             for (_, image, offset) in &places {
                 encoder.transition(image, Use::Undefined, Use::CopyTo);
@@ -191,20 +199,21 @@ impl<'a> Staging<'a> {
         textures.extend(places.into_iter().map(|(source, image, _)| (source, image)));
         Ok(())
     }
+}
 
-    /// Writes all levels of a texture in order, starting at `offset`.
-    fn fill(&self, source: TextureSource, model: &Model, offset: u64) {
-        let (width, height) = size(&source, model);
-        let pixels = source.pixels(model);
-        self.write(offset, &pixels);
-        let below = mips::below(&pixels, width, height, source.is_srgb());
-        self.write(offset + pixels.len() as u64, &below);
-    }
+/// Writes all levels of a texture in order.
+fn fill(target: &mut [u8], source: TextureSource, model: &Model) {
+    let (width, height) = size(&source, model);
+    let pixels = source.pixels(model);
+    let (first, rest) = target.split_at_mut(pixels.len());
+    copy(&pixels, first);
+    copy(&mips::below(&pixels, width, height, source.is_srgb()), rest);
+}
 
-    fn write(&self, offset: u64, bytes: &[u8]) {
-        let write = |(task, bytes): (usize, &[u8])| self.buffer.write(offset + (task * BYTES_A_TASK) as u64, bytes);
-        bytes.par_chunks(BYTES_A_TASK).enumerate().for_each(write);
-    }
+/// Copies bytes to the beginning of `to`, on all cores.
+fn copy(from: &[u8], to: &mut [u8]) {
+    let tasks = from.par_chunks(BYTES_A_TASK).zip(to[..from.len()].par_chunks_mut(BYTES_A_TASK));
+    tasks.for_each(|(from, to)| to.copy_from_slice(from));
 }
 
 /// Frees the pixels of images that no remaining texture reads.

@@ -76,7 +76,7 @@ impl Readback {
         let (raw, half) = (self.raw.clone(), self.half);
         let (width, height, rgba8) = self.finish_display();
         let mut capture = Capture { width, height, rgba8, ..Capture::default() };
-        for pixel in texels(raw.content(), half).map(PixelValue::decode) {
+        for pixel in texels(&raw.read(), half).map(PixelValue::decode) {
             capture.raw.push(pixel.value);
             capture.no_data.push(pixel.no_data);
             capture.not_finite.push(pixel.not_finite);
@@ -114,7 +114,7 @@ impl PixelReadback {
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
         let (at, format, picture) = self.copied?;
-        let value = match (format, self.buffer.content()) {
+        let value = match (format, &*self.buffer.read()) {
             // The LDR output has no flags in alpha.
             (Swapchain::FORMAT, [blue, green, red, alpha, ..]) => {
                 let value = [red, green, blue, alpha].map(|byte| f32::from(*byte) / 255.0);

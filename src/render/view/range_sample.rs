@@ -103,7 +103,8 @@ impl RangeSampleReadback {
     pub(super) fn take(&mut self) -> Option<RangeSample> {
         let picture = self.copied.take()?;
         let (image, buffer) = self.image.as_ref()?;
-        let decoded = texels(buffer.content(), is_half(image.desc().format)).map(PixelValue::decode);
+        let content = buffer.read();
+        let decoded = texels(&content, is_half(image.desc().format)).map(PixelValue::decode);
         let known = decoded.filter(|pixel| !pixel.no_data && !pixel.not_finite && pixel.value[3] > 0.5);
         let values =
             known.map(|PixelValue { value: [r, g, b, coverage], .. }| [r, g, b].map(|c| c / coverage)).collect();
