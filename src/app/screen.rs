@@ -35,7 +35,7 @@ use super::state::timing::CpuTimes;
 use super::viewer::Viewer;
 use super::widgets;
 use crate::frame::FrameState;
-use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
+use crate::gpu::{Frames, Gpu, GpuError, NextImage, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
@@ -53,6 +53,10 @@ use shots::WindowShot;
 const FRAMES_IN_FLIGHT: usize = 2;
 /// Time until the next attempt at a frame while memory is short.
 const RETRY: Duration = Duration::from_millis(500);
+/// Least time between two frames of a window that others cover, if neither an event nor a command needs one.
+const COVERED: Duration = Duration::from_secs(1);
+/// Time until the next attempt at a frame while the screen releases no image.
+const HIDDEN: Duration = Duration::from_millis(100);
 /// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -122,6 +126,8 @@ pub(super) struct Screen {
     last_frame: Instant,
     /// When egui wants the next frame.
     due: Option<Instant>,
+    /// Whether other windows cover this one.
+    pub(super) is_covered: bool,
     /// The CPU's times of the frame that is being made.
     cpu: CpuTimes,
 }
@@ -189,6 +195,7 @@ impl Screen {
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
             due: None,
+            is_covered: false,
             cpu: CpuTimes::default(),
         })
     }
@@ -247,7 +254,20 @@ impl Screen {
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
-        Ok(if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait })
+        let wait = if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait };
+        Ok(match wait {
+            // Nobody sees a covered window, but what ends with a frame must end.
+            Some(wait) if self.is_covered && wait < COVERED && !viewer.has_unanswered() => {
+                Some(self.frame_after(COVERED))
+            }
+            wait => wait,
+        })
+    }
+
+    /// Plans the next frame. Returns `wait`.
+    fn frame_after(&mut self, wait: Duration) -> Duration {
+        self.due = Some(Instant::now() + wait);
+        wait
     }
 
     /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory
@@ -284,11 +304,12 @@ impl Screen {
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
         self.check_loops(viewer);
-        let acquired = self.swapchain.as_mut().map(Swapchain::acquire).transpose()?.flatten();
-        let Some(acquired) = acquired else {
+        let next = self.swapchain.as_mut().map_or(Ok(NextImage::Outdated), Swapchain::acquire)?;
+        let NextImage::Acquired(acquired) = next else {
             self.frames.submit(encoder, Default::default())?;
-            self.stale = true;
-            return Ok(Some(Duration::ZERO));
+            let outdated = matches!(next, NextImage::Outdated);
+            self.stale |= outdated;
+            return Ok(Some(if outdated { Duration::ZERO } else { self.frame_after(HIDDEN) }));
         };
         let output = Output { image: &acquired.image, before: Use::Acquired, at: self.rect.at };
         let record = Instant::now();

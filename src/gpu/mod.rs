@@ -46,7 +46,7 @@ pub use resources::resource_usage::ResourceUsage;
 pub use resources::sampler::{Sampler, SamplerDesc};
 pub use resources::statistics::{CompileInfo, Executable, PipelineStage, Statistic};
 pub use window::surface::Surface;
-pub use window::swapchain::{Acquired, Swapchain};
+pub use window::swapchain::{Acquired, NextImage, Swapchain};
 pub use window::ui::{UiImage, UiRenderer};
 
 /// Vulkan's enums, for formats, usages and topologies in the signatures of this module.

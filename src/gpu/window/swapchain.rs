@@ -1,6 +1,7 @@
 //! The swapchain of a window.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use ash::vk;
 
@@ -18,6 +19,19 @@ pub struct Acquired {
     pub stale: bool,
     index: u32,
 }
+
+/// The next image of a window.
+pub enum NextImage {
+    /// An image to draw to.
+    Acquired(Acquired),
+    /// The caller must create the swapchain anew.
+    Outdated,
+    /// The screen has released no image for a while, for example because the window is hidden. The caller may try again later.
+    Busy,
+}
+
+/// How long to wait for an image. Events of the window wait meanwhile.
+const IMAGE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// The images of a window.
 pub struct Swapchain {
@@ -119,34 +133,40 @@ impl Swapchain {
         self.images.first().map_or((0, 0), |i| (i.desc().width, i.desc().height))
     }
 
-    /// Acquires the next image, or `None` when the caller must create the swapchain anew: it no longer fits the window, or the
-    /// last acquired image was never presented because its frame failed. Call after [`crate::gpu::Frames::begin`], which has waited
-    /// for the last use of the semaphore.
+    /// Acquires the next image. The swapchain is outdated if it no longer fits the window, or if the last acquired image was never
+    /// presented because its frame failed. Call after [`crate::gpu::Frames::begin`], which has waited for the last use of the semaphore.
     ///
     /// # Errors
     /// The device or the window is lost, or the device is out of memory.
-    pub fn acquire(&mut self) -> Result<Option<Acquired>, GpuError> {
-        let Some(swapchains) = &self.gpu.swapchain else { return Ok(None) };
+    pub fn acquire(&mut self) -> Result<NextImage, GpuError> {
+        let Some(swapchains) = &self.gpu.swapchain else { return Ok(NextImage::Outdated) };
         // An image that is never presented is never free again, and its semaphore stays signaled.
         if self.is_held {
-            return Ok(None);
+            return Ok(NextImage::Outdated);
         }
-        self.next = (self.next + 1) % self.acquired.len();
-        let wait = self.acquired[self.next];
+        if fault::value("window-hidden").is_some() {
+            return Ok(NextImage::Busy);
+        }
+        let next = (self.next + 1) % self.acquired.len();
+        let wait = self.acquired[next];
         // SYNC: with vsync, this waits until the screen releases an image.
         // SAFETY: a frame older than the slots in flight was the last to wait for the semaphore.
-        let result = unsafe { swapchains.acquire_next_image(self.raw, u64::MAX, wait, vk::Fence::null()) };
+        let result = unsafe {
+            swapchains.acquire_next_image(self.raw, IMAGE_TIMEOUT.as_nanos() as u64, wait, vk::Fence::null())
+        };
         match result {
             Ok((index, stale)) => {
-                self.is_held = true;
-                Ok(Some(Acquired {
+                (self.next, self.is_held) = (next, true);
+                Ok(NextImage::Acquired(Acquired {
                     image: self.images[index as usize].clone(),
                     submission: Submission { wait: Some(wait), signal: Some(self.rendered[index as usize]) },
                     stale,
                     index,
                 }))
             }
-            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(None),
+            // The semaphore stays unsignaled, so the next attempt takes it again.
+            Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => Ok(NextImage::Busy),
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(NextImage::Outdated),
             Err(other) => Err(other).context("acquiring a swapchain image"),
         }
     }
