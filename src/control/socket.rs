@@ -10,12 +10,34 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crossbeam_channel::Sender;
 
 use super::{Asked, Clients};
+use crate::message::warn;
 
 /// A socket that accepts clients. Its file is removed with it.
 pub struct Socket {
     path: PathBuf,
     #[cfg(unix)]
     listener: std::os::unix::net::UnixListener,
+    /// Identifies the file that this socket has created.
+    #[cfg(unix)]
+    file: FileId,
+}
+
+/// The device and the inode of a file.
+#[cfg(unix)]
+type FileId = (u64, u64);
+
+#[cfg(unix)]
+fn file_id(path: &Path) -> io::Result<FileId> {
+    use std::os::unix::fs::MetadataExt as _;
+    std::fs::symlink_metadata(path).map(|file| (file.dev(), file.ino()))
+}
+
+/// Locks a folder until the returned file is dropped, so that no other window replaces or removes a socket in it meanwhile.
+#[cfg(unix)]
+fn lock_folder(folder: &Path) -> io::Result<std::fs::File> {
+    let folder = std::fs::File::open(folder)?;
+    folder.lock()?;
+    Ok(folder)
 }
 
 /// The path of the socket `name`: a path, or a name without a slash, which lies in the user's folder for sockets.
@@ -65,6 +87,7 @@ impl Socket {
                  lies in $XDG_RUNTIME_DIR/specula"
             )));
         }
+        let _lock = lock_folder(folder).map_err(|e| cannot(e.to_string()))?;
         if let Ok(there) = std::fs::symlink_metadata(&path) {
             if !there.file_type().is_socket() {
                 return Err(cannot("there is another file of this name".to_owned()));
@@ -78,7 +101,8 @@ impl Socket {
         let listener = UnixListener::bind(&path).map_err(|e| cannot(e.to_string()))?;
         let set = std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600));
         set.map_err(|e| cannot(e.to_string()))?;
-        Ok(Self { path, listener })
+        let file = file_id(&path).map_err(|e| cannot(e.to_string()))?;
+        Ok(Self { path, listener, file })
     }
 
     /// Accepts clients on a thread. Each gets the events, and has a thread that reads its commands.
@@ -97,8 +121,9 @@ impl Socket {
                 }
             }
         };
-        // If the thread cannot start, remote control is unavailable.
-        let _ = std::thread::Builder::new().name("specula-socket".to_owned()).spawn(work);
+        if let Err(error) = std::thread::Builder::new().name("specula-socket".to_owned()).spawn(work) {
+            warn(format_args!("nobody can connect to {}: {error}", self.path.display()));
+        }
     }
 }
 
@@ -159,9 +184,14 @@ impl Socket {
     }
 }
 
+#[cfg(unix)]
 impl Drop for Socket {
     fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.path);
+        let _lock = self.path.parent().map(lock_folder);
+        // If somebody has removed the file, another window may listen at the path by now.
+        if file_id(&self.path).is_ok_and(|file| file == self.file) {
+            let _ = std::fs::remove_file(&self.path);
+        }
     }
 }
 
@@ -186,6 +216,39 @@ mod tests {
         let second = Socket::bind(path.clone()).err().unwrap();
         assert!(second.contains("another window listens there"), "{second}");
         drop(socket);
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn of_many_windows_one_takes_over_the_file_of_an_ended_process() {
+        let folder = private();
+        let path = folder.path().join("s.sock");
+        for _ in 0..40 {
+            drop(std::os::unix::net::UnixListener::bind(&path).unwrap());
+            let start = std::sync::Barrier::new(4);
+            let bind = || {
+                start.wait();
+                Socket::bind(path.clone()).ok()
+            };
+            let sockets: Vec<Option<Socket>> = std::thread::scope(|scope| {
+                let threads = [(); 4].map(|()| scope.spawn(bind));
+                threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+            });
+            assert_eq!(sockets.iter().flatten().count(), 1);
+            std::os::unix::net::UnixStream::connect(&path).expect("the socket of the window that listens");
+        }
+    }
+
+    #[test]
+    fn a_socket_that_another_window_has_bound_since_stays() {
+        let folder = private();
+        let path = folder.path().join("s.sock");
+        let first = Socket::bind(path.clone()).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let second = Socket::bind(path.clone()).unwrap();
+        drop(first);
+        assert!(path.exists(), "the first window removed the socket of the second");
+        drop(second);
         assert!(!path.exists());
     }
 
