@@ -73,8 +73,7 @@ fn open(mut common: Common, dir: Option<PathBuf>, exercise: &Exercise, start: In
     if is_new {
         tell(format_args!("exercise {} is in {}, a folder of your own to edit", exercise.number, folder.display()));
     }
-    progress.folder = Some(parent);
-    progress.save();
+    progress.set_folder(parent);
     common.shaders = Some(folder);
     common.begin_with(exercise.settings());
     view::run(view::Args::of(Some(PathBuf::from(&exercise.model)), common), start)

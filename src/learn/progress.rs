@@ -41,15 +41,13 @@ impl Progress {
     /// Forgets what was solved, but not where the folders are.
     pub fn reset(&mut self) {
         self.records.clear();
-        self.save();
+        state::change(FILE, |stored: &mut Self| stored.records.clear());
     }
 
-    /// Stores the progress for the next run.
-    pub fn save(&self) {
-        match serde_json::to_string(self) {
-            Ok(text) => state::save(FILE, &text),
-            Err(error) => tracing::debug!("the progress was not stored: {error}"),
-        }
+    /// Remembers where the folders of the exercises are.
+    pub fn set_folder(&mut self, folder: PathBuf) {
+        self.folder = Some(folder.clone());
+        state::change(FILE, |stored: &mut Self| stored.folder = Some(folder));
     }
 
     /// The record of an exercise.
@@ -63,7 +61,8 @@ impl Progress {
         let record = self.records.entry(exercise.name.clone()).or_default();
         change(record);
         if *record != before {
-            self.save();
+            let record = record.clone();
+            state::change(FILE, |stored: &mut Self| _ = stored.records.insert(exercise.name.clone(), record));
         }
     }
 

@@ -79,7 +79,7 @@ impl LastSessions {
     /// Stores whether a window goes on with the last session by itself.
     pub(in crate::app) fn set_always(&mut self, always: bool) {
         self.always = always;
-        save(&Stored { always, ..load() });
+        state::change(FILE, |stored: &mut Stored| stored.always = always);
     }
 }
 
@@ -92,11 +92,8 @@ pub fn session_to_restore() -> Option<SessionState> {
 /// Remembers the work of a session that ends.
 pub(in crate::app) fn remember(work: &SessionState) {
     let Ok(directory) = std::env::current_dir() else { return };
-    // Another window may have written the file meanwhile.
-    let mut stored = load();
     let session = LastSession { at: Local::now().timestamp(), work: absolute(work.clone()), directory };
-    insert(&mut stored, session);
-    save(&stored);
+    state::change(FILE, |stored: &mut Stored| insert(stored, session));
 }
 
 /// The work with absolute paths of files. Names of built-in models and environments stay.
@@ -131,13 +128,6 @@ fn load() -> Stored {
 /// A text that cannot be read counts as none.
 fn parse(text: &str) -> Stored {
     serde_json::from_str(text).unwrap_or_default()
-}
-
-fn save(stored: &Stored) {
-    match serde_json::to_string(stored) {
-        Ok(text) => state::save(FILE, &text),
-        Err(error) => tracing::debug!("the session was not stored: {error}"),
-    }
 }
 
 #[cfg(test)]

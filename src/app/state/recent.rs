@@ -52,7 +52,7 @@ impl Recent {
     /// Puts a file that has been opened first, and stores the list.
     pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
         if self.insert(kind, path) {
-            self.store();
+            state::change(FILE, |stored: &mut Self| _ = stored.insert(kind, path));
         }
     }
 
@@ -62,7 +62,7 @@ impl Recent {
         let list = self.of_mut(kind);
         if list.contains(&path) && !path.exists() {
             list.retain(|known| *known != path);
-            self.store();
+            state::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
         }
     }
 
@@ -77,14 +77,6 @@ impl Recent {
         list.insert(0, path);
         list.truncate(MOST);
         true
-    }
-
-    fn store(&self) {
-        match serde_json::to_string(self) {
-            Ok(text) => state::save(FILE, &text),
-            // A path that is no text.
-            Err(error) => tracing::debug!("the recent files were not stored: {error}"),
-        }
     }
 }
 
