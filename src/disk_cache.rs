@@ -6,9 +6,10 @@
 //! inputs, SPIR-V and sizes included, so an entry is never stale; an entry ends in a hash of itself, so a damaged one
 //! counts as absent. Beyond 512 MiB the oldest entries are removed.
 
+use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
@@ -19,6 +20,10 @@ const MOST_BYTES: u64 = 512 << 20;
 const BAKED: &str = "baked";
 const PIPELINES: &str = "pipelines";
 const ENDING: &str = "bake";
+/// Ends the names of files that are being written.
+const PART: &str = "part";
+/// The process that has begun to write a file longer ago has ended without finishing it.
+const LONGEST_WRITE: Duration = Duration::from_secs(3600);
 /// Largest pipeline cache of a driver in bytes. Beyond this, after some hundred edits, it is not stored.
 const MOST_PIPELINE_BYTES: usize = 32 << 20;
 /// Bytes of the checksum at the end of a file: XXH3 of the rest.
@@ -98,7 +103,7 @@ impl PipelineStore for Pipelines {
 fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     // Another process may read the entry at the same time, so it must appear complete.
-    let temporary = folder.join(format!("{key}.{}.part", std::process::id()));
+    let temporary = folder.join(format!("{key}.{}.{PART}", std::process::id()));
     let mut file_of_part = std::fs::File::create(&temporary)?;
     file_of_part.write_all(bytes)?;
     file_of_part.write_all(&xxh3_64(bytes).to_le_bytes())?;
@@ -107,13 +112,18 @@ fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     prune(folder)
 }
 
+/// Deletes the oldest entries of a cache that is too large, and what ended processes have left unfinished. Other processes may delete
+/// files at the same time.
 fn prune(folder: &Path) -> std::io::Result<()> {
     let mut entries: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|e| e == ENDING) {
-            let metadata = std::fs::metadata(&path)?;
-            entries.push((metadata.modified()?, metadata.len(), path));
+    for entry in std::fs::read_dir(folder)?.flatten() {
+        let path = entry.path();
+        let Ok(metadata) = std::fs::metadata(&path) else { continue };
+        let modified = metadata.modified()?;
+        match path.extension().and_then(OsStr::to_str) {
+            Some(ENDING) => entries.push((modified, metadata.len(), path)),
+            Some(PART) if modified.elapsed().is_ok_and(|age| age > LONGEST_WRITE) => _ = std::fs::remove_file(path),
+            _ => {}
         }
     }
     entries.sort();
@@ -122,8 +132,29 @@ fn prune(folder: &Path) -> std::io::Result<()> {
         if total <= MOST_BYTES {
             break;
         }
-        std::fs::remove_file(path)?;
+        // A file that cannot be deleted, or that somebody else has deleted, must not keep the others.
+        let _ = std::fs::remove_file(path);
         total -= size;
     }
     Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pruning_survives_a_file_that_vanishes_and_deletes_unfinished_ones() {
+        let folder = tempfile::tempdir().unwrap();
+        let in_folder = |name: &str| folder.path().join(name);
+        // A link to nothing: the folder lists it, but its metadata cannot be read, as of a file that was deleted meanwhile.
+        std::os::unix::fs::symlink("nothing", in_folder("gone.bake")).unwrap();
+        std::fs::write(in_folder("new.2.part"), "half").unwrap();
+        let old = std::fs::File::create(in_folder("old.1.part")).unwrap();
+        old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+        write(folder.path(), "key", b"bytes").unwrap();
+        assert_eq!(read(folder.path(), "key").unwrap(), b"bytes");
+        assert!(in_folder("new.2.part").exists(), "another process may be writing it");
+        assert!(!in_folder("old.1.part").exists(), "an ended process has left it");
+    }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::cancel::Running;
+use crate::cancel::{GivenUp, Running};
 use crate::disk_cache;
 use crate::frame::stages::{CUBE, PREFILTER, PREFILTER_SHEEN};
 use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
@@ -22,6 +22,9 @@ use crate::render::environment::passes::{
     IRRADIANCE_LEVEL, Lobes, Passes, set_suns, small_lights, small_lights_size, suns_of,
 };
 use crate::render::environment::transfer;
+
+/// Decoders of maps that have been superseded. A large map takes gigabytes, however often its file is saved.
+static DECODERS: GivenUp = GivenUp::none();
 
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
@@ -226,11 +229,12 @@ impl Bake<'_> {
         self.report.decode_ms = ms(time);
         // The pipelines are created while another thread decodes.
         let decoded = file.clone();
-        let decoding = Running::start(move || {
+        let decoding = DECODERS.start(self.control.superseded, move || {
             let time = Instant::now();
             fault::delay("decode-delay-ms");
             (decoded.decode(), ms(time))
         });
+        let decoding = decoding.ok_or(BakeError::Superseded)?;
         self.begin(0.05, "pipelines")?;
         self.pipelines(&self.stages_to_run(file.fingerprint))?;
         self.begin(0.05, "decoding")?;
