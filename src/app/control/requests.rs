@@ -16,7 +16,7 @@ use crate::message::did_you_mean;
 use crate::picture;
 use crate::scene::BUILT_IN;
 use crate::settings::{Setting, Settings, catalog};
-use crate::shader::{Source, is_specula_tree};
+use crate::shader::Source;
 
 impl Viewer {
     /// Carries out a command, or begins to.
@@ -166,15 +166,7 @@ impl Viewer {
                 Command::OpenModel(path)
             }
             Open::Environment(path) => Command::OpenEnvironment(path),
-            Open::Tree(path) if is_specula_tree(&path) || (Source::is_file(&path) && path.exists()) => {
-                Command::OpenTree(path)
-            }
-            Open::Tree(path) => {
-                return Err(format!(
-                    "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
-                    path.display()
-                ));
-            }
+            Open::Tree(path) => Source::find(&path).map(|_| Command::OpenTree(path))?,
             Open::Look(path) => Command::OpenLook(path),
             Open::Measured(path) => Command::OpenMeasured(path),
         };
@@ -184,11 +176,7 @@ impl Viewer {
             Command::OpenLook(_) => Until::Look,
             _ => Until::Shown,
         };
-        self.execute(match command {
-            // The tree is watched, and what it is called does not change with the working directory.
-            Command::OpenTree(path) => Command::OpenTree(std::path::absolute(&path).unwrap_or(path)),
-            command => command,
-        });
+        self.execute(command);
         Ok(until)
     }
 

@@ -1,6 +1,6 @@
 //! Carries out the commands of panels, keys, the palette and of programs outside.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::Viewer;
@@ -12,7 +12,6 @@ use crate::picture::read_checked_look;
 use crate::scene::LoadOptions;
 use crate::shader::{Change, Source};
 use crate::threads::Message;
-use crate::threads::loader::{self, Reading};
 
 impl Viewer {
     pub(in crate::app) fn execute(&mut self, command: Command) {
@@ -88,7 +87,7 @@ impl Viewer {
             Command::Learn(command) => self.learn(command),
             Command::Draft(edits) => self.draft(edits),
             Command::WriteEdits(edits) => self.write_edits(edits),
-            Command::OpenTree(path) => self.open_tree(path),
+            Command::OpenTree(path) => self.open_tree(&path),
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
             Command::OpenLook(path) => {
@@ -112,21 +111,24 @@ impl Viewer {
 
     /// Loads a model. The current model stays until the new one is ready.
     pub(super) fn load_model(&mut self, path: Option<PathBuf>) {
-        let reading = loader::read(path.clone(), LoadOptions { allow_outside: self.allow_outside });
-        self.begin_loading(path, reading);
+        self.threads.loader.load(path.clone(), LoadOptions { allow_outside: self.allow_outside });
+        self.begin_loading(path);
     }
 
-    /// Loads the model of `path`, and watches the file while it is read.
-    pub(super) fn begin_loading(&mut self, path: Option<PathBuf>, reading: Reading) {
+    /// Notes that the model of `path` is being loaded, and watches the file while it is read.
+    pub(super) fn begin_loading(&mut self, path: Option<PathBuf>) {
         self.model.files.extend(path.iter().filter_map(|path| std::path::absolute(path).ok()));
         self.model.requested = path;
         self.model.loading = true;
-        self.threads.loader.upload(reading);
     }
 
-    /// Shows the shaders of another tree, once they compile.
-    fn open_tree(&mut self, path: PathBuf) {
-        let source = Source::open(path);
+    /// Shows the shaders of another tree, once they compile. If there is none, for example because a look names one that is gone, the
+    /// present tree stays with its versions.
+    fn open_tree(&mut self, path: &Path) {
+        let source = match Source::find(path) {
+            Ok(source) => source,
+            Err(message) => return self.say(message),
+        };
         self.source = source.clone();
         self.settled = None;
         // Versions of another tree must never be written into this one.

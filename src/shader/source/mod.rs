@@ -163,6 +163,20 @@ impl Source {
         if Self::is_file(&path) { Self::Toy(Arc::new(Toy::new(path))) } else { Self::Disk(path) }
     }
 
+    /// As [`Source::open`] for a tree that is there. Its path does not change with the working directory.
+    ///
+    /// # Errors
+    /// A message: the path is neither a folder with a Specula shader tree nor a single shader file.
+    pub fn find(path: &Path) -> Result<Self, String> {
+        if is_specula_tree(path) || (Self::is_file(path) && path.exists()) {
+            return Ok(Self::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned())));
+        }
+        Err(format!(
+            "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
+            path.display()
+        ))
+    }
+
     /// Whether a single shader file can be opened as a tree. Files that lie in a tree cannot.
     pub fn is_file(path: &Path) -> bool {
         !path.is_dir() && Toy::is_toy(path)

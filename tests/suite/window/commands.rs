@@ -190,6 +190,26 @@ fn an_older_version_is_shown_in_place_of_the_newest() {
 }
 
 #[test]
+fn a_look_whose_shaders_are_gone_keeps_the_shaders_and_their_versions() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.tree.write(NDF, &viewer.tree.edited(NDF, "alpha * alpha;", "0.5 * alpha * alpha;"));
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
+    let versions = viewer.running.done(json!({"command": "versions"}));
+    let mut look = png::Encoder::new(std::fs::File::create(viewer.tree.beside("look.png")).unwrap(), 1, 1);
+    look.add_itxt_chunk("specula".to_owned(), "[view]\nev = 2.0\n".to_owned()).unwrap();
+    look.add_itxt_chunk("specula-files".to_owned(), "shaders = \"gone\"\n".to_owned()).unwrap();
+    look.write_header().unwrap().write_image_data(&[0]).unwrap();
+    viewer.running.done(json!({"command": "open", "look": "look.png"}));
+    assert_eq!(viewer.running.done(json!({"command": "get", "path": "view.ev"})), json!(2.0));
+    assert_eq!(viewer.running.done(json!({"command": "versions"})), versions);
+    viewer.running.end_input();
+    let stderr = viewer.quit();
+    assert!(stderr.contains("gone is no Specula shader tree"), "{stderr}");
+}
+
+#[test]
 fn clicks_grids_defaults_and_looks_are_commands() {
     let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
@@ -393,6 +413,17 @@ fn clients_of_a_socket_drive_the_window() {
     let status = viewer.running.end();
     assert!(status.success(), "it ended with {status}. {}", viewer.running.story());
     assert!(!path.exists(), "the file of the socket is left");
+}
+
+#[test]
+fn a_window_that_gets_no_image_of_its_swapchain_answers_and_closes() {
+    let more = ["sphere-grid", "--socket", "test"];
+    let mut viewer = Viewer::launch(Tree::new(), &more, "window-hidden:1");
+    let path = viewer.running.event("listening")["socket"].as_str().unwrap().to_owned();
+    let mut client = Client::connect(Path::new(&path));
+    assert_eq!(client.ask("a", json!({"command": "get"}))["event"], "done");
+    assert_eq!(client.ask("b", json!({"command": "quit"}))["event"], "done");
+    assert!(viewer.running.end().success());
 }
 
 #[test]

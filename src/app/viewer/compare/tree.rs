@@ -10,7 +10,7 @@ use crate::frame::{FrameState, Revisions};
 use crate::gpu::GpuError;
 use crate::pipeline::PipelineSet;
 use crate::render::BoundFrame;
-use crate::shader::{Diagnostic, Severity, Source, is_specula_tree};
+use crate::shader::{Diagnostic, Severity, Source};
 use crate::threads::second_tree::{Needs, SecondTree, SecondTreeMessage};
 use crate::threads::worker::Snapshot;
 
@@ -94,12 +94,7 @@ impl Viewer {
     }
 
     fn second_tree(&mut self, path: &Path) -> Result<TreePicture, String> {
-        let is_tree = is_specula_tree(path) || (Source::is_file(path) && path.exists());
-        if !is_tree {
-            return Err(no_tree(path));
-        }
-        // The tree is watched, and what it is called does not change with the working directory.
-        let source = Source::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+        let source = Source::find(path)?;
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let (number, snapshot) = (self.compare.next_number(), self.snapshot());
         let (layouts, compiler) = (self.resources.layouts().clone(), self.compiler.clone());
@@ -210,11 +205,4 @@ impl Viewer {
             (tree.like, tree.asked) = (None, None);
         }
     }
-}
-
-fn no_tree(path: &Path) -> String {
-    format!(
-        "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
-        path.display()
-    )
 }
