@@ -1,6 +1,7 @@
 //! The instances that settings name: by node, with all below it, or by primitive.
 
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 
 use super::model::{Instance, Model, Node};
 use crate::message::did_you_mean;
@@ -22,7 +23,8 @@ impl Model {
 
     /// Whether each instance is named in `names`.
     pub fn named(&self, names: &[String]) -> Vec<bool> {
-        let is_named = |name: &str| names.iter().any(|named| named == name);
+        let names: HashSet<&str> = names.iter().map(String::as_str).collect();
+        let is_named = |name: &str| names.contains(name);
         let mut nodes = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             // Parents come first.
@@ -77,10 +79,16 @@ impl Model {
     /// A sentence about the first name in `settings` that matches no node and no primitive.
     pub fn unknown_part(&self, settings: &SceneSettings) -> Option<String> {
         let of = |list: &'static str, names: &[String]| {
-            let unknown = names.iter().find(|name| !self.has_part(name))?;
+            if names.is_empty() {
+                return None;
+            }
             let nodes = self.nodes.iter().map(|node| node.name.as_str());
-            let primitives = self.primitives.iter().map(|primitive| primitive.name.as_str());
-            let hint = did_you_mean(unknown, nodes.chain(primitives));
+            let names_of_parts =
+                || nodes.clone().chain(self.primitives.iter().map(|primitive| primitive.name.as_str()));
+            let known: HashSet<Cow<str>> =
+                names_of_parts().map(Cow::from).chain(self.nodes.iter().map(|node| number(node).into())).collect();
+            let unknown = names.iter().find(|name| !known.contains(name.as_str()))?;
+            let hint = did_you_mean(unknown, names_of_parts());
             Some(format!("scene.{list}: the model has no node and no primitive '{unknown}'.{hint}"))
         };
         of("hidden", &settings.hidden).or_else(|| of("isolated", &settings.isolated))
@@ -89,16 +97,12 @@ impl Model {
     /// A sentence about the first of these names that matches no material.
     pub fn unknown_material<'a>(&self, mut names: impl Iterator<Item = &'a String>) -> Option<String> {
         let known: Vec<String> = (0..self.materials.len()).map(|index| self.material_key(index)).collect();
-        let unknown = names.find(|name| !known.contains(name))?;
+        let set: HashSet<&String> = known.iter().collect();
+        let unknown = names.find(|name| !set.contains(name))?;
         let hint = did_you_mean(unknown, known.iter().map(String::as_str));
         // The first is glTF's default material.
         let list = known.get(1..).unwrap_or_default().join(", ");
         Some(format!("materials: the model has no material '{unknown}'.{hint} It has {list}"))
-    }
-
-    fn has_part(&self, name: &str) -> bool {
-        self.nodes.iter().any(|node| node.name == name || number(node) == name)
-            || self.primitives.iter().any(|primitive| primitive.name == name)
     }
 }
 

@@ -70,11 +70,11 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
     let height = row::HEIGHT + ui.spacing().item_spacing.y;
     let mut area = ScrollArea::vertical().auto_shrink(false);
     if std::mem::take(&mut state.follows)
-        && let Some(at) = state.tree.place(&scene, selected)
+        && let Some(at) = state.tree.place(selected)
     {
         area = area.vertical_scroll_offset((at as f32 * height - 0.4 * ui.available_height()).max(0.0));
     }
-    let (mut toggled, chosen_part) = (None, state.tree.part_of(&scene, selected));
+    let (mut toggled, chosen_part) = (None, state.tree.part_of(selected));
     // Leaves room for the scroll bar also while there is none, so that the switches stay in place.
     let width = ui.available_width() - ui.spacing().scroll.allocated_width();
     area.show_rows(ui, row::HEIGHT, rows, |ui, range| {

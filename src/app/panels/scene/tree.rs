@@ -7,7 +7,7 @@ use crate::app::panels::plural;
 use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::widgets::search::Words;
 use crate::frame::Scene;
-use crate::scene::{LightKind, Model, TextureSource};
+use crate::scene::{Instance, LightKind, Model, TextureSource};
 
 /// A list of parts of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,6 +46,8 @@ pub(super) struct Tree {
     is_changed: bool,
     /// Inputs of the cached rows: the model and the search text.
     made_of: Option<(Arc<Model>, String)>,
+    /// The part that stands for each instance of the model.
+    parts: Option<(Arc<Model>, Vec<Selected>)>,
 }
 
 impl Tree {
@@ -69,6 +71,7 @@ impl Tree {
             self.drawn = Some((scene.clone(), drawn_nodes(scene)));
         }
         let model = scene.loaded();
+        self.know(model);
         let is_same = |(made, text): &(Arc<Model>, String)| Arc::ptr_eq(made, model) && text == search;
         if !std::mem::take(&mut self.is_changed) && self.made_of.as_ref().is_some_and(is_same) {
             return;
@@ -116,7 +119,8 @@ impl Tree {
 
     /// Unfolds what hides a selection.
     pub(super) fn reveal(&mut self, scene: &Scene, selected: Selected) {
-        let Some(part) = self.part_of(scene, selected) else { return };
+        self.know(scene.loaded());
+        let Some(part) = self.part_of(selected) else { return };
         let mut node = match part {
             Selected::Node(node) => Some(node),
             Selected::Instance(instance) => scene.model().node_of(&scene.model().instances[instance]),
@@ -131,31 +135,49 @@ impl Tree {
         self.is_changed |= self.folded.len() != before;
     }
 
-    /// The row that stands for a selection: a primitive that is alone in its node has none of its own.
-    pub(super) fn part_of(&self, scene: &Scene, selected: Selected) -> Option<Selected> {
-        let model = scene.model();
+    /// Finds the part that stands for each instance, unless it is known.
+    fn know(&mut self, model: &Arc<Model>) {
+        if self.parts.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, model)) {
+            self.parts = Some((model.clone(), parts(model)));
+        }
+    }
+
+    /// The part whose row stands for a selection.
+    pub(super) fn part_of(&self, selected: Selected) -> Option<Selected> {
         match selected {
             Selected::Nothing => None,
-            Selected::Instance(index) => {
-                let instance = model.instances.get(index)?;
-                let in_node = model.instances.iter().filter(|other| other.node == instance.node).count();
-                if in_node > 1 { Some(selected) } else { model.node_of(instance).map(Selected::Node) }
-            }
+            Selected::Instance(index) => self.parts.as_ref().and_then(|(_, parts)| parts.get(index)).copied(),
             other => Some(other),
         }
     }
 
     /// The index of the row of a selection.
-    pub(super) fn place(&self, scene: &Scene, selected: Selected) -> Option<usize> {
-        let part = self.part_of(scene, selected)?;
+    pub(super) fn place(&self, selected: Selected) -> Option<usize> {
+        let part = self.part_of(selected)?;
         self.rows.iter().position(|row| row.item == Some(part))
     }
+}
+
+/// The place of each node in the model, by its index in the file.
+fn places_of_nodes(model: &Model) -> HashMap<usize, usize> {
+    model.nodes.iter().enumerate().map(|(at, node)| (node.index, at)).collect()
+}
+
+/// The part that stands for each instance: a primitive that is alone in its node has no row of its own.
+fn parts(model: &Model) -> Vec<Selected> {
+    let (at, mut counts) = (places_of_nodes(model), HashMap::<usize, usize>::new());
+    model.instances.iter().for_each(|instance| *counts.entry(instance.node).or_default() += 1);
+    let part = |(index, instance): (usize, &Instance)| match at.get(&instance.node) {
+        Some(node) if counts[&instance.node] == 1 => Selected::Node(*node),
+        _ => Selected::Instance(index),
+    };
+    model.instances.iter().enumerate().map(part).collect()
 }
 
 /// Whether each node, or something below it, is drawn; true for nodes with nothing to draw.
 fn drawn_nodes(scene: &Scene) -> Vec<bool> {
     let model = scene.model();
-    let at: HashMap<usize, usize> = model.nodes.iter().enumerate().map(|(at, node)| (node.index, at)).collect();
+    let at = places_of_nodes(model);
     // Whether there is something to draw, and whether it is drawn.
     let mut nodes = vec![(false, false); model.nodes.len()];
     for (index, instance) in model.instances.iter().enumerate() {
@@ -179,10 +201,15 @@ fn drawn_nodes(scene: &Scene) -> Vec<bool> {
 fn rows(model: &Model) -> Vec<Row> {
     let mut rows = Vec::new();
     nodes(model, &mut rows);
-    let materials = (1..model.materials.len().max(1)).map(|index| {
-        let used = model.primitives.iter().filter(|primitive| primitive.default_material == index).count();
-        (model.material_key(index), plural(used, "primitive"), Selected::Material(index))
-    });
+    let mut uses = vec![0; model.materials.len()];
+    for primitive in model.primitives.iter() {
+        uses.get_mut(primitive.default_material).into_iter().for_each(|uses: &mut usize| *uses += 1);
+    }
+    let materials = uses
+        .iter()
+        .enumerate()
+        .skip(1)
+        .map(|(index, used)| (model.material_key(index), plural(*used, "primitive"), Selected::Material(index)));
     group(&mut rows, Group::Materials, "Materials", materials.collect());
     let textures = textures(model).into_keys().map(|source| {
         let image = source.image(model);
@@ -323,7 +350,7 @@ mod tests {
             assert!((1..model.materials.len()).all(|material| has(&tree, Selected::Material(material))), "{name}");
             assert!((0..model.lights.len()).all(|light| has(&tree, Selected::Light(LightId::Model(light)))), "{name}");
             for instance in 0..model.instances.len() {
-                assert!(tree.place(&scene, Selected::Instance(instance)).is_some(), "{name}: {instance}");
+                assert!(tree.place(Selected::Instance(instance)).is_some(), "{name}: {instance}");
             }
             let material = model.material_key(1);
             tree.update(&scene, &material.to_uppercase());
@@ -340,9 +367,9 @@ mod tests {
         let all = tree.rows().len();
         tree.toggle(0);
         tree.update(&scene, "");
-        assert!(tree.rows().len() < all && tree.place(&scene, Selected::Instance(0)).is_none());
+        assert!(tree.rows().len() < all && tree.place(Selected::Instance(0)).is_none());
         tree.reveal(&scene, Selected::Instance(0));
         tree.update(&scene, "");
-        assert!(tree.place(&scene, Selected::Instance(0)).is_some());
+        assert!(tree.place(Selected::Instance(0)).is_some());
     }
 }
