@@ -35,7 +35,7 @@ use winit::window::{Window, WindowId};
 use crate::control::{Asked, Clients, Control};
 use crate::disk_cache;
 use crate::events::{Event, emit};
-use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
+use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
 use crate::recovery::{Recorder, SessionState};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
@@ -107,6 +107,9 @@ pub enum AppError {
     Validation(usize),
 }
 
+/// How long closing may take. A capture ends the picture that it is drawing, which can take long on a software device.
+const CLOSING: Duration = Duration::from_secs(20);
+
 /// Opens the window and runs until it is closed.
 ///
 /// # Errors
@@ -150,9 +153,9 @@ impl Early {
             None
         });
         let compiler = options.compiler.clone();
-        std::thread::spawn(move || compiler.warm());
-        // Reading them takes some milliseconds.
-        std::thread::spawn(crate::learn::exercises);
+        // Both only begin early what would be done later.
+        let _ = std::thread::Builder::new().spawn(move || compiler.warm());
+        let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
         let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
         Self { watcher, reading, events: events.clone() }
     }
@@ -227,6 +230,9 @@ impl App {
             }
             let Open { viewer, screen, gpu, window } = open;
             viewer.remember_session();
+            viewer.recorder.close();
+            end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
+            assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
             let (frames, ui_ms) = viewer.timing.summary();
             emit(&viewer.events, &Event::Closed { frames, ui_ms });
             drop(screen);
@@ -242,6 +248,19 @@ impl App {
         }
         event_loop.exit();
     }
+}
+
+/// Ends the process, unless it ends before. Closing waits for threads that use the device, and these for files, which may be on a file system
+/// that does not answer.
+fn end_within(time: Duration) {
+    let end = move || {
+        std::thread::sleep(time);
+        crate::message::warn("a thread did not end with the window, so the program ends without it");
+        let _unfinished = crate::picture::remove_unfinished();
+        std::process::exit(0);
+    };
+    // Without this thread, closing waits as long as it takes.
+    let _ = std::thread::Builder::new().name("specula-closing".to_owned()).spawn(end);
 }
 
 impl ApplicationHandler<Message> for App {
@@ -297,6 +316,10 @@ impl App {
             WindowEvent::CloseRequested => return self.end(event_loop, Ok(())),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
                 open.screen.resized();
+                open.window.request_redraw();
+            }
+            WindowEvent::Occluded(is_covered) => {
+                open.screen.is_covered = is_covered;
                 open.window.request_redraw();
             }
             WindowEvent::DroppedFile(path) => open.viewer.open_path(path),

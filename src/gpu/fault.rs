@@ -10,6 +10,7 @@
 //!   with [`super::GpuError::OutOfMemory`].
 //! - `frame-hang-ms:N`, `pipeline-hang-ms:N`: every wait for a submission, or every graphics pipeline, takes so much longer, as if
 //!   the device hung.
+//! - `window-hidden:1`: a window never gets an image of its swapchain, as if it were hidden.
 //! - `by-name:1`: a shader module with a function called `lose_the_device` loses the device: from then on, every wait for a
 //!   submission fails with [`super::GpuError::DeviceLost`]. One with a function called `crash_the_driver` aborts the process.
 //!
@@ -18,6 +19,7 @@
 //! - `worker-panic:N`: the worker panics at the Nth reload of the process.
 //! - `compile-delay-ms:N`: every reload takes so much longer.
 //! - `load-delay-ms:N`: reading a model takes so much longer.
+//! - `closing-panic:1`, `closing-delay-ms:N`, `closing-limit-ms:N`: closing the window panics, takes so much longer, or may take so long.
 //! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
 //!
 //! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer.

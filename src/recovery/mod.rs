@@ -155,6 +155,8 @@ pub struct RecoveryState {
     pub quarantined: BTreeMap<String, u64>,
     /// The window.
     pub window: Option<Geometry>,
+    /// Whether the user has closed the window. What fails after that is no loss.
+    pub is_closed: bool,
 }
 
 impl RecoveryState {
@@ -169,6 +171,16 @@ impl RecoveryState {
     /// The system's.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         write(folder, STATE, self)
+    }
+
+    /// The record that the next process starts with, after a panic of the window's thread with this `cause`: a fault of Specula. Neither a
+    /// text nor a setting is suspected, unless the next process fails, too.
+    #[must_use]
+    pub fn after_panic(mut self, cause: &str) -> Self {
+        self.losses += 1;
+        self.suspects.clear();
+        self.loss = Some(Loss { cause: cause.to_owned(), reset: Vec::new() });
+        self
     }
 
     /// The record that the next process starts with, after a loss with this `cause`. New texts are suspected first. If there are

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::{Geometry, GoodTexts, RecoveryState, SessionState};
 use crate::message;
-use crate::shader::{ShaderSet, TreePath, text_hash};
+use crate::shader::{TreePath, text_hash};
 
 /// How often a moving camera and the window's position are recorded.
 const CAMERA_INTERVAL: Duration = Duration::from_millis(250);
@@ -27,6 +28,8 @@ struct Inner {
     /// The texts in `good.json`, and the generation of their set in this process.
     good: GoodTexts,
     generation: u64,
+    /// The thread that writes the texts.
+    writing: Option<JoinHandle<()>>,
     start: Instant,
     /// When camera and window were last compared with the record.
     checked: Instant,
@@ -36,7 +39,16 @@ impl Recorder {
     /// A recorder in a session's folder, or one that records nothing. `state` and `good` are what the folder has.
     pub fn new(folder: Option<PathBuf>, state: RecoveryState, good: GoodTexts) -> Self {
         let (start, checked) = (Instant::now(), Instant::now());
-        Self(Arc::new(Mutex::new(Inner { folder, state, attempt: 0, good, generation: 0, start, checked })))
+        Self(Arc::new(Mutex::new(Inner {
+            folder,
+            state,
+            attempt: 0,
+            good,
+            generation: 0,
+            writing: None,
+            start,
+            checked,
+        })))
     }
 
     /// Safe mode: the previous process was lost and no new text has been drawn since. Then nothing is built ahead of time,
@@ -104,32 +116,54 @@ impl Recorder {
         }
     }
 
-    /// Records that the device has drawn these shaders, with their light. The first time for each set, their texts become the
-    /// good ones.
-    pub fn drawn_all(&self, shaders: &ShaderSet) {
+    /// Records that the device has drawn the shaders of this generation, with their light. The first time for each generation, their texts
+    /// become the good ones. A thread writes them, since they take milliseconds.
+    pub fn drawn_all(&self, generation: u64, texts: &BTreeMap<TreePath, Arc<str>>) {
         let mut inner = self.lock();
-        if inner.folder.is_none() || inner.generation == shaders.generation {
+        if inner.folder.is_none() || inner.generation == generation {
             return;
         }
-        inner.generation = shaders.generation;
+        inner.generation = generation;
         let tree = inner.state.work.as_ref().and_then(|work| work.tree.clone());
-        let texts = shaders.texts.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect();
-        let good = GoodTexts { tree, texts };
+        let (recorder, texts, before) = (self.clone(), texts.clone(), inner.writing.take());
+        let write = move || {
+            let _ = before.map(JoinHandle::join);
+            let texts = texts.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect();
+            recorder.keep_texts(GoodTexts { tree, texts });
+        };
+        match std::thread::Builder::new().name("specula-recorder".to_owned()).spawn(write) {
+            Ok(thread) => inner.writing = Some(thread),
+            Err(error) => inner.fail(&error),
+        }
+    }
+
+    fn keep_texts(&self, good: GoodTexts) {
+        let folder = Some(self.lock()).filter(|inner| inner.good != good).and_then(|inner| inner.folder.clone());
+        let written = folder.as_ref().map(|folder| good.write(folder));
+        let mut inner = self.lock();
+        match written {
+            Some(Err(error)) => return inner.fail(&error),
+            Some(Ok(())) => (inner.state.losses, inner.good) = (0, good),
+            None => {}
+        }
+        let Inner { state, good, .. } = &mut *inner;
         let is_drawn =
             |path: &String, hash: u64| good.texts.get(path).is_none_or(|text| text_hash(&Ok(text.clone())) == hash);
-        inner.state.suspects.retain(|path, hash| !is_drawn(path, *hash));
-        if inner.good != good {
-            inner.state.losses = 0;
-            inner.good = good;
-            if let Some(Err(error)) = inner.folder.as_ref().map(|folder| inner.good.write(folder)) {
-                inner.fail(&error);
-            }
-        }
+        state.suspects.retain(|path, hash| !is_drawn(path, *hash));
+        inner.write();
+    }
+
+    /// Records that the user has closed the window.
+    pub fn close(&self) {
+        let mut inner = self.lock();
+        inner.state.is_closed = true;
         inner.write();
     }
 
     /// Writes everything, before the process ends because the device was lost.
     pub fn finish(&self) {
+        let writing = self.lock().writing.take();
+        let _ = writing.map(JoinHandle::join);
         self.lock().write();
     }
 

@@ -56,6 +56,19 @@ fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
 }
 
 #[test]
+fn one_panic_changes_nothing_and_a_second_one_suspects_new_texts() {
+    let (mut state, good) = session();
+    let suspects: BTreeMap<_, _> = [("a.glsl".to_owned(), hash("new"))].into();
+    state.work.as_mut().unwrap().settings.mode = "normal".into();
+    let work = state.work.clone();
+    let next = RecoveryState { suspects: suspects.clone(), ..state }.after_panic("Specula failed");
+    assert_eq!((next.losses, &next.work, next.loss.as_ref().unwrap().reset.len()), (1, &work, 0));
+    assert!(next.quarantined.is_empty() && next.suspects.is_empty());
+    let again = RecoveryState { suspects: suspects.clone(), ..next }.after_loss("Specula failed", &good);
+    assert_eq!((again.losses, again.quarantined), (2, suspects));
+}
+
+#[test]
 fn texts_of_another_tree_are_left_together_with_it() {
     let (mut state, good) = session();
     state.work.as_mut().unwrap().tree = Some("other".into());
@@ -87,4 +100,33 @@ fn records_are_read_by_the_next_process() {
     assert_eq!(GoodTexts::read(folder.path(), None), good);
     remove_folder(folder.path());
     assert!(!folder.path().exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn nobody_waits_while_the_texts_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let (state, good) = session();
+    let recorder = Recorder::new(Some(folder.path().to_owned()), RecoveryState::default(), GoodTexts::default());
+    let work = state.work.unwrap();
+    let geometry = || Geometry { size: (640, 480), at: None };
+    recorder.begin(&work, geometry);
+    // Writing to a pipe waits for its reader.
+    let pipe = unfinished(folder.path(), GOOD);
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let texts = good.texts.iter().map(|(path, text)| (TreePath::from(path.as_str()), text.as_str().into())).collect();
+    let (draws, drawn) = std::sync::mpsc::channel();
+    let window = recorder.clone();
+    std::thread::spawn(move || {
+        window.drawn_all(1, &texts);
+        let attempt = window.begin(&work, geometry);
+        window.drawn(attempt);
+        draws.send(())
+    });
+    // Only a failure takes so long.
+    drawn.recv_timeout(std::time::Duration::from_secs(20)).expect("the window waits for the file");
+    let written: GoodTexts = serde_json::from_slice(&fs::read(&pipe).unwrap()).unwrap();
+    recorder.finish();
+    assert_eq!(written.texts, good.texts);
+    assert_eq!(RecoveryState::read(folder.path()).losses, 0);
 }

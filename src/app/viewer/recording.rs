@@ -23,7 +23,7 @@ impl Viewer {
     pub(in crate::app) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
         attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
         if self.settled == Some(state.shaders.generation) && state.shaders.is_complete() {
-            self.recorder.drawn_all(&state.shaders);
+            self.recorder.drawn_all(state.shaders.generation, &state.shaders.texts);
         }
     }
 

@@ -47,8 +47,15 @@ pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Re
     };
     while let Some(cause) = cause_of_loss(status) {
         let state = RecoveryState::read(&folder.0);
+        if state.is_closed {
+            message::warn(format_args!("{cause} while the window closed"));
+            return Ok(());
+        }
         let tree = state.work.as_ref().and_then(|work| work.tree.clone());
-        let state = state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref()));
+        let state = match status.code() {
+            Some(PANICKED) if state.losses == 0 => state.after_panic(&cause),
+            _ => state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref())),
+        };
         if state.losses >= MOST_LOSSES {
             return Err(Failure::Device(farewell(&cause, &state)));
         }

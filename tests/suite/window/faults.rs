@@ -24,6 +24,20 @@ fn closing_does_not_wait_for_an_environment() {
 }
 
 #[test]
+fn a_window_that_was_closed_stays_closed_whatever_fails_then() {
+    for (fault, warning) in [
+        ("closing-panic:1", "Specula failed while the window closed"),
+        // Ten minutes: the test has no patience for that.
+        ("closing-delay-ms:600000,closing-limit-ms:1000", "a thread did not end with the window"),
+    ] {
+        let mut viewer = Viewer::with_fault(Tree::new(), &["sphere-grid"], fault);
+        viewer.running.event("ready");
+        let stderr = viewer.quit();
+        assert!(stderr.contains(warning), "{fault}: {stderr}");
+    }
+}
+
+#[test]
 fn a_panic_of_a_canceled_bake_leaves_the_new_one() {
     let size = ["sphere-grid", "--size", "640x640", "--env", "studio"];
     let mut viewer = Viewer::with_fault(Tree::new(), &size, "bake-delay-ms:4000,bake-panic:1");
