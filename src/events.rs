@@ -124,6 +124,9 @@ pub enum Event<'a> {
         frames: u64,
         /// CPU time of the panels in a frame, milliseconds, in the last 4096 of them.
         ui_ms: Summary,
+        /// CPU time of the window's thread for a whole frame, without the driver's time to present it, milliseconds, in the same
+        /// frames; 0 where the system does not tell it.
+        cpu_ms: Summary,
     },
     /// Memory or a thread of the window failed. The last picture stays.
     Failure {

@@ -3,6 +3,7 @@
 //!
 //! Each module imports only from modules above it in this list:
 //!
+//! - [`cpu_clock`]: CPU time of a thread.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: all settings of the user.
@@ -33,6 +34,7 @@ mod cancel;
 pub mod capture;
 pub mod comparison;
 pub mod control;
+pub mod cpu_clock;
 pub mod disk_cache;
 pub mod events;
 pub mod file_kind;

@@ -233,8 +233,8 @@ impl App {
             viewer.recorder.close();
             end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
             assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
-            let (frames, ui_ms) = viewer.timing.summary();
-            emit(&viewer.events, &Event::Closed { frames, ui_ms });
+            let (frames, [ui_ms, cpu_ms]) = viewer.timing.summary();
+            emit(&viewer.events, &Event::Closed { frames, ui_ms, cpu_ms });
             drop(screen);
             drop(viewer);
             drop(window);

@@ -34,6 +34,7 @@ use super::state::grid::PictureRect;
 use super::state::timing::CpuTimes;
 use super::viewer::Viewer;
 use super::widgets;
+use crate::cpu_clock::CpuClock;
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, NextImage, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::render::tools::Outline;
@@ -130,6 +131,8 @@ pub(super) struct Screen {
     pub(super) is_covered: bool,
     /// The CPU's times of the frame that is being made.
     cpu: CpuTimes,
+    /// CPU time of the driver to present it. A software device copies the pixels then, which is no work of the window's.
+    present_ms: f64,
 }
 
 impl Screen {
@@ -197,6 +200,7 @@ impl Screen {
             due: None,
             is_covered: false,
             cpu: CpuTimes::default(),
+            present_ms: 0.0,
         })
     }
 
@@ -244,7 +248,10 @@ impl Screen {
     /// # Errors
     /// A device error other than out of memory.
     pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
+        self.present_ms = 0.0;
+        let clock = CpuClock::start();
         let drawn = self.draw_frame(window, viewer);
+        clock.into_iter().for_each(|clock| viewer.timing.used(clock.ms() - self.present_ms));
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
@@ -328,7 +335,9 @@ impl Screen {
         self.note_frame(viewer, frame.as_ref());
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
+            let clock = CpuClock::start();
             self.stale |= !swapchain.present(&acquired)?;
+            self.present_ms = clock.map_or(0.0, CpuClock::ms);
         }
 
         viewer.answer();

@@ -11,6 +11,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use crossbeam_channel::unbounded;
 use serde_json::{Value, json};
+use specula::cpu_clock::CpuClock;
 use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::pipeline::Outcome;
@@ -157,7 +158,7 @@ fn edited(text: &str, number: u32) -> String {
     format!("{}float bench_edit(float x) {{ return x + {number}.0; }}\n{}", &text[..end], &text[end..])
 }
 
-/// Times frames of the selected mode, and the first and second frame of every mode.
+/// Times frames of the selected mode, the CPU time of frames that do not change, and the first and second frame of every mode.
 fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
@@ -175,6 +176,12 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progr
         for pass in headless.pass_times() {
             passes.entry(pass.name.clone()).or_default().push(pass.ms);
         }
+    }
+    let mut cpu = Vec::new();
+    for _ in 0..args.samples {
+        let clock = CpuClock::start();
+        headless.draw()?;
+        cpu.extend(clock.map(CpuClock::ms));
     }
     let passes: serde_json::Map<String, Value> = passes.into_iter().map(|(name, ms)| (name, summary(ms))).collect();
     // With --mode, skip the other modes.
@@ -200,6 +207,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progr
         "size": [args.common.size.0, args.common.size.1],
         "frame_ms": summary(wall),
         "device_ms": summary(device),
+        "cpu_ms": summary(cpu),
         "passes": passes,
         "mode_first_ms": summary(first),
         "mode_again_ms": summary(again),

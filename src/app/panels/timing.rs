@@ -65,7 +65,7 @@ fn cost(ui: &mut Ui, viewer: &Viewer) {
 fn cpu(ui: &mut Ui, viewer: &Viewer) {
     graph::cpu(ui, &viewer.timing, UI_LIMIT_MS);
     let Some(last) = viewer.timing.frames().back() else { return };
-    let (frames, summary) = viewer.timing.summary();
+    let (frames, [summary, whole]) = viewer.timing.recent_summary();
     Grid::new("cpu").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let hint = format!(
             "CPU time to lay out and tessellate the panels in the last frame. Over {} frames: median {:.2}, 95th percentile \
@@ -79,6 +79,14 @@ fn cpu(ui: &mut Ui, viewer: &Viewer) {
         row(ui, ("Panels", color), &format!("{:.2} ms", last.ui_ms), &hint);
         let hint = "CPU time to record the commands of the last frame, without waiting for the device";
         row(ui, ("Recording", graph::RECORD), &format!("{:.2} ms", last.record_ms), hint);
+        if let Some(ms) = viewer.timing.cpu_ms() {
+            let hint = format!(
+                "CPU time of the window's thread for all of the last frame, without the driver's time to present it. Median {:.2}, \
+                 95th percentile {:.2}, maximum {:.2} ms",
+                whole.median, whole.p95, whole.max
+            );
+            row(ui, ("Thread", QUIET.color()), &format!("{ms:.2} ms"), &hint);
+        }
     });
 }
 

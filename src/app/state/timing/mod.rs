@@ -13,8 +13,10 @@ pub(in crate::app) use memory::MemoryClock;
 
 /// Number of frames in the history.
 pub(in crate::app) const FRAMES: usize = 240;
-/// Number of frames whose time for panels is kept for [`Timing::summary`].
+/// Number of frames whose times are kept for [`Timing::summary`].
 const SUMMARIZED: usize = 4096;
+/// Frames between two summaries for the panel.
+const SUMMARIZED_EVERY: u64 = 60;
 /// Frames that are drawn only to measure a picture.
 const EXTRA: usize = 4;
 /// Passes that a frame has even if the picture stays.
@@ -96,7 +98,11 @@ pub(in crate::app) struct Timing {
     /// The CPU's times of all frames.
     frames: VecDeque<CpuTimes>,
     ui_ms: VecDeque<f64>,
+    /// CPU time of the window's thread for whole frames.
+    cpu_ms: VecDeque<f64>,
     drawn: u64,
+    /// The last [`Timing::recent_summary`].
+    summarized: (u64, [Summary; 2]),
     cost: cost::Tracker,
     /// The shaders whose picture is being measured, and how many frames have been drawn for that.
     extra: Option<(Shown, usize)>,
@@ -112,6 +118,14 @@ impl Timing {
         push(&mut self.frames, cpu, FRAMES);
         push(&mut self.ui_ms, cpu.ui_ms, SUMMARIZED);
         self.drawn += 1;
+        if self.drawn % SUMMARIZED_EVERY == 1 {
+            self.summarized = self.summary();
+        }
+    }
+
+    /// Notes the CPU time of the window's thread for a whole frame.
+    pub(in crate::app) fn used(&mut self, cpu_ms: f64) {
+        push(&mut self.cpu_ms, cpu_ms, SUMMARIZED);
     }
 
     /// Takes the times of a finished frame, once.
@@ -147,9 +161,19 @@ impl Timing {
         self.cost.cost()
     }
 
-    /// Number of frames so far, and the time that the panels took in the last of them.
-    pub(in crate::app) fn summary(&self) -> (u64, Summary) {
-        (self.drawn, Summary::of(self.ui_ms.iter().copied()))
+    /// Number of frames so far, and the CPU's time of panels and of the whole frame in the last of them.
+    pub(in crate::app) fn summary(&self) -> (u64, [Summary; 2]) {
+        (self.drawn, [&self.ui_ms, &self.cpu_ms].map(|list| Summary::of(list.iter().copied())))
+    }
+
+    /// [`Timing::summary`] as it was some frames ago: sorting the times of all frames would be a part of each frame's time.
+    pub(in crate::app) fn recent_summary(&self) -> (u64, [Summary; 2]) {
+        self.summarized
+    }
+
+    /// CPU time of the window's thread for the last whole frame.
+    pub(in crate::app) fn cpu_ms(&self) -> Option<f64> {
+        self.cpu_ms.back().copied()
     }
 
     /// Whether to draw the picture once more although it is the same, because too few frames tell what new shaders take. Each call
@@ -224,7 +248,7 @@ pub(in crate::app) mod tests {
         let mut timing = Timing::default();
         (0..500).for_each(|_| draw(&mut timing, &shown(1), &[("model", 1.0)]));
         assert_eq!((timing.pictures().len(), timing.frames().len()), (FRAMES, FRAMES));
-        let (frames, summary) = timing.summary();
+        let (frames, [summary, _]) = timing.summary();
         assert_eq!((frames, summary.max), (500, 500.0));
         assert!((summary.median - 250.0).abs() <= 1.0 && (summary.p95 - 475.0).abs() <= 1.0, "{summary:?}");
     }
