@@ -1,6 +1,8 @@
 //! The user's work: settings, model, the last good shaders, diagnostics. A session holds no device object, so it
 //! survives the loss of the device.
 
+mod recent;
+
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,6 +13,7 @@ use crate::scene::{Model, environment};
 use crate::settings::Settings;
 use crate::shader::values::{misfits, unknown_names};
 use crate::shader::{Diagnostic, Mode, ShaderSet};
+use recent::Recent;
 
 /// Settings, model and shaders, from which every [`FrameState`] is made.
 #[derive(Clone, Default)]
@@ -26,6 +29,7 @@ pub struct Session {
     model: Option<Arc<Model>>,
     /// The last scene, kept because a scene of a large model takes time to create.
     scene: RefCell<Option<Scene>>,
+    recent: RefCell<Recent>,
 }
 
 impl Session {
@@ -47,6 +51,14 @@ impl Session {
     /// Replaces the model.
     pub fn set_model(&mut self, model: &Arc<Model>) {
         self.model = Some(model.clone());
+        // Its pictures would keep the old model.
+        self.recent.take();
+    }
+
+    /// The settings as they are now, shared: the same `Arc` as long as they stay the same, so that its address tells whether they
+    /// have changed.
+    pub fn shared_settings(&self) -> Arc<Settings> {
+        self.recent.borrow_mut().settings.shared(&self.settings)
     }
 
     /// The selected debug mode; `None` if the shaders lack it.
@@ -76,19 +88,21 @@ impl Session {
     }
 
     /// The frame that the settings describe; `None` without shaders.
-    pub fn frame_state(&self, clock: Clock, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
+    pub fn frame_state(&self, clock: Clock, size: (u32, u32), target: TargetFormat) -> Option<Arc<FrameState>> {
         self.shaders.as_ref().map(|shaders| self.frame_state_of(shaders, clock, size, target))
     }
 
-    /// The frame that the settings describe with these shaders.
+    /// The frame that the settings describe with these shaders: the same object as long as nothing has changed.
     pub fn frame_state_of(
         &self,
         shaders: &Arc<ShaderSet>,
         clock: Clock,
         size: (u32, u32),
         target: TargetFormat,
-    ) -> FrameState {
-        FrameState::new(&self.inputs(shaders, self.scene().as_ref(), clock, size, target))
+    ) -> Arc<FrameState> {
+        let (settings, scene) = (self.shared_settings(), self.scene());
+        let inputs = FrameInputs { settings: &settings, ..self.inputs(shaders, scene.as_ref(), clock, size, target) };
+        self.recent.borrow_mut().pictures.state(&settings, &inputs)
     }
 
     /// The inputs of a frame with these settings and shaders. `scene`: [`Session::scene`].

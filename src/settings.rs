@@ -1,5 +1,6 @@
 //! All settings of the user in one serde struct. The window, `--set`, look files and the tests all use it.
 
+mod alike;
 mod assign;
 mod catalog;
 mod declare;

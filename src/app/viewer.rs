@@ -34,7 +34,7 @@ use super::state::timing::Timing;
 use super::{AppOptions, Early};
 use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
-use crate::frame::{Clock, Revisions, Scene};
+use crate::frame::{Clock, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
@@ -56,9 +56,7 @@ use versions::Versions;
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 #[derive(Clone)]
 pub(super) struct LastComplete {
-    settings: Settings,
-    scene: Option<Scene>,
-    revisions: Revisions,
+    settings: Arc<Settings>,
     frame: BoundFrame,
 }
 
@@ -66,6 +64,11 @@ impl LastComplete {
     /// The picture.
     pub(super) fn frame(&self) -> &BoundFrame {
         &self.frame
+    }
+
+    /// The model in it.
+    fn scene(&self) -> Option<&Scene> {
+        self.frame.state.scene.as_ref()
     }
 }
 
@@ -195,7 +198,7 @@ impl Viewer {
         let lights = &session.settings.lights;
         let resources = Resources::new(gpu, layouts, lights.ambient_color.map(|c| c * lights.ambient_strength))?;
         let snapshot = Snapshot {
-            settings: session.settings.clone(),
+            settings: session.shared_settings(),
             scene: None,
             target: target(gpu, &session.settings),
             suns: session.revisions.suns_of(&session.settings),

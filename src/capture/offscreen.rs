@@ -81,7 +81,7 @@ impl OffscreenCapture {
         for (index, mode) in modes.iter().enumerate() {
             tell(progress, index, modes.len())?;
             self.session.settings.mode.clone_from(&mode.slug);
-            let frame = self.bind_as(size, FrameState::with_numbers)?;
+            let frame = self.bind_as(size, |state| Arc::new(Arc::unwrap_or_clone(state).with_numbers()))?;
             self.view.restart_passes();
             self.view.restart_mean();
             let count = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
@@ -141,7 +141,7 @@ impl OffscreenCapture {
         for (index, version) in versions.iter().enumerate() {
             tell(progress, index, versions.len())?;
             let target = self.target()?;
-            let state = Arc::new(self.session.frame_state_of(&version.set.shaders, self.clock, size, target));
+            let state = self.session.frame_state_of(&version.set.shaders, self.clock, size, target);
             version.set.build_aside(&state.pipelines).map_err(HeadlessError::from)?;
             let bound = self.resources.bind_older(&version.set, &state, version.like.as_ref());
             // Its light is gone if another environment was chosen since.
@@ -182,12 +182,12 @@ impl OffscreenCapture {
     fn bind_as(
         &mut self,
         size: (u32, u32),
-        adapt: impl FnOnce(FrameState) -> FrameState,
+        adapt: impl FnOnce(Arc<FrameState>) -> Arc<FrameState>,
     ) -> Result<BoundFrame, HeadlessError> {
         self.check_size(size)?;
         let target = self.target()?;
         let state = self.session.frame_state(self.clock, size, target);
-        let state = Arc::new(adapt(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?));
+        let state = adapt(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?);
         if state.pipelines.needs_pending(&state.shaders) {
             let mode = &self.session.settings.mode;
             return Err(HeadlessError::Settings(format!("the shaders of the mode `{mode}` have errors")));

@@ -39,6 +39,8 @@ impl PartialEq for BakeStage {
     }
 }
 
+impl Eq for BakeStage {}
+
 /// The author's values that a bake depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct BakeValues<'a> {
@@ -66,7 +68,7 @@ fn stages(shaders: &ShaderSet, paths: &[&str], values: BakeValues<'_>) -> Vec<Ba
 }
 
 /// Identifies the BRDF lookup tables: a stage for each.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TablesKey(pub(crate) Vec<BakeStage>);
 
 impl TablesKey {
@@ -86,7 +88,7 @@ impl TablesKey {
 }
 
 /// Identifies a baked environment: its name, the revision of its file, whether suns are separated, and the stages of each part.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EnvironmentKey {
     /// Built-in name or file.
     pub name: String,

@@ -134,19 +134,51 @@ pub struct MeasuredKey {
     revision: u64,
 }
 
+/// What a frame needs that depends on neither camera, time nor size. Frames that differ only by these share it.
+struct Needs {
+    pipelines: Arc<PipelineRequest>,
+    params: Arc<[u8]>,
+    tables: Arc<TablesKey>,
+    environment: Option<Arc<EnvironmentKey>>,
+    measured: Option<MeasuredKey>,
+}
+
+impl Needs {
+    /// `pipelines`: those of a picture without suns.
+    fn new(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
+        let FrameInputs { settings, shaders, revisions, .. } = *inputs;
+        let pipelines = pipelines.for_suns(revisions.suns_of(settings));
+        let params: Arc<[u8]> = values::params(&settings.shader, &shaders.parameters).into();
+        let values = BakeValues { constants: &pipelines.constants, params: &params };
+        let environment = || {
+            let (name, revision) = (&settings.environment.name, revisions.environment);
+            let suns = separates_suns(&settings.environment);
+            Arc::new(EnvironmentKey::new(name, revision, suns, shaders, values))
+        };
+        Self {
+            tables: Arc::new(TablesKey::new(shaders, values)),
+            environment: settings.environment.is_lit().then(environment),
+            measured: (!settings.measured.is_empty())
+                .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
+            pipelines: Arc::new(pipelines),
+            params,
+        }
+    }
+}
+
 /// One frame as an immutable value.
 #[derive(Clone, Debug)]
 pub struct FrameState {
     /// The shaders that draw it.
     pub shaders: Arc<ShaderSet>,
     /// The pipelines that draw it.
-    pub pipelines: PipelineRequest,
+    pub pipelines: Arc<PipelineRequest>,
     /// The model and its materials.
     pub scene: Option<Scene>,
     /// BRDF lookup tables, for the selected models.
-    pub tables: TablesKey,
+    pub tables: Arc<TablesKey>,
     /// Image-based light. Without it, ambient light of the settings is used.
-    pub environment: Option<EnvironmentKey>,
+    pub environment: Option<Arc<EnvironmentKey>>,
     /// Measured BRDF, for the modes that show one.
     pub measured: Option<MeasuredKey>,
     /// Camera.
@@ -170,7 +202,23 @@ impl FrameState {
     /// Describes a frame. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
-        Self::with_pipelines(inputs, PipelineRequest::new(settings, shaders, scene, target))
+        Self::with_needs(inputs, Needs::new(inputs, PipelineRequest::new(settings, shaders, scene, target)))
+    }
+
+    /// The same picture from another camera, with orbiting lights in other directions, at another time or size: `settings` are alike
+    /// ([`Settings::is_alike`]).
+    #[must_use]
+    pub fn moved(&self, settings: &Settings, clock: Clock, size: (u32, u32)) -> Self {
+        let needs = Needs {
+            pipelines: self.pipelines.clone(),
+            params: self.params.clone(),
+            tables: self.tables.clone(),
+            environment: self.environment.clone(),
+            measured: self.measured.clone(),
+        };
+        let (shaders, scene, target) = (&self.shaders, self.scene.as_ref(), self.pipelines.target);
+        let revisions = Revisions::default();
+        Self::with_needs(&FrameInputs { settings, shaders, scene, revisions, clock, size, target }, needs)
     }
 
     /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model except the tone map are
@@ -179,12 +227,13 @@ impl FrameState {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
         let pipelines = PipelineRequest::of_modes(settings, shaders, scene, target, modes);
-        Self { displays: displays.collect(), ..Self::with_pipelines(inputs, pipelines) }
+        Self { displays: displays.collect(), ..Self::with_needs(inputs, Needs::new(inputs, pipelines)) }
     }
 
-    fn with_pipelines(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
-        let FrameInputs { settings, shaders, scene, revisions, clock, size, target } = *inputs;
-        let pipelines = pipelines.for_suns(revisions.suns_of(settings));
+    /// `needs` are those of the inputs.
+    fn with_needs(inputs: &FrameInputs<'_>, needs: Needs) -> Self {
+        let FrameInputs { settings, shaders, scene, clock, size, target, .. } = *inputs;
+        let Needs { pipelines, params, tables, environment, measured } = needs;
         let size = (size.0.max(1), size.1.max(1));
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());
@@ -232,18 +281,11 @@ impl FrameState {
             }),
             ..Default::default()
         };
-        let params: Arc<[u8]> = values::params(&settings.shader, &shaders.parameters).into();
-        let values = BakeValues { constants: &pipelines.constants, params: &params };
         Self {
             pass_blocks: pass_blocks(settings, shaders, &pipelines, size, clock),
-            tables: TablesKey::new(shaders, values),
-            environment: lit.then(|| {
-                let (name, revision) = (&settings.environment.name, revisions.environment);
-                let suns = separates_suns(&settings.environment);
-                EnvironmentKey::new(name, revision, suns, shaders, values)
-            }),
-            measured: (!settings.measured.is_empty())
-                .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
+            tables,
+            environment,
+            measured,
             displays: Vec::new(),
             display: Display::new(&settings.view, shaders.modes.iter().find(|mode| mode.id == pipelines.mode)),
             shaders: shaders.clone(),
@@ -324,7 +366,7 @@ impl FrameState {
 
     /// The same frame with an environment that has this many suns.
     pub(crate) fn for_suns(&self, suns: u32) -> Self {
-        Self { pipelines: self.pipelines.clone().for_suns(suns), ..self.clone() }
+        Self { pipelines: Arc::new((*self.pipelines).clone().for_suns(suns)), ..self.clone() }
     }
 
     /// As many suns as the pipelines expect, each with its light in this frame. Suns that the environment lacks are dark. The

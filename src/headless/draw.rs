@@ -24,7 +24,7 @@ impl Headless {
     /// # Errors
     /// As [`Headless::frame_state`].
     pub fn paths_per_pixel(&self) -> Result<Option<u64>, HeadlessError> {
-        let request = self.frame_state()?.pipelines;
+        let request = self.frame_state()?.pipelines.clone();
         let paths = u64::from(request.paths_per_frame()) * u64::from(self.session.settings.view.frames);
         Ok(request.accumulates.then_some(paths))
     }

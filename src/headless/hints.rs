@@ -12,7 +12,8 @@ impl Headless {
     /// # Errors
     /// As [`Headless::frame_state`].
     pub fn continuing_passes(&self) -> Result<Vec<String>, HeadlessError> {
-        let passes = self.frame_state()?.pipelines.passes;
+        let request = self.frame_state()?.pipelines.clone();
+        let passes = &request.passes;
         let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
         let continues = |pass: &&Arc<GraphPass>| {
             inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.desc.draws(name)))

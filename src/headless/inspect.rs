@@ -34,7 +34,7 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn texels(&mut self, at: (u32, u32)) -> Result<Vec<Texel>, HeadlessError> {
-        let places = texel_places(&self.frame_state()?, at);
+        let places = texel_places(&*self.frame_state()?, at);
         Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
     }
 }

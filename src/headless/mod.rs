@@ -178,8 +178,8 @@ impl Headless {
     /// # Errors
     /// As [`Headless::provide`].
     pub fn bake(&mut self, from_disk: bool) -> Result<(), HeadlessError> {
-        match self.frame_state()?.environment {
-            Some(key) => self.resources.bake(key, from_disk).map_err(|error| self.explained(error.into())),
+        match &self.frame_state()?.environment {
+            Some(key) => self.resources.bake(key.clone(), from_disk).map_err(|error| self.explained(error.into())),
             None => Ok(()),
         }
     }
@@ -287,7 +287,7 @@ impl Headless {
     ///
     /// # Errors
     /// Settings that do not fit, or no shaders yet.
-    pub fn frame_state(&self) -> Result<FrameState, HeadlessError> {
+    pub fn frame_state(&self) -> Result<Arc<FrameState>, HeadlessError> {
         let target = self.target()?;
         let state = self.session.frame_state(self.clock, self.size, target);
         state.ok_or_else(|| HeadlessError::Shaders(self.session.diagnostics.clone()))
@@ -336,14 +336,14 @@ impl Headless {
         if let Some(error) = beyond_memory(&state.pipelines, state.size, state.pass_memory) {
             return Err(HeadlessError::Shaders(vec![error]));
         }
-        let bound = self.resources.provide(&Arc::new(state));
+        let bound = self.resources.provide(&state);
         // The number of suns is known only after the bake.
         let suns = self.resources.environment().sun_count();
         if suns == self.session.revisions.suns {
             return bound.map_err(|error| self.explained(error.into()));
         }
         self.session.revisions.suns = suns;
-        let state = Arc::new(self.frame_state()?);
+        let state = self.frame_state()?;
         self.resources.provide(&state).map_err(|error| self.explained(error.into()))
     }
 }

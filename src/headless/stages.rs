@@ -11,7 +11,7 @@ impl Headless {
     /// # Errors
     /// As [`Headless::frame_state`].
     pub fn stages(&self) -> Result<BTreeMap<String, StageReport>, HeadlessError> {
-        let request = self.frame_state()?.pipelines;
+        let request = self.frame_state()?.pipelines.clone();
         Ok(self.resources.pipelines().map(|set| set.report(&request)).unwrap_or_default())
     }
 
@@ -21,7 +21,7 @@ impl Headless {
     /// # Errors
     /// As [`Headless::frame_state`], and a driver that does not answer.
     pub fn ask_driver(&self) -> Result<f64, HeadlessError> {
-        let request = self.frame_state()?.pipelines;
+        let request = self.frame_state()?.pipelines.clone();
         let Some(set) = self.resources.pipelines() else { return Ok(0.0) };
         let mut all = 0.0;
         while let Some(ms) = set.ask_driver(&request)? {

@@ -157,6 +157,8 @@ fn decode(path: &Path) -> Result<(String, Option<String>), String> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
 
     fn capture() -> Capture {
@@ -168,7 +170,7 @@ mod tests {
         let mut settings = Settings::default();
         (settings.mode, settings.view.ev) = ("d \u{3b1}".to_owned(), 1.5);
         let path = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
-        let work = SessionState { settings: settings.clone(), ..SessionState::default() };
+        let work = SessionState { settings: Arc::new(settings.clone()), ..SessionState::default() };
         std::fs::write(path.path(), encode(&capture(), &work, Path::new("")).unwrap()).unwrap();
         let look = read_look(path.path()).unwrap();
         assert_eq!(look, Look { settings, model: Some(BUILT_IN[0].into()), shaders: None });
@@ -190,7 +192,7 @@ mod tests {
             tree: Some(first.join("glsl")),
             ..SessionState::default()
         };
-        work.settings.environment.name = first.join("models/sky.hdr").display().to_string();
+        Arc::make_mut(&mut work.settings).environment.name = first.join("models/sky.hdr").display().to_string();
         let bytes = encode(&capture(), &work, &first.join("pictures")).unwrap();
         std::fs::write(first.join("pictures/look.png"), bytes).unwrap();
         let second = folder.path().join("second");

@@ -1,9 +1,9 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
+mod bound;
 mod report;
 
 use std::collections::{HashMap, HashSet};
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
@@ -19,56 +19,12 @@ use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::{Input, Inputs, RenderPhase};
 use crate::shader::{GraphPass, ShaderSet, Stage, StageKind};
+use bound::Bound;
+pub(crate) use bound::BoundPipelines;
 pub use report::{InPipeline, StageReport};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The pipelines of one [`PipelineRequest`], and the textures of its passes.
-#[derive(Clone)]
-pub(crate) struct BoundPipelines {
-    pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
-    /// Of compute passes, by stage.
-    computes: HashMap<String, Arc<ComputePipeline>>,
-    textures: Arc<PassTextures>,
-}
-
-impl BoundPipelines {
-    pub(crate) fn get(&self, key: &PipelineKey) -> Option<&Arc<Pipeline>> {
-        self.pipelines.get(key)
-    }
-
-    /// The pipeline of a compute pass.
-    pub(crate) fn compute(&self, stage: &str) -> Option<&Arc<ComputePipeline>> {
-        self.computes.get(stage)
-    }
-
-    /// Whether a pipeline reads one of these ranges of bytes of the block `interface::Frame`.
-    pub(crate) fn read_frame(&self, bytes: &[Range<usize>]) -> bool {
-        self.pipelines.values().any(|pipeline| pipeline.usage.reads_frame(bytes))
-            || self.computes.values().any(|pipeline| pipeline.usage.reads_frame(bytes))
-    }
-
-    /// The textures that the tree declares.
-    pub(crate) fn textures(&self) -> &PassTextures {
-        &self.textures
-    }
-
-    /// Whether both hold the same objects.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        let same_compute = |(stage, pipeline): (&String, &Arc<ComputePipeline>)| {
-            other.computes.get(stage).is_some_and(|o| Arc::ptr_eq(o, pipeline))
-        };
-        let same_computes = self.computes.len() == other.computes.len() && self.computes.iter().all(same_compute);
-        if !same_computes || !Arc::ptr_eq(&self.textures, &other.textures) {
-            return false;
-        }
-        let same = |(key, pipeline): (&PipelineKey, &Arc<Pipeline>)| {
-            other.pipelines.get(key).is_some_and(|o| Arc::ptr_eq(o, pipeline))
-        };
-        self.pipelines.len() == other.pipelines.len() && self.pipelines.iter().all(same)
-    }
 }
 
 /// Objects by key, each with the number of the last request that used it.
@@ -116,6 +72,8 @@ pub struct PipelineSet {
     pass_layouts: PassLayouts,
     graphics: Mutex<Recent<PipelineKey, Pipeline>>,
     computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
+    /// The worker does not wait for it, nor holds it.
+    bound: Mutex<Bound>,
     requests: AtomicU64,
 }
 
@@ -144,6 +102,7 @@ impl PipelineSet {
             pass_layouts: before.map(|set| set.pass_layouts.clone()).unwrap_or_default(),
             graphics: Mutex::default(),
             computes: Mutex::default(),
+            bound: Mutex::default(),
             requests: AtomicU64::default(),
         };
         if let Some(before) = before {
@@ -253,23 +212,34 @@ impl PipelineSet {
         self.shaders.pending.contains(path)
     }
 
-    /// The pipelines of `request`, or `None` if one is missing.
-    pub(crate) fn bind(&self, request: &PipelineRequest) -> Option<BoundPipelines> {
+    /// The pipelines of `request`, or `None` if one is missing. They are collected once, as long as a frame uses them.
+    pub(crate) fn bind(&self, request: &Arc<PipelineRequest>) -> Option<Arc<BoundPipelines>> {
+        let known = lock(&self.bound).of(request);
+        known.or_else(|| {
+            let bound = Arc::new(self.collect(request)?);
+            lock(&self.bound).add(request, &bound);
+            Some(bound)
+        })
+    }
+
+    fn collect(&self, request: &PipelineRequest) -> Option<BoundPipelines> {
         if request.needs_pending(&self.shaders) {
             return None;
         }
+        let keys: Vec<PipelineKey> = request.keys().collect();
         let graphics = lock(&self.graphics);
-        let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
+        let pipelines = keys.into_iter().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
+        drop(graphics);
         let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.desc.stage);
-        let known = lock(&self.computes);
         let constants = request.pass_constants();
+        let known = lock(&self.computes);
         let compute = |stage: &String| {
             let pipeline = known.get(&(stage.clone(), constants.clone()))?;
             Some((stage.clone(), pipeline.clone()))
         };
         let computes = stages.map(compute).collect::<Option<_>>()?;
-        Some(BoundPipelines { pipelines, computes, textures: self.textures.clone() })
+        Some(BoundPipelines::new(pipelines, computes, self.textures.clone()))
     }
 
     /// A stage of this generation.

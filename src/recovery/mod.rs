@@ -44,6 +44,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -70,7 +71,8 @@ const GOOD: &str = "good.json";
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SessionState {
     /// The settings.
-    pub settings: Settings,
+    #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::deserialize")]
+    pub settings: Arc<Settings>,
     /// The model's file; `None` is the built-in one.
     pub model: Option<PathBuf>,
     /// The shader tree's folder or file; `None` is the tree in the program.
@@ -78,20 +80,15 @@ pub struct SessionState {
 }
 
 impl SessionState {
-    /// Whether both are equal except for the camera and the directions of orbiting lights, which change
-    /// in many frames and never make a shader hang by themselves.
+    /// Whether both show the same from two places: see [`Settings::is_alike`].
     pub fn is_alike(&self, other: &Self) -> bool {
-        *self == other.placed_as(self)
+        (&self.model, &self.tree) == (&other.model, &other.tree)
+            && (Arc::ptr_eq(&self.settings, &other.settings) || self.settings.is_alike(&other.settings))
     }
 
     /// The same state with the camera and the directions of orbiting lights of `other`.
     fn placed_as(&self, other: &Self) -> Self {
-        let mut placed = self.clone();
-        placed.settings.camera = other.settings.camera.clone();
-        for (to, from) in placed.settings.lights.orbit.iter_mut().zip(&other.settings.lights.orbit) {
-            to.azimuth = from.azimuth;
-        }
-        placed
+        Self { settings: Arc::new(self.settings.placed_as(&other.settings)), ..self.clone() }
     }
 
     /// The names of what differs, as `shader.TOON_BANDS`; settings by their path in `--set`.
@@ -102,6 +99,19 @@ impl SessionState {
         out.extend((self.model != other.model).then(|| "the model".to_owned()));
         out.extend((self.tree != other.tree).then(|| "the shader tree".to_owned()));
         out
+    }
+}
+
+/// Settings in the records, which have no shared values.
+mod shared {
+    use super::{Arc, Deserialize as _, Serialize as _, Settings};
+
+    pub(super) fn serialize<S: serde::Serializer>(settings: &Settings, to: S) -> Result<S::Ok, S::Error> {
+        settings.serialize(to)
+    }
+
+    pub(super) fn deserialize<'a, D: serde::Deserializer<'a>>(from: D) -> Result<Arc<Settings>, D::Error> {
+        Settings::deserialize(from).map(Arc::new)
     }
 }
 

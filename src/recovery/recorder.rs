@@ -91,7 +91,9 @@ impl Recorder {
         let is_alike = inner.state.work.as_ref().is_some_and(|old| old.is_alike(work));
         let is_same = inner.state.work.as_ref() == Some(work);
         inner.attempt += u64::from(!is_alike);
-        inner.state.work = Some(work.clone());
+        if !is_same {
+            inner.state.work = Some(work.clone());
+        }
         if !is_alike || inner.checked.elapsed() > CAMERA_INTERVAL {
             inner.checked = Instant::now();
             let window = Some(window());

@@ -22,7 +22,7 @@ fn a_new_text_is_refused_and_the_settings_stay() {
     let (mut state, good) = session();
     state.suspects = [("a.glsl".to_owned(), hash("new")), ("b.glsl".to_owned(), hash("old"))].into();
     let work = state.work.as_mut().unwrap();
-    work.settings.mode = "normal".into();
+    Arc::make_mut(&mut work.settings).mode = "normal".into();
     let work = work.clone();
     let next = state.after_loss(CAUSE, &good);
     assert_eq!(next.quarantined, [("a.glsl".to_owned(), hash("new"))].into());
@@ -39,15 +39,16 @@ fn a_new_text_is_refused_and_the_settings_stay() {
 fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
     let (mut state, good) = session();
     let work = state.work.as_mut().unwrap();
-    work.settings.camera.eye = Some([1.0, 2.0, 3.0]);
+    Arc::make_mut(&mut work.settings).camera.eye = Some([1.0, 2.0, 3.0]);
     let moved = work.clone();
     let next = state.clone().after_loss(CAUSE, &good);
     assert_eq!(next.work.as_ref(), Some(&moved), "a camera is never suspected");
     assert_eq!(next.loss.unwrap().reset, [""; 0]);
 
     let work = state.work.as_mut().unwrap();
-    work.settings.shader.insert("rate".into(), ShaderValue::Float(0.0));
-    work.settings.view.msaa = 1;
+    let settings = Arc::make_mut(&mut work.settings);
+    settings.shader.insert("rate".into(), ShaderValue::Float(0.0));
+    settings.view.msaa = 1;
     work.model = Some("huge.glb".into());
     let next = state.after_loss(CAUSE, &good);
     assert_eq!(next.loss.unwrap().reset, ["shader.rate", "view.msaa", "the model"]);
@@ -59,7 +60,7 @@ fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
 fn one_panic_changes_nothing_and_a_second_one_suspects_new_texts() {
     let (mut state, good) = session();
     let suspects: BTreeMap<_, _> = [("a.glsl".to_owned(), hash("new"))].into();
-    state.work.as_mut().unwrap().settings.mode = "normal".into();
+    Arc::make_mut(&mut state.work.as_mut().unwrap().settings).mode = "normal".into();
     let work = state.work.clone();
     let next = RecoveryState { suspects: suspects.clone(), ..state }.after_panic("Specula failed");
     assert_eq!((next.losses, &next.work, next.loss.as_ref().unwrap().reset.len()), (1, &work, 0));

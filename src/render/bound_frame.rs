@@ -10,7 +10,7 @@ use super::paths::PathTracing;
 use super::scene::GpuScene;
 use crate::frame::FrameState;
 use crate::gpu::{Buffer, Rect};
-use crate::interface::{CLOCK, Frame, KEYS, Light, MOTION};
+use crate::interface::{CLOCK, Frame, Light};
 use crate::pipeline::BoundPipelines;
 use crate::shader::graph::RenderPhase;
 
@@ -19,7 +19,7 @@ use crate::shader::graph::RenderPhase;
 pub struct BoundFrame {
     /// The picture.
     pub state: Arc<FrameState>,
-    pub(super) pipelines: BoundPipelines,
+    pub(super) pipelines: Arc<BoundPipelines>,
     pub(super) scene: Option<Arc<GpuScene>>,
     pub(super) tables: Arc<Tables>,
     pub(super) environment: Arc<GpuEnvironment>,
@@ -47,7 +47,7 @@ impl BoundFrame {
 
     /// Whether both draw the same frame, bit for bit.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        self.has_same_resources(other) && self.state.is_same(&other.state)
+        self.has_same_resources(other) && (Arc::ptr_eq(&self.state, &other.state) || self.state.is_same(&other.state))
     }
 
     /// Whether the model looks the same in both: they differ only in the time and in what passes after the model do with it.
@@ -61,12 +61,12 @@ impl BoundFrame {
 
     /// Whether the frame changes as time passes: a stage reads the clock, or a pass reads its previous output.
     pub fn is_animated(&self) -> bool {
-        self.pipelines.read_frame(&CLOCK) || self.state.pipelines.passes.iter().any(|pass| pass.moves)
+        self.pipelines.read_clock || self.state.pipelines.passes.iter().any(|pass| pass.moves)
     }
 
     /// Whether a stage reads keys.
     pub fn reads_keys(&self) -> bool {
-        self.pipelines.read_frame(std::slice::from_ref(&KEYS))
+        self.pipelines.read_keys
     }
 
     /// Whether the model, or a pass that it reads, changes as time passes.
@@ -83,7 +83,7 @@ impl BoundFrame {
 
     /// Whether a stage reads the camera of the previous frame.
     pub(super) fn reads_motion(&self) -> bool {
-        self.pipelines.read_frame(std::slice::from_ref(&MOTION))
+        self.pipelines.read_motion
     }
 
     fn has_same_resources(&self, other: &Self) -> bool {

@@ -22,9 +22,9 @@ pub struct Missing {
     /// Whether the newest set lacks pipelines.
     pub pipelines: bool,
     /// BRDF lookup tables to bake.
-    pub tables: Option<TablesKey>,
+    pub tables: Option<Arc<TablesKey>>,
     /// An environment to bake.
-    pub environment: Option<EnvironmentKey>,
+    pub environment: Option<Arc<EnvironmentKey>>,
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
     /// The request for path-tracing resources. They depend on the environment, so this is set only once the environment is there.
@@ -94,8 +94,8 @@ pub struct Resources {
     pipelines: Option<Arc<PipelineSet>>,
     model: Option<Arc<GpuModel>>,
     scene: Option<(Scene, Arc<GpuScene>)>,
-    tables: Slot<TablesKey, Tables>,
-    environment: Slot<EnvironmentKey, GpuEnvironment>,
+    tables: Slot<Arc<TablesKey>, Tables>,
+    environment: Slot<Arc<EnvironmentKey>, GpuEnvironment>,
     measured: Slot<MeasuredKey, Buffer>,
     path_tracing: Slot<PathTracingKey, PathTracing>,
 }
@@ -146,7 +146,7 @@ impl Resources {
     }
 
     /// Stores baked BRDF tables; `None` if the bake failed.
-    pub fn set_tables(&mut self, key: TablesKey, tables: Option<Arc<Tables>>) {
+    pub fn set_tables(&mut self, key: Arc<TablesKey>, tables: Option<Arc<Tables>>) {
         self.tables.set(key, tables);
     }
 
@@ -156,7 +156,7 @@ impl Resources {
     }
 
     /// Stores a baked environment; `None` if the bake failed.
-    pub fn set_environment(&mut self, key: EnvironmentKey, environment: Option<Arc<GpuEnvironment>>) {
+    pub fn set_environment(&mut self, key: Arc<EnvironmentKey>, environment: Option<Arc<GpuEnvironment>>) {
         self.environment.set(key, environment);
     }
 
@@ -176,14 +176,15 @@ impl Resources {
     }
 
     /// The environment that was baked last, with its key: the next bake reuses the parts that are unchanged.
-    pub fn baked_environment(&self) -> Option<&(EnvironmentKey, Arc<GpuEnvironment>)> {
+    pub fn baked_environment(&self) -> Option<&(Arc<EnvironmentKey>, Arc<GpuEnvironment>)> {
         self.environment.made.as_ref()
     }
 
     /// The environment of `state`, or a fallback while it is being baked. `None` while there is neither.
     fn environment_of(&self, state: &FrameState, is_first: bool) -> Option<&Arc<GpuEnvironment>> {
         // An edit of the bake stages appears at once, in the light that the previous shaders baked.
-        let is_edit = |key: &EnvironmentKey| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
+        let is_edit =
+            |key: &Arc<EnvironmentKey>| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
         let made = self.environment.get(state.environment.as_ref());
         let made = made.or_else(|| self.environment.before_edit(is_edit));
         made.or_else(|| is_first.then(|| self.environment.last_good()))
@@ -196,8 +197,7 @@ impl Resources {
     }
 
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
-    pub fn missing(&self, state: &FrameState) -> Missing {
-        let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
+    fn missing(&self, state: &FrameState, pipelines: Option<&Arc<BoundPipelines>>) -> Missing {
         let environment = state.environment.as_ref();
         let measured = state.measured.as_ref();
         let path_tracing =
@@ -209,24 +209,24 @@ impl Resources {
                 model: self.model.clone(),
                 before: self.path_tracing.made.clone(),
             }),
-            pipelines: !has_pipelines,
+            pipelines: pipelines.is_none(),
             tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
             measured: measured.filter(|key| self.measured.get(Some(key)).is_none()).cloned(),
         }
     }
 
-    /// Binds `state`, or returns `None` if a resource is missing. An edit of the shaders appears at once, in the light that the
+    /// Binds `state` if nothing is missing, and returns what is. An edit of the shaders appears at once, in the light that the
     /// previous shaders baked. With `is_first`, the last environment (initially the ambient light) may replace one that is still
     /// being baked, so that the first frame appears early.
     ///
     /// # Errors
     /// No memory left for the materials.
-    pub fn bind(&mut self, state: &Arc<FrameState>, is_first: bool) -> Result<Option<BoundFrame>, GpuError> {
-        let Some(pipelines) = self.pipelines_of(state).and_then(|set| set.bind(&state.pipelines)) else {
-            return Ok(None);
-        };
-        self.bind_with(pipelines, state, is_first)
+    pub fn bind(&mut self, state: &Arc<FrameState>, is_first: bool) -> Result<(Option<BoundFrame>, Missing), GpuError> {
+        let pipelines = self.pipelines_of(state).and_then(|set| set.bind(&state.pipelines));
+        let missing = self.missing(state, pipelines.as_ref());
+        let frame = pipelines.map_or(Ok(None), |pipelines| self.bind_with(pipelines, state, is_first))?;
+        Ok((frame, missing))
     }
 
     /// Binds `state` to the pipelines of `set`, a variant of the newest set, as [`Resources::bind`] does to those of the newest.
@@ -239,7 +239,7 @@ impl Resources {
 
     fn bind_with(
         &mut self,
-        pipelines: BoundPipelines,
+        pipelines: Arc<BoundPipelines>,
         state: &Arc<FrameState>,
         is_first: bool,
     ) -> Result<Option<BoundFrame>, GpuError> {
@@ -304,8 +304,9 @@ impl Resources {
     /// # Errors
     /// A bad file, or a device error.
     pub fn provide(&mut self, state: &Arc<FrameState>) -> Result<BoundFrame, ProvideError> {
-        let missing = self.missing(state);
         let set = self.pipelines_of(state).cloned().ok_or(ProvideError::Stale)?;
+        let pipelines = set.bind(&state.pipelines);
+        let missing = self.missing(state, pipelines.as_ref());
         if let Some(key) = missing.tables {
             let tables = Tables::bake(&set, &key, self.tables().map(|tables| &**tables));
             self.set_tables(key, tables.as_ref().ok().cloned());
@@ -325,12 +326,13 @@ impl Resources {
             set.build(&state.pipelines)?;
         }
         // Only now is the environment known.
-        if let Some(request) = self.missing(state).path_tracing {
-            let built = PathTracing::new(&self.gpu, &request);
-            self.set_path_tracing(request.key, built.as_ref().ok().cloned());
-            built?;
-        }
-        self.bind(state, false)?.ok_or(ProvideError::Stale)
+        let (frame, missing) = self.bind(state, false)?;
+        let Some(request) = missing.path_tracing else { return frame.ok_or(ProvideError::Stale) };
+        let built = PathTracing::new(&self.gpu, &request);
+        self.set_path_tracing(request.key, built.as_ref().ok().cloned());
+        built?;
+        let (frame, _) = self.bind(state, false)?;
+        frame.ok_or(ProvideError::Stale)
     }
 
     /// Bakes all parts of an environment with the newest pipelines on this thread. `from_disk` allows a cached result. On failure
@@ -338,14 +340,14 @@ impl Resources {
     ///
     /// # Errors
     /// As [`GpuEnvironment::bake`].
-    pub fn bake(&mut self, key: EnvironmentKey, from_disk: bool) -> Result<(), ProvideError> {
+    pub fn bake(&mut self, key: Arc<EnvironmentKey>, from_disk: bool) -> Result<(), ProvideError> {
         self.bake_after(key, None, from_disk)
     }
 
     fn bake_after(
         &mut self,
-        key: EnvironmentKey,
-        before: Option<&(EnvironmentKey, Arc<GpuEnvironment>)>,
+        key: Arc<EnvironmentKey>,
+        before: Option<&(Arc<EnvironmentKey>, Arc<GpuEnvironment>)>,
         from_disk: bool,
     ) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;

@@ -23,7 +23,7 @@ pub(crate) enum BakeMessage {
     /// The result of a bake.
     Environment(u64, Result<Arc<GpuEnvironment>, BakeError>),
     /// BRDF lookup tables.
-    Tables(TablesKey, Result<Arc<Tables>, GpuError>),
+    Tables(Arc<TablesKey>, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
     /// The resources for path tracing.
@@ -33,7 +33,7 @@ pub(crate) enum BakeMessage {
 /// A running bake.
 struct Bake {
     number: u64,
-    key: EnvironmentKey,
+    key: Arc<EnvironmentKey>,
     progress: (f32, String),
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct Baker {
     sender: MessageSender,
     bake: Option<Bake>,
     /// The newest tables. The window ignores results for older ones.
-    tables: Option<TablesKey>,
+    tables: Option<Arc<TablesKey>>,
     /// The newest read. The window ignores results of older ones.
     reading: Option<MeasuredKey>,
     /// The path-tracing resources being built. The window ignores results for older ones.
@@ -79,7 +79,7 @@ impl Baker {
     /// Bakes `key` with `set` and cancels any other bake, except that of an earlier step of the same slider: that one ends and
     /// shows, and the newest step follows. `None` only cancels. `resources` has the last bake, of which unchanged parts are
     /// reused.
-    pub(crate) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
+    pub(crate) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<Arc<EnvironmentKey>>, resources: &Resources) {
         let running = self.bake.as_ref().map(|bake| &bake.key);
         let is_step = running.zip(key.as_ref()).is_some_and(|(running, key)| key.is_step_of(running));
         if is_step || running == key.as_ref() {
@@ -107,8 +107,8 @@ impl Baker {
     }
 
     /// Bakes the tables of `key` with `set`, unless they, or those of an earlier step of the same slider, are being baked.
-    pub(crate) fn bake_tables(&mut self, set: &Arc<PipelineSet>, key: Option<TablesKey>, resources: &Resources) {
-        let is_running = |key: &TablesKey| self.tables.as_ref().is_some_and(|running| key.is_step_of(running));
+    pub(crate) fn bake_tables(&mut self, set: &Arc<PipelineSet>, key: Option<Arc<TablesKey>>, resources: &Resources) {
+        let is_running = |key: &Arc<TablesKey>| self.tables.as_ref().is_some_and(|running| key.is_step_of(running));
         let Some(key) = key.filter(|key| !is_running(key)) else { return };
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
@@ -160,12 +160,12 @@ impl Baker {
     }
 
     /// Marks a bake as ended. Returns its key, unless it was canceled.
-    pub(crate) fn ended(&mut self, number: u64) -> Option<EnvironmentKey> {
+    pub(crate) fn ended(&mut self, number: u64) -> Option<Arc<EnvironmentKey>> {
         self.bake.take_if(|bake| bake.number == number).map(|bake| bake.key)
     }
 
     /// Marks tables as baked. Returns whether they are the newest.
-    pub(crate) fn has_tables(&mut self, key: &TablesKey) -> bool {
+    pub(crate) fn has_tables(&mut self, key: &Arc<TablesKey>) -> bool {
         self.tables.take_if(|tables| tables == key).is_some()
     }
 

@@ -143,7 +143,7 @@ pub(crate) enum TaskKind {
     Worker,
     Loader(u64),
     Baker(u64),
-    Tables(TablesKey),
+    Tables(Arc<TablesKey>),
     PathTracing(PathTracingKey),
     MeasuredBrdf(MeasuredKey),
     LoopDiagnosis([u32; 2]),

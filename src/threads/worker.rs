@@ -23,7 +23,7 @@ use thread::Thread;
 /// The settings, scene and target of the window's current frame. A reload builds their pipelines.
 #[derive(Clone)]
 pub(crate) struct Snapshot {
-    pub(crate) settings: Settings,
+    pub(crate) settings: Arc<Settings>,
     pub(crate) scene: Option<Scene>,
     pub(crate) target: TargetFormat,
     /// Suns of the environment: see `Revisions::suns_of`.
@@ -79,7 +79,7 @@ impl Edit {
     }
 }
 
-type Build = (Arc<PipelineSet>, PipelineRequest);
+type Build = (Arc<PipelineSet>, Arc<PipelineRequest>);
 
 enum Job {
     Edit(Edit),
@@ -88,9 +88,9 @@ enum Job {
     Read(Source, BTreeSet<TreePath>),
     Build(Build),
     /// Builds pipelines of thumbnails when idle. Replaces an earlier job of this kind.
-    Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
+    Thumbnails(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
     /// Builds pipelines of the inspector's modes when idle, before thumbnails. Replaces an earlier job of this kind.
-    Inspected(Arc<PipelineSet>, VecDeque<PipelineRequest>),
+    Inspected(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
     /// Queries the driver's statistics of a frame's pipelines when idle. Replaces an earlier job of this kind.
     AskDriver(Build),
     /// The first frame of the last reload is on screen.
@@ -207,7 +207,7 @@ impl Worker {
     }
 
     /// Builds pipelines. The newest request wins. A request that is running or has failed is not sent again.
-    pub(crate) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+    pub(crate) fn build(&mut self, set: &Arc<PipelineSet>, request: &Arc<PipelineRequest>) {
         let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
         if !self.asked.iter().any(is_asked) {
             self.asked.truncate(MOST_ASKED - 1);
@@ -217,17 +217,17 @@ impl Worker {
     }
 
     /// Builds pipelines of thumbnails, one request after the other, while idle. Replaces earlier requests.
-    pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
+    pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<Arc<PipelineRequest>>) {
         self.send(Job::Thumbnails(set.clone(), requests));
     }
 
     /// [`Worker::build_thumbnails`] for the modes that the inspector reads.
-    pub(crate) fn build_inspected(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
+    pub(crate) fn build_inspected(&self, set: &Arc<PipelineSet>, requests: VecDeque<Arc<PipelineRequest>>) {
         self.send(Job::Inspected(set.clone(), requests));
     }
 
     /// Queries the driver's statistics of a frame's pipelines, one after the other, while idle. Each is built once more for that.
-    pub(crate) fn ask_driver(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+    pub(crate) fn ask_driver(&self, set: &Arc<PipelineSet>, request: &Arc<PipelineRequest>) {
         self.send(Job::AskDriver((set.clone(), request.clone())));
     }
 

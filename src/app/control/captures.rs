@@ -108,7 +108,7 @@ impl Job {
                 offscreen.set_count(frames);
                 offscreen.set_linear(file.as_deref().is_some_and(picture::holds_light));
                 let capture = offscreen.capture(own.unwrap_or(size))?;
-                let shown = SessionState { settings: offscreen.settings().clone(), ..work };
+                let shown = SessionState { settings: offscreen.session().shared_settings(), ..work };
                 let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
                 Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
             }

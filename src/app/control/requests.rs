@@ -106,7 +106,7 @@ impl Viewer {
         // A stage that is pending may declare a name that is not known yet.
         let is_complete = shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
         let before = self.session.problems(is_complete);
-        self.history.record(&self.session.settings, false);
+        self.history.record(&self.session.shared_settings(), false);
         let old = std::mem::replace(&mut self.session.settings, settings);
         let mut problems = self.session.problems(is_complete).into_iter().filter(|problem| !before.contains(problem));
         let problem = problems.next().or_else(|| {
@@ -119,7 +119,7 @@ impl Viewer {
             self.session.settings = old;
             return Err(problem);
         }
-        self.history.record(&self.session.settings, false);
+        self.history.record(&self.session.shared_settings(), false);
         Ok(())
     }
 

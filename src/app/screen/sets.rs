@@ -17,10 +17,9 @@ const REST: Duration = Duration::from_millis(150);
 /// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
 const REST_ON_CPU: Duration = Duration::from_millis(500);
 
-/// Everything that the sets show, but the modes.
-#[derive(PartialEq)]
+/// Everything that the sets show. The mode in the settings makes no difference.
 pub(super) struct Shown {
-    settings: Settings,
+    settings: Arc<Settings>,
     /// Address of the shaders: generations may count from 1 again.
     shaders: usize,
     scene: Scene,
@@ -36,9 +35,18 @@ pub(super) struct Shown {
 /// The sets whose pipelines are there, and the pipelines that are not.
 pub(super) struct BoundSets<'a> {
     pub(super) ready: Vec<(Vec<&'a Mode>, BoundFrame)>,
-    pub(super) missing: VecDeque<PipelineRequest>,
+    pub(super) missing: VecDeque<Arc<PipelineRequest>>,
     /// Whether the worker has not been asked for all of the missing pipelines.
     pub(super) is_new: bool,
+}
+
+impl PartialEq for Shown {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |of: &Self| (of.shaders, of.revisions, of.environment, of.target, of.gives_numbers, of.size);
+        parts(self) == parts(other)
+            && (Arc::ptr_eq(&self.settings, &other.settings) || self.settings.is_of_other_mode(&other.settings))
+            && self.scene == other.scene
+    }
 }
 
 impl Shown {
@@ -66,7 +74,7 @@ impl Shown {
         for set in sets {
             let state = FrameState::of_modes(&inputs, &set);
             let state = Arc::new(if self.gives_numbers { state.with_numbers() } else { state });
-            match viewer.resources.bind(&state, false)? {
+            match viewer.resources.bind(&state, false)?.0 {
                 Some(frame) => bound.ready.push((set, frame)),
                 None => {
                     let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
@@ -95,7 +103,7 @@ pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>
     }
     let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
     let shown = Shown {
-        settings: Settings { mode: String::new(), ..viewer.session.settings.clone() },
+        settings: viewer.session.shared_settings(),
         shaders: Arc::as_ptr(&shaders) as usize,
         scene: viewer.session.scene()?,
         revisions: viewer.session.revisions,

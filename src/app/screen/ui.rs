@@ -45,7 +45,7 @@ impl Screen {
         commands.into_iter().for_each(|command| viewer.execute(command));
         // A drag, or a number that is being typed, is one step.
         let is_held = self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input();
-        viewer.history.record(&viewer.session.settings, is_held);
+        viewer.history.record(&viewer.session.shared_settings(), is_held);
         self.input.handle_platform_output(window, output.platform_output);
         if let Some((swapchain, area)) = self.swapchain.as_ref().zip(shown) {
             self.whole = pixels(area.rect, output.pixels_per_point, swapchain.extent());

@@ -1,5 +1,7 @@
 //! Undo and redo of settings.
 
+use std::sync::Arc;
+
 use crate::settings::Settings;
 
 /// Most steps that are kept.
@@ -8,20 +10,20 @@ const STEPS: usize = 100;
 /// The settings before and after each change, apart from the camera, the mode and what orbits by itself.
 #[derive(Default)]
 pub(in crate::app) struct History {
-    past: Vec<Settings>,
-    future: Vec<Settings>,
+    past: Vec<Arc<Settings>>,
+    future: Vec<Arc<Settings>>,
     /// The settings when they were last recorded.
-    last: Option<Settings>,
+    last: Option<Arc<Settings>>,
 }
 
 impl History {
     /// Records the settings of a frame as a step if they have changed. `is_held`: a control is being dragged, so the step goes on.
-    pub(in crate::app) fn record(&mut self, now: &Settings, is_held: bool) {
+    pub(in crate::app) fn record(&mut self, now: &Arc<Settings>, is_held: bool) {
         let Some(last) = &self.last else {
             self.last = Some(now.clone());
             return;
         };
-        if is_held || with_view_of(last, now) == *now {
+        if is_held || Arc::ptr_eq(last, now) || last.is_other_view(now) {
             return;
         }
         self.past.extend(self.last.replace(now.clone()));
@@ -31,34 +33,35 @@ impl History {
 
     /// Takes the last step back. Returns whether there was one.
     pub(in crate::app) fn undo(&mut self, now: &mut Settings) -> bool {
-        self.record(now, false);
+        self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.past, &mut self.future, &mut self.last, now)
     }
 
     /// Takes the last undo back. Returns whether there was one.
     pub(in crate::app) fn redo(&mut self, now: &mut Settings) -> bool {
-        self.record(now, false);
+        self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.future, &mut self.past, &mut self.last, now)
     }
 
-    fn step(from: &mut Vec<Settings>, to: &mut Vec<Settings>, last: &mut Option<Settings>, now: &mut Settings) -> bool {
+    fn step(
+        from: &mut Vec<Arc<Settings>>,
+        to: &mut Vec<Arc<Settings>>,
+        last: &mut Option<Arc<Settings>>,
+        now: &mut Settings,
+    ) -> bool {
         let Some(settings) = from.pop() else { return false };
-        to.push(now.clone());
+        to.push(Arc::new(now.clone()));
         *now = with_view_of(&settings, now);
-        *last = Some(now.clone());
+        *last = Some(Arc::new(now.clone()));
         true
     }
 }
 
 /// `settings` with the camera, the mode and the orbiting lights of `view`.
 fn with_view_of(settings: &Settings, view: &Settings) -> Settings {
-    let mut settings = Settings { camera: view.camera.clone(), mode: view.mode.clone(), ..settings.clone() };
-    if view.lights.spin != 0.0 {
-        for (light, seen) in settings.lights.orbit.iter_mut().zip(&view.lights.orbit) {
-            light.azimuth = seen.azimuth;
-        }
-    }
-    settings
+    let turns = view.lights.spin != 0.0;
+    let lights = if turns { settings.lights.turned_as(&view.lights) } else { settings.lights.clone() };
+    Settings { camera: view.camera.clone(), mode: view.mode.clone(), lights, ..settings.clone() }
 }
 
 #[cfg(test)]
@@ -71,13 +74,17 @@ mod tests {
         settings
     }
 
+    fn record(history: &mut History, now: &Settings, is_held: bool) {
+        history.record(&Arc::new(now.clone()), is_held);
+    }
+
     #[test]
     fn steps_go_back_and_forth() {
         let (mut history, mut now) = (History::default(), with_ev(0.0));
-        history.record(&now, false);
+        record(&mut history, &now, false);
         for ev in [1.0, 2.0] {
             now.view.ev = ev;
-            history.record(&now, false);
+            record(&mut history, &now, false);
         }
         assert!(history.undo(&mut now) && now.view.ev == 1.0);
         assert!(history.undo(&mut now) && now.view.ev == 0.0);
@@ -87,35 +94,35 @@ mod tests {
         // A change after an undo is a new future.
         assert!(history.undo(&mut now));
         now.view.ev = 5.0;
-        history.record(&now, false);
+        record(&mut history, &now, false);
         assert!(!history.redo(&mut now) && now.view.ev == 5.0);
     }
 
     #[test]
     fn a_drag_is_one_step() {
         let (mut history, mut now) = (History::default(), with_ev(0.0));
-        history.record(&now, false);
+        record(&mut history, &now, false);
         for ev in [1.0, 2.0, 3.0] {
             now.view.ev = ev;
-            history.record(&now, true);
+            record(&mut history, &now, true);
         }
-        history.record(&now, false);
+        record(&mut history, &now, false);
         assert!(history.undo(&mut now) && now.view.ev == 0.0);
     }
 
     #[test]
     fn the_view_is_no_step_and_stays() {
         let (mut history, mut now) = (History::default(), with_ev(0.0));
-        history.record(&now, false);
+        record(&mut history, &now, false);
         now.camera.azimuth = 70.0;
         now.mode = "d".into();
         now.lights.spin = 30.0;
-        history.record(&now, false);
+        record(&mut history, &now, false);
         now.lights.orbit[0].azimuth += 10.0;
-        history.record(&now, false);
+        record(&mut history, &now, false);
         let azimuth = now.lights.orbit[0].azimuth;
         now.view.ev = 1.0;
-        history.record(&now, false);
+        record(&mut history, &now, false);
         assert!(history.undo(&mut now));
         assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "d"));
         assert_eq!(now.lights.orbit[0].azimuth, azimuth);
@@ -129,7 +136,7 @@ mod tests {
         let (mut history, mut now) = (History::default(), with_ev(0.0));
         for ev in 0..300 {
             now.view.ev = ev as f32 * 0.01;
-            history.record(&now, false);
+            record(&mut history, &now, false);
         }
         let mut steps = 0;
         while history.undo(&mut now) {

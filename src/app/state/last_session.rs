@@ -2,6 +2,7 @@
 //! A window without a model and options offers to go on with it, or does so by itself if the user has chosen that.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use chrono::{DateTime, Local};
 use serde::{Deserialize, Serialize};
@@ -103,7 +104,8 @@ fn absolute(mut work: SessionState) -> SessionState {
     work.tree = work.tree.map(|tree| of(&tree));
     let environment = Path::new(&work.settings.environment.name);
     if environment.is_file() {
-        work.settings.environment.name = of(environment).display().to_string();
+        let name = of(environment).display().to_string();
+        Arc::make_mut(&mut work.settings).environment.name = name;
     }
     work
 }
@@ -137,7 +139,7 @@ mod tests {
 
     fn session(directory: &str, mode: &str) -> LastSession {
         let settings = Settings { mode: mode.to_owned(), ..Settings::of_window() };
-        let work = SessionState { settings, model: Some("sphere-grid".into()), tree: None };
+        let work = SessionState { settings: Arc::new(settings), model: Some("sphere-grid".into()), tree: None };
         LastSession { directory: directory.into(), at: 1_790_000_000, work }
     }
 

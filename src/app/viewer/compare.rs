@@ -196,7 +196,7 @@ impl Viewer {
             CompareWith::Version(number) => Some(With::Version(number)),
             CompareWith::ThisPicture => {
                 let is_whole = !self.is_cut_short();
-                let Some(shown) = self.shown.as_ref().filter(|shown| is_whole && shown.scene.is_some()) else {
+                let Some(shown) = self.shown.as_ref().filter(|shown| is_whole && shown.scene().is_some()) else {
                     return self.say("There is no complete picture to keep");
                 };
                 let restored = self.edits.restored.as_ref().map(|restored| restored.number);
@@ -299,7 +299,7 @@ impl Viewer {
         let selected = std::mem::replace(&mut self.session.settings.mode, mode);
         let state = self.session.frame_state_of(shaders, self.clock, live.state.size, live.state.pipelines.target);
         self.session.settings.mode = selected;
-        Arc::new(state)
+        state
     }
 
     /// Inputs for a picture of each version, oldest first.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::{LastComplete, Viewer};
 use crate::app::panels::Readout;
 use crate::events::{Event, emit};
-use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
+use crate::frame::{Clock, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
 use crate::recovery::SessionState;
 use crate::render::{BoundFrame, Missing, PixelAt, View};
@@ -68,21 +68,22 @@ impl Viewer {
         let clock = self.playback.next(is_animated, self.reads_keys());
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
-        let state = Arc::new(state);
-        let lacks_nothing = self.request_missing(&state);
-        let is_complete = lacks_nothing && state.shaders.is_complete();
-        (self.clock, self.is_complete, self.shows_settings) = (clock, is_complete, false);
+        self.follow_settings(&state);
+        (self.clock, self.is_complete, self.shows_settings) = (clock, false, false);
         // The first picture of a model does not wait for its environment.
-        let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
-        if let Some(frame) = self.resources.bind(&state, is_first)? {
+        let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene().is_none());
+        let (frame, missing) = self.resources.bind(&state, is_first)?;
+        let lacks_nothing = self.request_missing(missing, &state);
+        let is_complete = lacks_nothing && state.shaders.is_complete();
+        self.is_complete = is_complete;
+        if let Some(frame) = frame {
             prepare(&frame)?;
             let generation = state.shaders.generation;
             if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
                 emit(&self.events, &Event::Settled { generation });
                 self.check_exercise();
             }
-            let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
-            let shown = LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() };
+            let shown = LastComplete { settings: self.session.shared_settings(), frame: frame.clone() };
             let last = self.shown.replace(shown);
             self.keep_version(last);
             self.shows_settings = lacks_nothing;
@@ -105,17 +106,17 @@ impl Viewer {
     ) -> Result<Option<LastComplete>, GpuError> {
         let selected = std::mem::replace(&mut self.session.settings.mode, mode.to_owned());
         let state = self.session.frame_state(self.clock, size, target(&self.gpu, &self.session.settings));
-        let settings = self.session.settings.clone();
+        let settings = self.session.shared_settings();
         self.session.settings.mode = selected;
-        let Some(state) = state.map(Arc::new) else { return Ok(last) };
-        if let Some(frame) = self.resources.bind(&state, false)? {
-            let (scene, revisions) = (state.scene.clone(), self.session.revisions);
-            return Ok(Some(LastComplete { settings, scene, revisions, frame }));
+        let Some(state) = state else { return Ok(last) };
+        let (frame, missing) = self.resources.bind(&state, false)?;
+        if let Some(frame) = frame {
+            return Ok(Some(LastComplete { settings, frame }));
         }
         // The picture comes first.
         if self.is_complete
             && !state.pipelines.needs_pending(&state.shaders)
-            && self.resources.missing(&state).pipelines
+            && missing.pipelines
             && let Some(set) = self.resources.pipelines()
         {
             self.threads.worker.build(set, &state.pipelines);
@@ -129,9 +130,9 @@ impl Viewer {
     /// Adds the shaders on screen to the versions if they are new, and keeps the last picture of those before.
     fn keep_version(&mut self, last: Option<LastComplete>) {
         let generation = self.shown_generation();
-        let has_model = self.shown.as_ref().is_some_and(|shown| shown.scene.is_some());
+        let has_model = self.shown.as_ref().is_some_and(|shown| shown.scene().is_some());
         if let Some(last) =
-            last.filter(|last| last.scene.is_some() && last.frame.state.shaders.generation != generation)
+            last.filter(|last| last.scene().is_some() && last.frame.state.shaders.generation != generation)
         {
             self.versions.retire(last);
         }
@@ -146,34 +147,22 @@ impl Viewer {
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow
     /// the current settings, since they need no new resources. All else is unchanged.
     pub(super) fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
-        let mut settings = shown.settings.clone();
-        let same_model = match (&shown.scene, self.session.model()) {
+        let same_model = match (shown.scene(), self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.loaded(), model),
             (scene, model) => scene.is_none() && model.is_none(),
         };
-        if same_model {
-            settings.camera = self.session.settings.camera.clone();
-            for (old, new) in settings.lights.orbit.iter_mut().zip(&self.session.settings.lights.orbit) {
-                old.azimuth = new.azimuth;
-            }
-        }
         let state = &shown.frame.state;
-        shown.frame.with_state(FrameState::new(&FrameInputs {
-            settings: &settings,
-            shaders: &state.shaders,
-            scene: shown.scene.as_ref(),
-            revisions: shown.revisions,
-            clock,
-            size,
-            target: state.pipelines.target,
-        }))
+        shown.frame.with_state(match same_model {
+            true => state.moved(&shown.settings.placed_as(&self.session.settings), clock, size),
+            false => state.moved(&shown.settings, clock, size),
+        })
     }
 
     /// The number and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open.
     pub(in crate::app) fn missing_thumbnail(&self, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
         let newest = self.shown_generation();
         // The thumbnail of the newest version waits until its lighting is complete.
-        let shown = self.shown.as_ref().filter(|shown| self.is_settled() && shown.scene.is_some());
+        let shown = self.shown.as_ref().filter(|shown| self.is_settled() && shown.scene().is_some());
         // A watched expression is no look of the version.
         let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
         let lacks = self.versions.without_thumbnail();
@@ -188,14 +177,17 @@ impl Viewer {
         Some((number, self.interim(picture, self.clock, size)))
     }
 
-    /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
-    fn request_missing(&mut self, state: &FrameState) -> bool {
-        let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
+    /// Tells the worker what the next reload is for.
+    fn follow_settings(&mut self, state: &FrameState) {
+        let (settings, scene) = (self.session.shared_settings(), state.scene.clone());
         let suns = self.session.revisions.suns_of(&settings);
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target, suns });
         self.watch_expression();
+    }
+
+    /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
+    fn request_missing(&mut self, missing: Missing, state: &FrameState) -> bool {
         let Some(set) = self.resources.pipelines() else { return false };
-        let missing = self.resources.missing(state);
         let is_empty = missing.is_empty();
         let waits = Waits::of(&missing);
         let since = self.waits.filter(|(before, _)| Some(*before) == waits).map(|(_, since)| since);
@@ -223,9 +215,9 @@ impl Viewer {
     /// The settings and the files of the picture on screen, from the current camera.
     pub(in crate::app) fn shown_session_state(&self) -> SessionState {
         let now = &self.session.settings;
-        let shown = self.shown.as_ref().map_or(now, |shown| &shown.settings);
+        let shown = self.shown.as_ref().map_or(now, |shown| &*shown.settings);
         let settings = Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() };
-        SessionState { settings, ..self.session_state() }
+        SessionState { settings: Arc::new(settings), ..self.session_state() }
     }
 
     /// The state of the picture on screen.

@@ -1,5 +1,7 @@
 //! Records the session for the process that replaces this one after a loss of the device.
 
+use std::sync::Arc;
+
 use winit::window::Window;
 
 use super::Viewer;
@@ -16,7 +18,7 @@ impl Viewer {
             || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
         let attempt = self.recorder.begin(&work, geometry);
         let shown = self.shown.as_ref().filter(|_| !self.model.loading)?;
-        (shown.settings == work.settings).then_some(attempt)
+        (Arc::ptr_eq(&shown.settings, &work.settings) || shown.settings == work.settings).then_some(attempt)
     }
 
     /// Records that the device has drawn the frame of `attempt`, and if the frame was complete, its shaders.

@@ -1,6 +1,7 @@
 //! Goes on with the last session of the working directory, and remembers this one.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::Viewer;
 use crate::app::command::Command;
@@ -14,7 +15,7 @@ impl Viewer {
     pub(in crate::app) fn session_state(&self) -> SessionState {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.location().map(Path::to_owned);
-        SessionState { settings: self.session.settings.clone(), model: model.clone(), tree }
+        SessionState { settings: self.session.shared_settings(), model: model.clone(), tree }
     }
 
     /// Goes on with the last session, as it was left.
@@ -35,7 +36,7 @@ impl Viewer {
         };
         let loads = is_other(model.as_deref(), now.model.as_deref());
         let tree = look.shaders.or(now.tree);
-        self.go_to(SessionState { settings: look.settings, model: model.clone(), tree });
+        self.go_to(SessionState { settings: Arc::new(look.settings), model: model.clone(), tree });
         loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
     }
 
@@ -45,7 +46,7 @@ impl Viewer {
         if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
             self.execute(Command::OpenTree(full_path(&tree)));
         }
-        self.session.settings = settings;
+        self.session.settings = Arc::unwrap_or_clone(settings);
         if is_other(model.as_deref(), now.model.as_deref()) {
             self.model.keeps_camera = true;
             self.load_model(model);

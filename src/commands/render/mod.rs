@@ -360,7 +360,7 @@ fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Fail
 /// Writes a picture with its settings, the model and the shader tree.
 fn write_picture(headless: &mut Headless, args: &Args, capture: &Capture, out: &Path) -> Result<(), Failure> {
     let work = SessionState {
-        settings: headless.settings_mut().clone(),
+        settings: headless.session().shared_settings(),
         model: args.model.clone(),
         tree: args.common.source()?.location().map(Path::to_owned),
     };

@@ -4,6 +4,7 @@ pub mod supervisor;
 
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use specula::app::{self, AppError, AppOptions, OtherPicture};
@@ -96,7 +97,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     }
     let source = args.common.source()?;
     let given = SessionState {
-        settings: args.common.settings_of_window()?,
+        settings: Arc::new(args.common.settings_of_window()?),
         model: args.model,
         tree: source.location().map(Path::to_owned),
     };
@@ -127,7 +128,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         model: work.model,
         // After a loss the settings are those of the session.
         follows_lights: follows_lights && state.work.is_none(),
-        settings: work.settings,
+        settings: Arc::unwrap_or_clone(work.settings),
         plain,
         size: state.window.map_or(args.common.size, |window| window.size),
         at: state.window.and_then(|window| window.at),

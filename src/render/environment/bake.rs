@@ -77,7 +77,7 @@ impl GpuEnvironment {
     pub fn bake(
         set: &PipelineSet,
         key: &EnvironmentKey,
-        before: Option<&(EnvironmentKey, Arc<Self>)>,
+        before: Option<&(Arc<EnvironmentKey>, Arc<Self>)>,
         control: &BakeControl<'_>,
     ) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();

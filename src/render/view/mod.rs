@@ -250,7 +250,8 @@ impl View {
         }
         let (samples, opaque_scene) = (targets.multisampled.as_ref(), targets.opaque_scene.as_ref());
         let images = FrameImages { picture: Some(&targets.color), samples, opaque_scene, ..FrameImages::default() };
-        let sets = self.declared.sets_of(&context, &images, frame.state.pipelines.model_keys())?;
+        let keys = redrawn.then(|| frame.state.pipelines.model_keys()).into_iter().flatten();
+        let sets = self.declared.sets_of(&context, &images, keys)?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {
             passes.model(encoder);

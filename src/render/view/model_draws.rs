@@ -13,6 +13,7 @@
 //! order of the indices, not the shape of the surface. `draws` and `triangles` of `bench` count what a mesh pipeline is
 //! given, not what its stages keep.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::declared::PassSets;
@@ -50,8 +51,10 @@ impl ModelDraws<'_> {
         let Some(scene) = &self.frame.scene else { return };
         encoder.keep(&scene.vertices);
         encoder.bind_indices(&scene.indices);
+        let pipeline_of = |material| key(material).and_then(|key| self.frame.pipelines.get(&key));
+        let mut known = HashMap::new();
         for draw in draws {
-            if let Some(pipeline) = key(draw.variant).and_then(|key| self.frame.pipelines.get(&key)) {
+            if let Some(pipeline) = *known.entry(draw.variant).or_insert_with(|| pipeline_of(draw.variant)) {
                 encoder.bind_set(self.layouts, &draw.material);
                 self.sets.bind(encoder, pipeline);
                 self.draw_one(encoder, draw);

@@ -48,9 +48,9 @@ pub(super) struct Thread {
     /// Panics since the last completed reload.
     pub(super) panics: u32,
     /// The thumbnails whose pipelines have not been built yet, and their set.
-    pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
+    pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>)>,
     /// The inspector's modes whose pipelines have not been built yet, and their set.
-    pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
+    pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>)>,
     /// The latest build of a thumbnail's pipelines, which may still run.
     pub(super) low_priority: Option<JoinHandle<()>>,
     /// The frame whose pipelines the driver is queried about.
@@ -202,7 +202,7 @@ impl Thread {
 
     /// Adds the stage of a watched expression to a change, if the settings watch another one.
     fn watch(&mut self, change: Change) -> Change {
-        let expression = self.snapshot().settings.expression;
+        let expression = self.snapshot().settings.expression.clone();
         match self.reloader.watch(&expression) {
             Ok(Some(watched)) => change.and(watched),
             Ok(None) => change,
@@ -339,7 +339,7 @@ impl Thread {
             if !self.inbox.is_empty() || self.is_stale() {
                 return;
             }
-            let settings = Settings { mode: mode.slug.clone(), ..snapshot.settings.clone() };
+            let settings = Arc::new(Settings { mode: mode.slug.clone(), ..(*snapshot.settings).clone() });
             let (scene, target, suns) = (snapshot.scene.clone(), snapshot.target, snapshot.suns);
             // An error is reported when the user selects the mode.
             let _ = set.build(&Snapshot { settings, scene, target, suns }.request(&set.shaders));

@@ -57,7 +57,7 @@ pub(in crate::app) struct StageTable {
     rows: Vec<StageRow>,
     /// Path of the stage that draws the model, or the pass that covers it.
     main: String,
-    made_of: Option<(Arc<PipelineSet>, PipelineRequest)>,
+    made_of: Option<(Arc<PipelineSet>, Arc<PipelineRequest>)>,
 }
 
 impl StageTable {
@@ -72,7 +72,7 @@ impl StageTable {
     }
 
     /// Whether the table is of other shaders or another picture.
-    pub(in crate::app) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) -> bool {
+    pub(in crate::app) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &Arc<PipelineRequest>) -> bool {
         !self.made_of.as_ref().is_some_and(|(of, known)| Arc::ptr_eq(of, set) && known == request)
     }
 
@@ -85,7 +85,7 @@ impl StageTable {
     pub(in crate::app) fn update(
         &mut self,
         set: &Arc<PipelineSet>,
-        request: &PipelineRequest,
+        request: &Arc<PipelineRequest>,
         before: Option<&Arc<PipelineSet>>,
         log: &ShaderLog,
     ) {

@@ -1,6 +1,7 @@
 //! The state of the shader tree.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::log::ShaderLog;
 use crate::events::ReloadEvent;
@@ -24,5 +25,5 @@ pub(in crate::app) struct ShaderStatus {
     /// Whether to ask the driver about the machine code of each picture.
     pub(in crate::app) asks_driver: bool,
     /// The picture that the driver was last asked about.
-    pub(in crate::app) told: Option<PipelineRequest>,
+    pub(in crate::app) told: Option<Arc<PipelineRequest>>,
 }

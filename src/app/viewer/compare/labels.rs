@@ -55,7 +55,7 @@ fn of(picture: &LastComplete, version: u64) -> Shown<'_> {
     Shown {
         version,
         mode: picture.frame.state.mode().map_or("", |mode| mode.name.as_str()),
-        model: picture.scene.as_ref().map_or("", |scene| &scene.model().name),
+        model: picture.scene().map_or("", |scene| &scene.model().name),
         settings: &picture.settings,
     }
 }

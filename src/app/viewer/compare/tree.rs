@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{Compare, Opening, REPLACED, With};
 use crate::app::viewer::picture::target;
 use crate::app::viewer::{LastComplete, Viewer};
-use crate::frame::{FrameState, Revisions};
+use crate::frame::FrameState;
 use crate::gpu::GpuError;
 use crate::pipeline::PipelineSet;
 use crate::render::BoundFrame;
@@ -33,7 +33,6 @@ struct LastAsked {
     /// A picture without resources.
     state: Arc<FrameState>,
     snapshot: Snapshot,
-    revisions: Revisions,
 }
 
 impl LastAsked {
@@ -104,7 +103,7 @@ impl Viewer {
 
     /// The settings, the model and the targets of now.
     fn snapshot(&self) -> Snapshot {
-        let settings = self.session.settings.clone();
+        let settings = self.session.shared_settings();
         let target = target(&self.gpu, &settings);
         let suns = self.session.revisions.suns_of(&settings);
         Snapshot { scene: self.session.scene(), settings, target, suns }
@@ -118,9 +117,7 @@ impl Viewer {
                 let Some(tree) = self.compare.tree(number) else { return };
                 match (provided, &tree.asked) {
                     (Ok(frame), Some(asked)) if Arc::ptr_eq(&frame.state, &asked.state) => {
-                        let (settings, scene) = (asked.snapshot.settings.clone(), asked.snapshot.scene.clone());
-                        let revisions = asked.revisions;
-                        tree.like = Some(LastComplete { settings, scene, revisions, frame: *frame });
+                        tree.like = Some(LastComplete { settings: asked.snapshot.settings.clone(), frame: *frame });
                     }
                     // The picture that was asked for since follows.
                     (Ok(_), _) => {}
@@ -184,16 +181,17 @@ impl Viewer {
         let snapshot = (self.is_complete && !is_pending).then(|| {
             let mut snapshot = self.snapshot();
             // The mouse may preview a mode.
-            live.state.mode().into_iter().for_each(|mode| snapshot.settings.mode.clone_from(&mode.slug));
+            if let Some(mode) = live.state.mode() {
+                Arc::make_mut(&mut snapshot.settings).mode.clone_from(&mode.slug);
+            }
             snapshot
         });
-        let revisions = self.session.revisions;
         let Some(With::Tree(tree)) = &mut self.compare.with else { return Ok(None) };
         let is_asked = tree.asked.as_ref().is_some_and(|asked| asked.has_needs_of(&state));
         if let Some(snapshot) = snapshot.filter(|_| !is_asked) {
             let resources = self.resources.clone();
             tree.tree.provide(Needs { snapshot: snapshot.clone(), resources, set, state: state.clone() });
-            tree.asked = Some(LastAsked { state, snapshot, revisions });
+            tree.asked = Some(LastAsked { state, snapshot });
         }
         let Some(With::Tree(tree)) = &self.compare.with else { return Ok(None) };
         Ok(tree.like.as_ref().map(|like| self.interim(like, self.clock, live.state.size)))

@@ -1,11 +1,12 @@
 //! The images and storage buffers of declared passes.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use super::desc::{PassDesc, ScratchDesc};
 use super::reuse::PassCacheKey;
 use super::{beyond_memory, lifetimes};
+use crate::frame::PipelineRequest;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
@@ -50,6 +51,8 @@ struct Key {
 #[derive(Default)]
 pub(super) struct Images {
     key: Key,
+    /// The request that the key was made of.
+    request: Weak<PipelineRequest>,
     /// By the names of the images.
     passes: BTreeMap<String, PassImages>,
     buffers: BTreeMap<String, Arc<Buffer>>,
@@ -88,8 +91,11 @@ pub(super) fn blank(gpu: &Arc<Gpu>, kind: TextureKind) -> Result<Arc<Image>, Gpu
 
 impl Images {
     /// The images for `frame`. Those of `self` that fit are reused. `None` if the requirements are unchanged.
-    pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
+    pub(super) fn next(&mut self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
         let request = &frame.state.pipelines;
+        if self.key.size == frame.state.size && std::ptr::eq(self.request.as_ptr(), Arc::as_ptr(request)) {
+            return Ok(None);
+        }
         let key = Key {
             size: frame.state.size,
             picture: request.picture_format(),
@@ -98,12 +104,15 @@ impl Images {
             buffers: buffers(&frame.state.shaders.graph),
         };
         if key == self.key {
+            self.request = Arc::downgrade(request);
             return Ok(None);
         }
         if let Some(error) = beyond_memory(request, frame.state.size, frame.state.pass_memory) {
             return Err(GpuError::PassMemory(error.one_line()));
         }
-        let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
+        let request_of_key = Arc::downgrade(request);
+        let (fresh, drawings) = (self.fresh.clone(), self.drawings);
+        let mut next = Self { key, request: request_of_key, fresh, drawings, ..Self::default() };
         let describe = |pass: &GraphPass, image: (&str, PassFormat)| PassDesc::new(pass, image, frame.state.size);
         let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), describe);
         let mut shared = BTreeMap::new();
