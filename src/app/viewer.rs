@@ -31,6 +31,7 @@ use super::state::selection::Selected;
 use super::state::shaders::stages::StageTable;
 use super::state::shaders::status::ShaderStatus;
 use super::state::timing::Timing;
+use super::state::watched_files::WatchedFiles;
 use super::{AppOptions, Early};
 use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
@@ -93,7 +94,7 @@ pub(super) struct ModelStatus {
     /// The file that was requested last.
     requested: Option<PathBuf>,
     /// The watched files: those of the model on screen, and after a failed load also those that it tried.
-    files: Vec<PathBuf>,
+    files: Arc<[PathBuf]>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
     /// Whether the camera stays where it is when the model that loads is another.
@@ -145,6 +146,7 @@ pub(super) struct Viewer {
     pub(super) compare: Compare,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
+    watched: WatchedFiles,
     pub(super) recorder: Recorder,
     allow_outside: bool,
     shown: Option<LastComplete>,
@@ -228,6 +230,7 @@ impl Viewer {
             gpu: gpu.clone(),
             resources,
             threads,
+            watched: WatchedFiles::default(),
             recorder,
             allow_outside: options.allow_outside,
             shown: None,
@@ -387,10 +390,10 @@ impl Viewer {
 
     /// Watches the files of the model, the environment, the measured BRDF and the compared picture.
     pub(super) fn watch_files(&mut self) {
-        let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
-        let files = self.model.files.iter().chain(&environment).chain(&measured).chain(self.compare.files());
-        let files: Vec<PathBuf> = files.cloned().collect();
-        if let Err(message) = self.threads.watch_files(files) {
+        let session = &self.session;
+        let look_up = || session.environment_files().into_iter().chain(session.measured_files()).collect();
+        let files = self.watched.changed(&session.settings, &self.model.files, self.compare.files(), look_up);
+        if let Some(Err(message)) = files.map(|files| self.threads.watch_files(files)) {
             self.say(message);
         }
     }

@@ -13,3 +13,4 @@ pub(super) mod recent;
 pub(super) mod selection;
 pub(super) mod shaders;
 pub(super) mod timing;
+pub(super) mod watched_files;

@@ -117,7 +117,8 @@ impl Viewer {
 
     /// Notes that the model of `path` is being loaded, and watches the file while it is read.
     pub(super) fn begin_loading(&mut self, path: Option<PathBuf>) {
-        self.model.files.extend(path.iter().filter_map(|path| std::path::absolute(path).ok()));
+        let more = path.iter().filter_map(|path| std::path::absolute(path).ok());
+        self.model.files = self.model.files.iter().cloned().chain(more).collect();
         self.model.requested = path;
         self.model.loading = true;
     }

@@ -51,7 +51,7 @@ impl Viewer {
                 }
                 self.model.path = loaded.path;
                 self.model.load_ms = loaded.ms;
-                self.model.files.clone_from(&model.files);
+                self.model.files = model.files.as_slice().into();
                 self.session.set_model(model);
                 self.resources.set_model(&uploaded);
                 let settings = &self.session.settings;

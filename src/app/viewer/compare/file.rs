@@ -70,7 +70,7 @@ impl Compare {
     }
 
     /// The file that is compared with, or that is being read for it.
-    pub(in crate::app) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+    pub(in crate::app) fn files(&self) -> impl Iterator<Item = &PathBuf> + Clone {
         let opening = match &self.opening {
             Some(Opening::File(_, path)) => Some(path),
             _ => None,
