@@ -10,7 +10,7 @@ use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
 use crate::app::numbers::{of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
-use crate::app::panels::passes::{internal, is_of_pass, is_switch};
+use crate::app::panels::passes::{is_of_pass, is_switch};
 use crate::app::state::exercise::LearnCommand;
 use crate::app::state::inspection::Page;
 use crate::app::state::recent::Kind;
@@ -332,7 +332,7 @@ fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings
 }
 
 fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
-    let internal = internal(shaders);
+    let internal = &shaders.graph.internal;
     for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.desc.when.is_none()) {
         let action = |on| Action::Pass(pass.name().to_owned(), on);
         let entry = switch("Pass", &pass.desc.label, pass.name(), pass.is_wanted(&settings.passes), action);

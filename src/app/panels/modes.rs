@@ -38,7 +38,7 @@ pub(super) fn show(
     let words = Words::new(search);
     // In most frames nothing is searched, and no text is made for it.
     let is_found = |mode: &Mode| words.is_empty() || words.are_in(&text_of(mode));
-    let place = |mode: &Mode| shaders.modes.iter().position(|other| other.slug == mode.slug).unwrap_or(0);
+    let place = |mode: &Mode| shaders.modes.iter().position(|other| std::ptr::eq(other, mode)).unwrap_or(0);
     let found =
         listed(&shaders.modes).into_iter().filter(|mode| is_found(mode)).map(|mode| (place(mode), mode)).collect();
     let found = best_first(found, &search.trim().to_lowercase());
@@ -126,8 +126,11 @@ impl<'m> List<'_, 'm> {
             true => tile::show(ui, mode, keys(index, mode).first().copied(), is_shown, self.gallery),
             false => row(ui, index, mode, is_shown),
         };
-        let hint = "Ctrl+click to show it beside the others";
-        let response = response.on_hover_text(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));
+        let response = response.on_hover_ui(|ui| {
+            ui.set_max_width(ui.spacing().tooltip_width);
+            let hint = "Ctrl+click to show it beside the others";
+            ui.label(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));
+        });
         if is_current && *self.scrolled_to != mode.slug {
             self.scrolled_to.clone_from(&mode.slug);
             response.scroll_to_me(None);

@@ -11,8 +11,7 @@ use crate::app::state::playback::Playback;
 use crate::app::widgets::rows::{Row, check, set_option};
 use crate::app::widgets::search::{self, Words};
 use crate::settings::Settings;
-use crate::shader::annotation::pass::{MODEL, Target};
-use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, TreePath, embedded};
+use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, embedded};
 
 /// Shows the panel. `is_animated`: something on screen reads the time.
 pub(super) fn show(
@@ -26,8 +25,7 @@ pub(super) fn show(
         clock(ui, playback);
     }
     let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());
-    let names = internal(shaders);
-    let Found { added, switches, shipped, inside } = Found::new(shaders, &names, &words);
+    let Found { added, switches, shipped, inside } = Found::new(shaders, &words);
     if !words.is_empty() && added.len() + switches.len() + shipped.len() + inside.len() == 0 {
         words.no_match(ui, "pass");
     }
@@ -35,7 +33,7 @@ pub(super) fn show(
     let mut shown = BTreeSet::new();
     let show_effect = |ui: &mut Ui, pass: &GraphPass, settings: &mut Settings, shown: &mut BTreeSet<_>| {
         if show_switch(ui, pass, settings) {
-            show_parameters(ui, of_effect(shaders, pass, &names), &pass.desc.label, settings, shown);
+            show_parameters(ui, of_effect(shaders, pass), &pass.desc.label, settings, shown);
         }
     };
     // A shader without a model covers what the others draw.
@@ -83,7 +81,8 @@ struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn new(shaders: &'a ShaderSet, names: &BTreeSet<&str>, words: &Words) -> Self {
+    fn new(shaders: &'a ShaderSet, words: &Words) -> Self {
+        let names = &shaders.graph.internal;
         let with = |texts: [&str; 4], parameters: Vec<&Parameter>| {
             let own = std::iter::once(texts.join(" "));
             let below = parameters.iter().map(|p| [texts[0], &p.label, &p.name, &p.doc].join(" "));
@@ -91,11 +90,11 @@ impl<'a> Found<'a> {
         };
         let is_found = |pass: &&GraphPass| {
             let desc = &pass.desc;
-            with([&desc.label, pass.name(), &desc.stage, &desc.doc], of_effect(shaders, pass, names))
+            words.is_empty() || with([&desc.label, pass.name(), &desc.stage, &desc.doc], of_effect(shaders, pass))
         };
         let is_switch = |switch: &&Constant| {
             let Constant { label, name, doc, group, .. } = *switch;
-            with([label, name, group, doc], of_switch(shaders, switch))
+            words.is_empty() || with([label, name, group, doc], of_switch(shaders, switch))
         };
         let (inside, effects): (Vec<_>, Vec<_>) =
             own(shaders).filter(is_found).partition(|pass| names.contains(pass.name()));
@@ -106,24 +105,13 @@ impl<'a> Found<'a> {
 
 /// Whether the pass is one of the tree that Specula comes with.
 fn is_shipped(pass: &GraphPass) -> bool {
-    embedded::read(None, &TreePath::from(pass.desc.stage.as_str())).is_some()
+    embedded::has(&pass.desc.stage)
 }
 
 /// The passes with a switch of their own.
 fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
     let has_own = |pass: &&GraphPass| pass.desc.when.is_none() && pass.has_switch();
     shaders.graph.passes.iter().map(|pass| &**pass).filter(has_own)
-}
-
-/// The names of the passes that only work for others: they do not change the picture, and another pass needs them or may need them.
-pub(in crate::app) fn internal(shaders: &ShaderSet) -> BTreeSet<&str> {
-    let passes = || shaders.graph.passes.iter().map(|pass| &**pass);
-    let needed = passes().flat_map(|pass| needs(shaders, pass).filter(|needed| needed.name() != pass.name()));
-    let needed: BTreeSet<&str> = needed.filter(|needed| !needed.desc.to_picture()).map(GraphPass::name).collect();
-    // The surface's images are there for passes that the user may write.
-    let is_offer = |pass: &GraphPass| pass.desc.to == Target::Image && is_shipped(pass);
-    let is_internal = |pass: &&GraphPass| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
-    passes().filter(is_internal).map(GraphPass::name).collect()
 }
 
 /// A pass and those whose images and buffers it needs.
@@ -158,7 +146,8 @@ fn of_switch<'a>(shaders: &'a ShaderSet, switch: &Constant) -> Vec<&'a Parameter
 }
 
 /// The parameters in the uniform blocks of an effect and of the internal passes that it needs.
-fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass, internal: &BTreeSet<&str>) -> Vec<&'a Parameter> {
+fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass) -> Vec<&'a Parameter> {
+    let internal = &shaders.graph.internal;
     let is_its = |pass: &&GraphPass| pass.name() == effect.name() || internal.contains(pass.name());
     let passes: Vec<_> = needs(shaders, effect).filter(|pass| pass.desc.when.is_none()).filter(is_its).collect();
     let in_block = |parameter: &&Parameter| {

@@ -65,13 +65,13 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::annotation::pass::{MODEL, PassDesc};
+use super::annotation::pass::{MODEL, PassDesc, Target};
 use super::annotation::{Annotations, PATHS_STAGE};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
-use super::source::{SourceError, TreePath};
+use super::source::{SourceError, TreePath, embedded};
 use super::spirv::primitive::Primitive;
 use super::spirv::reflect::Reflection;
 use crate::interface::{StageRole, VERTEX_BINDINGS};
@@ -226,6 +226,9 @@ pub struct Graph {
     pub passes: Vec<Arc<GraphPass>>,
     /// The textures that the stages read, by name and kind.
     pub textures: BTreeMap<(String, TextureKind), Arc<Texture>>,
+    /// The names of the passes that only work for others: they do not change the picture, and another pass needs them or may need
+    /// them.
+    pub internal: BTreeSet<String>,
 }
 
 /// A stage that declares a pass.
@@ -334,7 +337,8 @@ impl Graph {
             return Err(errors);
         }
         let passes = order::ordered(passes)?.into_iter().map(Arc::new).collect();
-        Ok(Self { passes, textures })
+        let graph = Self { passes, textures, internal: BTreeSet::new() };
+        Ok(Self { internal: graph.find_internal(), ..graph })
     }
 
     /// The pass of this name.
@@ -380,6 +384,21 @@ impl Graph {
     /// The last pass that makes a displayed picture without reading the one before.
     fn cover(&self, is_on: impl Fn(usize) -> bool) -> Option<usize> {
         (0..self.passes.len()).rev().find(|index| self.passes[*index].covers() && is_on(*index))
+    }
+
+    /// See [`Graph::internal`].
+    fn find_internal(&self) -> BTreeSet<String> {
+        let mut needed = BTreeSet::new();
+        for pass in &self.passes {
+            let all = self.needed_by(pass.name()).into_iter().map(|index| &self.passes[index]);
+            let others = all.filter(|other| other.name() != pass.name() && !other.desc.to_picture());
+            needed.extend(others.map(|other| other.name()));
+        }
+        // The surface's images are there for passes that the user may write.
+        let is_offer = |pass: &GraphPass| pass.desc.to == Target::Image && embedded::has(&pass.desc.stage);
+        let is_internal =
+            |pass: &&Arc<GraphPass>| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
+        self.passes.iter().filter(is_internal).map(|pass| pass.name().to_owned()).collect()
     }
 
     /// Indices of the pass `name` and of all passes whose images and buffers it needs.

@@ -1,8 +1,10 @@
 //! The shader tree that is embedded in the binary, and its examples. `specula new` writes one to a directory.
 
+use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use include_dir::{Dir, DirEntry, include_dir};
 
@@ -42,6 +44,12 @@ impl Example {
 pub fn read(example: Option<Example>, path: &TreePath) -> Option<&'static [u8]> {
     let of_example = example.and_then(|example| example.read(path));
     of_example.or_else(|| TREE.get_file(path.as_str()).map(|file| file.contents()))
+}
+
+/// Whether the tree as it is has a file.
+pub fn has(path: &str) -> bool {
+    static FILES: LazyLock<BTreeSet<String>> = LazyLock::new(|| list(None).iter().map(ToString::to_string).collect());
+    FILES.contains(path)
 }
 
 /// All embedded files, sorted.
