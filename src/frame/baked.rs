@@ -7,20 +7,30 @@ use crate::frame::stages::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES, TABL
 use crate::gpu::Specialization;
 use crate::shader::{ShaderSet, Stage};
 
-/// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver gets
-/// the same module, and the parameters that it reads have the same values. So constants without effect on the module, and edits
-/// of comments, make no difference.
+/// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver is
+/// known to get the same module, and the parameters that it reads have the same values. So constants without effect on the
+/// module, and edits of comments, make no difference once the thread that bakes has hashed both modules.
 #[derive(Clone, Debug)]
 pub struct BakeStage {
     pub(crate) stage: Arc<Stage>,
     pub(crate) constants: Specialization,
-    /// Hash of the specialized module.
-    pub(crate) module: u64,
     /// The bytes of the block `Params`.
     pub(crate) params: Arc<[u8]>,
 }
 
 impl BakeStage {
+    /// Hash of the specialized module. The first call takes milliseconds, so it is not for the window's thread.
+    pub(crate) fn module(&self) -> u64 {
+        self.stage.specialized_hash(&self.constants)
+    }
+
+    /// Whether both are known to have the same specialized module. Computes no hash.
+    fn has_module_of(&self, other: &Self) -> bool {
+        let hash = |of: &Self| of.stage.known_hash(&of.constants);
+        (Arc::ptr_eq(&self.stage, &other.stage) && self.constants == other.constants)
+            || hash(self).is_some_and(|own| hash(other) == Some(own))
+    }
+
     /// The bytes of the parameters that the stage reads.
     pub(crate) fn params_read(&self) -> impl Iterator<Item = &[u8]> {
         let of = |range: &Range<usize>| self.params.get(range.start..range.end.min(self.params.len()));
@@ -35,7 +45,7 @@ impl BakeStage {
 
 impl PartialEq for BakeStage {
     fn eq(&self, other: &Self) -> bool {
-        self.module == other.module && self.params_read().eq(other.params_read())
+        self.has_module_of(other) && self.params_read().eq(other.params_read())
     }
 }
 
@@ -57,12 +67,7 @@ fn stages(shaders: &ShaderSet, paths: &[&str], values: BakeValues<'_>) -> Vec<Ba
     let bake = stages.map(|stage| {
         let declares = |id: u32| stage.reflection.constants.iter().any(|constant| constant.id == id);
         let constants: Specialization = constants.iter().filter(|(id, _)| declares(*id)).copied().collect();
-        BakeStage {
-            module: stage.specialized_hash(&constants),
-            stage: stage.clone(),
-            constants,
-            params: params.clone(),
-        }
+        BakeStage { stage: stage.clone(), constants, params: params.clone() }
     });
     bake.collect()
 }
@@ -74,6 +79,11 @@ pub struct TablesKey(pub(crate) Vec<BakeStage>);
 impl TablesKey {
     pub(crate) fn new(shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
         Self(stages(shaders, &TABLE_STAGES, values))
+    }
+
+    /// Computes the hashes of the modules, by which keys of other shaders or constants can be equal. Takes milliseconds.
+    pub(crate) fn resolve(&self) {
+        resolve(&self.0);
     }
 
     /// Whether both differ at most by values of parameters, as two steps of a slider do.
@@ -115,6 +125,11 @@ impl EnvironmentKey {
         }
     }
 
+    /// See [`TablesKey::resolve`].
+    pub(crate) fn resolve(&self) {
+        [&self.radiance, &self.prefilter, &self.sheen].into_iter().for_each(|stages| resolve(stages));
+    }
+
     /// The bytes of the block `Params`. Empty for a tree without the stages of a bake.
     pub(crate) fn params(&self) -> &[u8] {
         self.radiance.first().map_or(&[], |stage| &stage.params)
@@ -142,8 +157,14 @@ impl EnvironmentKey {
     }
 }
 
+fn resolve(stages: &[BakeStage]) {
+    for stage in stages {
+        stage.module();
+    }
+}
+
 fn same_modules(a: &[BakeStage], b: &[BakeStage]) -> bool {
-    a.iter().map(|stage| stage.module).eq(b.iter().map(|stage| stage.module))
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.has_module_of(b))
 }
 
 fn same_constants(a: &[BakeStage], b: &[BakeStage]) -> bool {

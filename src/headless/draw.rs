@@ -114,9 +114,9 @@ impl Headless {
     /// # Errors
     /// Settings that do not fit, a device error, or a resource that no edit replaces is missing.
     pub fn draw_on_screen(&mut self) -> Result<(), HeadlessError> {
-        let state = Arc::new(self.frame_state()?);
-        let frame = self.resources.bind(&state, false)?.ok_or(ProvideError::Stale)?;
-        self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
+        let state = self.frame_state()?;
+        let (frame, _) = self.resources.bind(&state, false)?;
+        self.draw_frame(&frame.ok_or(ProvideError::Stale)?, Redraw::Always, |_, _, _| Ok(()))
     }
 
     /// Draws a frame to the output image, records `more`, and waits for both.

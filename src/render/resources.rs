@@ -308,7 +308,7 @@ impl Resources {
         let pipelines = set.bind(&state.pipelines);
         let missing = self.missing(state, pipelines.as_ref());
         if let Some(key) = missing.tables {
-            let tables = Tables::bake(&set, &key, self.tables().map(|tables| &**tables));
+            let tables = Tables::bake(&set, &key, self.tables());
             self.set_tables(key, tables.as_ref().ok().cloned());
             tables?;
         }

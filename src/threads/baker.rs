@@ -113,7 +113,7 @@ impl Baker {
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
         self.spawn(TaskKind::Tables(key.clone()), move |sender| {
-            let result = Tables::bake(&set, &key, before.as_deref());
+            let result = Tables::bake(&set, &key, before.as_ref());
             drop((set, before));
             sender.send(Message::Bake(BakeMessage::Tables(key, result)));
         });

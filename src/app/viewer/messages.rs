@@ -255,6 +255,10 @@ impl Viewer {
             BakeMessage::Environment(number, result) => {
                 let Some(key) = self.threads.baker.ended(number) else { return };
                 match result {
+                    // The shaders are others, and do the same.
+                    Ok(environment) if Arc::ptr_eq(&environment, self.resources.environment()) => {
+                        self.resources.set_environment(key, Some(environment));
+                    }
                     Ok(environment) => {
                         self.warn_of(environment.wrong());
                         if !environment::BUILT_IN.contains(&key.name.as_str()) {

@@ -80,7 +80,11 @@ impl Tables {
     ///
     /// # Errors
     /// A device error.
-    pub fn bake(set: &PipelineSet, key: &TablesKey, before: Option<&Self>) -> Result<Arc<Self>, GpuError> {
+    pub fn bake(set: &PipelineSet, key: &TablesKey, before: Option<&Arc<Self>>) -> Result<Arc<Self>, GpuError> {
+        key.resolve();
+        if let Some(before) = before.filter(|before| before.stages == key.0) {
+            return Ok(before.clone());
+        }
         let mut wrong = Vec::new();
         let mut images = Vec::new();
         let mut lamp_dfg = before.map(|before| before.lamp_dfg.clone());
@@ -184,7 +188,7 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
     let image = Image::new(gpu, path, desc)?;
     let task = Task { size: [table.side; 2], levels: 1, samples: table.samples, ..Task::default() };
     let is_kept = !of.reads_params();
-    let key = disk_cache::key(&[&of.module.to_le_bytes(), bytemuck::bytes_of(&task)]);
+    let key = disk_cache::key(&[&of.module().to_le_bytes(), bytemuck::bytes_of(&task)]);
     if let Some(bytes) = is_kept.then(|| disk_cache::load(&key, desc.bytes())).flatten() {
         compute::upload(gpu, &[(&image, &bytes)])?;
         return Ok((image, bytes));

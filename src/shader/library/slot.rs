@@ -61,10 +61,15 @@ impl PartialEq for Stage {
 }
 
 impl Stage {
+    /// [`Stage::specialized_hash`], if it has been computed.
+    pub fn known_hash(&self, constants: &[(u32, u32)]) -> Option<u64> {
+        self.specialized().iter().find(|known| known.constants == constants).map(|known| known.hash)
+    }
+
     /// [`behavior_hash`] of the module that the driver gets for these constants. Computed once.
     pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
-        if let Some(known) = self.specialized().iter().find(|known| known.constants == constants) {
-            return known.hash;
+        if let Some(known) = self.known_hash(constants) {
+            return known;
         }
         // Computed without the lock, since the pipelines of a scene are built in parallel.
         let words = specialize(&self.spirv, constants);

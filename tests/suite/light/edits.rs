@@ -38,6 +38,21 @@ fn the_selected_ndf_shapes_reflections() {
     assert_validated();
 }
 
+/// To specialize a module and hash it takes milliseconds, which the window's thread does not have.
+#[test]
+fn a_picture_as_a_value_hashes_no_module() {
+    let mut session = session("studio", &["NDF=GGX"]);
+    session.render();
+    session.set("NDF=Beckmann");
+    let (state, shaders) = (session.headless.frame_state().unwrap(), session.headless.shaders());
+    let stage = &shaders.stages["ibl/dfg.comp"];
+    let declares = |id: u32| stage.reflection.constants.iter().any(|constant| constant.id == id);
+    let constants: Vec<_> = state.pipelines.constants.iter().copied().filter(|(id, _)| declares(*id)).collect();
+    assert_eq!(stage.known_hash(&constants), None);
+    session.render();
+    assert!(stage.known_hash(&constants).is_some(), "the bake has hashed it");
+}
+
 #[test]
 fn an_edit_bakes_only_what_depends_on_it() {
     let mut session = session("studio", &["NDF=GGX"]);
