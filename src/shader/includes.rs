@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::TreePath;
-use super::compile::include::included_names;
+use super::glsl::includes;
 
 /// The includes of a set of files.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ impl IncludeGraph {
         let names_of = |(path, text): (&TreePath, &Arc<str>)| {
             let names = match known.remove(path).filter(|(old, _)| old == text) {
                 Some((_, names)) => names,
-                None => included_names(text),
+                None => includes(text).map(|include| include.name.to_owned()).collect(),
             };
             (path.clone(), (text.clone(), names))
         };

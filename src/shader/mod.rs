@@ -10,6 +10,7 @@ pub mod compile;
 pub mod contract;
 pub mod diagnostic;
 pub mod expression;
+mod glsl;
 pub mod graph;
 mod includes;
 mod incremental;

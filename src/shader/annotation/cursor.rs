@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::place::Place;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::is_word;
+use crate::shader::glsl::is_word;
 
 /// A position in an annotation.
 pub struct Cursor<'a> {

@@ -12,7 +12,7 @@ use crate::interface;
 use crate::message::{did_you_mean, either};
 use crate::settings::Colormap;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::{Line, tokens};
+use crate::shader::glsl::Line;
 use crate::shader::spirv::reflect::Scalar;
 
 /// The keys that the window reserves.
@@ -332,8 +332,8 @@ fn check_key(key: char) -> Result<(), String> {
 
 /// The number of `const uint MODE_X = 120u;`, and where it stands.
 fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, Place), Box<Diagnostic>> {
-    let found = declaration.map(|line| (line, tokens(&line.code)));
-    let words: Vec<&str> = found.iter().flat_map(|(_, tokens)| tokens).map(|(_, word)| *word).collect();
+    let found = declaration.map(|line| (line, line.tokens()));
+    let words: Vec<&str> = found.iter().flat_map(|(_, tokens)| tokens).map(|token| token.text).collect();
     if let (["const", "uint", _, "=", literal, ";", ..], Some((line, tokens))) = (words.as_slice(), &found) {
         let digits = literal.trim_end_matches(['u', 'U']);
         let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -342,7 +342,7 @@ fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, 
         };
         if let Ok(number) = number {
             let (file, raw) = (cursor.place().file.clone(), line.raw.to_owned());
-            return Ok((number, Place { file, line: line.number, raw, bytes: tokens[4].0.clone() }));
+            return Ok((number, Place { file, line: line.number, raw, bytes: tokens[4].bytes.clone() }));
         }
     }
     let found = declaration.map_or("the end of the file", |line| line.raw.trim());

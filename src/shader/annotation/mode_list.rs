@@ -4,15 +4,18 @@ use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use super::mode::Mode;
+use super::parse::{Found, parse_file};
 use crate::shader::{TreePath, embedded};
 
 /// The groups of the modes that Specula comes with.
-static BUILT_IN_GROUPS: LazyLock<HashSet<&'static str>> = LazyLock::new(|| {
+static BUILT_IN_GROUPS: LazyLock<HashSet<String>> = LazyLock::new(|| {
     let text = embedded::read(None, &TreePath::from("debug/modes.glsl")).unwrap_or_default();
     let text = std::str::from_utf8(text).unwrap_or_default();
-    let notes = text.lines().filter(|line| line.trim_start().starts_with("//@mode"));
-    let groups = notes.filter_map(|line| line.split("group=\"").nth(1)?.split('"').next());
-    groups.chain(["Passes"]).collect()
+    let groups = parse_file("", text).0.into_iter().filter_map(|found| match found {
+        Found::Mode(mode, _) => Some(mode.group),
+        _ => None,
+    });
+    groups.chain(["Passes".to_owned()]).collect()
 });
 
 /// The modes in the order of lists: that of their numbers, but the author's own groups follow the first group.

@@ -8,7 +8,7 @@ use super::texture::{self, TextureDesc};
 use super::ui::{Ui, ui};
 use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::{Line, lines};
+use crate::shader::glsl::{Line, lines};
 
 /// A parsed annotation.
 #[derive(Debug)]
@@ -34,8 +34,8 @@ pub fn parse_file(file: &str, text: &str) -> (Vec<Found>, Vec<Diagnostic>) {
         let Some(start) = line.annotation else { continue };
         let end = line.raw.trim_end().len();
         let place = Place { file: file.to_owned(), line: line.number, raw: line.raw.to_owned(), bytes: start..end };
-        let own = (!line.code.trim().is_empty()).then_some(line);
-        let declaration = own.or_else(|| lines[index + 1..].iter().find(|line| !line.code.trim().is_empty()));
+        let own = (!line.is_blank()).then_some(line);
+        let declaration = own.or_else(|| lines[index + 1..].iter().find(|line| !line.is_blank()));
         match parse(place, start, declaration) {
             Ok(one) => found.push(one),
             Err(error) => errors.push(*error),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::find_word;
+use crate::shader::glsl::find_word;
 
 /// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
 #[derive(Clone, Debug, Default)]

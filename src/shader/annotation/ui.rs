@@ -5,7 +5,7 @@ use super::cursor::Cursor;
 use super::place::Place;
 use super::value::{choices, claim, claimed, default, range, text_key};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::{Line, is_word, tokens};
+use crate::shader::glsl::{Line, is_word};
 use crate::shader::spirv::reflect::Scalar;
 
 /// The declaration that a `//@ui` belongs to.
@@ -159,7 +159,8 @@ pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<Str
 fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Declared, String), Box<Diagnostic>> {
     // The declaration may be on the next line.
     let error = |word: &str, message: String| Err(Box::new(cursor.place().error_at(word, message)));
-    let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
+    let tokens = declaration.map(Line::tokens).unwrap_or_default();
+    let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
     if words.contains(&"constant_id") {
         let at = words.iter().position(|word| *word == "const");
         let scalar = match at.and_then(|at| words.get(at + 1).copied()) {

@@ -4,7 +4,7 @@
 //! errors in these. A stray `#else` may even compile, without the rest of the file that includes it. So every file is checked here.
 
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::text::{Line, lines, tokens};
+use crate::shader::glsl::{Line, lines};
 
 /// A conditional directive and its line.
 struct Directive<'a> {
@@ -20,9 +20,7 @@ impl Directive<'_> {
     }
 
     fn error(&self, file: &str, message: &str) -> Diagnostic {
-        let start = self.line.code.len() - self.line.code.trim_start().len();
-        let bytes = start..self.line.code.trim_end().len();
-        Diagnostic::error(file, message).on_line(self.line.number, Some(self.line.raw)).under(bytes)
+        Diagnostic::error(file, message).on_line(self.line.number, Some(self.line.raw)).under(self.line.trimmed())
     }
 }
 
@@ -92,9 +90,10 @@ fn check(file: &str, directives: &[Directive<'_>]) -> Option<Diagnostic> {
 /// The directives between an include guard and its `#endif`, if the file has such a guard and both ends of it.
 fn guarded<'a, 'b>(lines: &[Line<'_>], directives: &'b [Directive<'a>]) -> Option<&'b [Directive<'a>]> {
     let [first, inside @ .., last] = directives else { return None };
-    let mut code = lines.iter().filter(|line| !line.code.trim().is_empty());
+    let mut code = lines.iter().filter(|line| !line.is_blank());
     let (begin, define, end) = (code.next()?, code.next()?, code.next_back()?);
-    let defined: Vec<&str> = tokens(&define.code).into_iter().map(|(_, token)| token).collect();
+    let defined = define.tokens();
+    let defined: Vec<&str> = defined.iter().map(|token| token.text).collect();
     let is_guard = first.keyword == "ifndef"
         && begin.number == first.line.number
         && defined.starts_with(&["#", "define", first.condition]);
@@ -102,22 +101,13 @@ fn guarded<'a, 'b>(lines: &[Line<'_>], directives: &'b [Directive<'a>]) -> Optio
 }
 
 fn directives<'a>(lines: &'a [Line<'a>]) -> Vec<Directive<'a>> {
-    let mut continues = false;
-    let mut found = Vec::new();
-    for line in lines {
-        // A line after a backslash belongs to the directive before it.
-        if !std::mem::replace(&mut continues, line.raw.ends_with('\\'))
-            && let Some(rest) = line.code.trim_start().strip_prefix('#')
-        {
-            let rest = rest.trim();
-            let (keyword, condition) =
-                rest.split_at(rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(rest.len()));
-            if matches!(keyword, "if" | "ifdef" | "ifndef" | "elif" | "else" | "endif") {
-                found.push(Directive { keyword, condition: condition.trim(), line });
-            }
-        }
-    }
-    found
+    let directive = |line: &'a Line<'a>| {
+        let keyword = line.keyword?;
+        let condition = line.code.split_once(keyword)?.1.trim();
+        let is_conditional = matches!(keyword, "if" | "ifdef" | "ifndef" | "elif" | "else" | "endif");
+        is_conditional.then_some(Directive { keyword, condition, line })
+    };
+    lines.iter().filter_map(directive).collect()
 }
 
 #[cfg(test)]

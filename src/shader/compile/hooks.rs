@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{find_word, lines};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{find_word, lines};
 
 /// The hooks of the shipped tree: name and declaration.
 const HOOKS: [(&str, &str); 6] = [

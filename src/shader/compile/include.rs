@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use super::unbound::unbound;
+use crate::shader::glsl::includes;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{Line, lines};
 use crate::shader::source::{SourceError, TreePath};
 
 /// Maximum depth of includes. glslang itself has no limit.
@@ -82,27 +82,14 @@ pub fn files_of(snapshot: &Snapshot<'_>, path: &TreePath) -> BTreeSet<TreePath> 
     while let Some(path) = open.pop() {
         let Ok(text) = snapshot.read(&path) else { continue };
         if files.insert(path.clone()) {
-            let found = included_names(&text).into_iter().filter_map(|name| {
-                let mut candidates = path.sibling(&name).into_iter().chain(TreePath::parse(&name));
+            let found = includes(&text).filter_map(|include| {
+                let mut candidates = path.sibling(include.name).into_iter().chain(TreePath::parse(include.name));
                 candidates.find(|candidate| snapshot.read(candidate).is_ok())
             });
             open.extend(found);
         }
     }
     files
-}
-
-/// The names that a text includes, in its order. Includes in comments do not count.
-pub fn included_names(text: &str) -> Vec<String> {
-    let is_code = |line: &Line<'_>| line.code.trim_start().starts_with('#');
-    let found = lines(text).into_iter().filter(is_code);
-    found.filter_map(|line| included_name(line.raw).map(str::to_owned)).collect()
-}
-
-/// The name in `#include "name"`.
-fn included_name(line: &str) -> Option<&str> {
-    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?.trim_start();
-    rest.strip_prefix('"')?.split_once('"').map(|(name, _)| name)
 }
 
 fn chain(stack: &[TreePath], last: Option<&TreePath>) -> String {

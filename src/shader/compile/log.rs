@@ -8,9 +8,9 @@ use super::hooks::other_parameters;
 use super::names::Names;
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
+use crate::shader::glsl::{Line, Token, TokenKind, assigns, code, find_word, includes, lines};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{Line, find_word, is_word, lines, tokens};
 
 /// Splits a log into errors and warnings. File names in the log are tree paths. `stage` is the outermost file, and
 /// `dependencies` are the files that may appear.
@@ -22,7 +22,7 @@ pub fn parse(
 ) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let mut out: Vec<Diagnostic> = Vec::new();
     let names = LazyCell::new(|| {
-        let text = |path: &TreePath| snapshot.read(path).ok().map(|text| text.to_string());
+        let text = |path| snapshot.read(path).ok();
         Names::of(dependencies.iter().filter_map(|path| Some((path, text(path)?))))
     });
     for row in log.lines() {
@@ -86,9 +86,9 @@ fn nearest_name<'a>(
         return None;
     }
     let excerpt = diagnostic.excerpt.as_deref().unwrap_or_default();
-    let tokens: Vec<&str> = tokens(excerpt).into_iter().map(|(_, token)| token).collect();
-    let base = tokens.windows(3).find(|three| three[1] == "." && three[2] == unknown).map_or("", |three| three[0]);
-    names().nearest_member(unknown, base)
+    let tokens = code(excerpt);
+    let base = tokens.windows(3).find(|three| three[1].text == "." && three[2].text == unknown);
+    names().nearest_member(unknown, base.map_or("", |three| three[0].text))
 }
 
 /// `PLACE: error: MESSAGE`
@@ -143,8 +143,8 @@ fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>, 
     if token == "#include" {
         let said = said.rsplit_once(" for header name: ").map_or(said, |(said, _)| said);
         let diagnostic = Diagnostic::error(file, said).on_line(line, source.map(|line| line.raw));
-        return match source.and_then(|line| include_name(line.raw)) {
-            Some(bytes) => diagnostic.under(bytes),
+        return match source.and_then(|line| includes(line.raw).next()) {
+            Some(include) => diagnostic.under(include.bytes),
             None => diagnostic,
         };
     }
@@ -165,26 +165,14 @@ fn split_token(message: &str) -> (&str, &str) {
 /// The position of a message's token in its line.
 fn locate(line: &Line<'_>, token: &str, said: &str) -> Option<Range<usize>> {
     match token {
-        "assign" | "=" => assignment(&line.code),
+        "assign" | "=" => {
+            let tokens = line.tokens();
+            (0..tokens.len()).find(|at| assigns(&tokens, *at)).map(|at| tokens[at].bytes.clone())
+        }
         // "function does not return a value: f"
         "" => find_word(&line.code, said.rsplit_once(": ")?.1),
         token => find_word(&line.code, token),
     }
-}
-
-/// The first `=` that is not part of a comparison.
-fn assignment(code: &str) -> Option<Range<usize>> {
-    let bytes = code.as_bytes();
-    let compares =
-        |at: usize| bytes.get(at + 1) == Some(&b'=') || (at > 0 && matches!(bytes[at - 1], b'=' | b'!' | b'<' | b'>'));
-    code.match_indices('=').map(|(at, _)| at).find(|at| !compares(*at)).map(|at| at..at + 1)
-}
-
-/// The file name of an `#include` line.
-fn include_name(raw: &str) -> Option<Range<usize>> {
-    let start = raw.find(['"', '<'])? + 1;
-    let length = raw[start..].find(['"', '>'])?;
-    Some(start..start + length)
 }
 
 fn not_ascii(file: String, line: u32, source: Option<&Line<'_>>) -> Diagnostic {
@@ -206,7 +194,7 @@ fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
         return diagnostic.with_help("a stage needs `void main() { ... }`; files meant to be included end in .glsl");
     }
     if said.starts_with("#version") || said.starts_with("version") {
-        let version = lines.iter().find(|line| line.code.trim_start().starts_with("#version"));
+        let version = lines.iter().find(|line| line.keyword == Some("version"));
         let diagnostic = diagnostic.with_help("begin the file with `#version 460`");
         return match version {
             Some(line) => diagnostic.on_line(line.number, Some(line.raw)),
@@ -228,58 +216,63 @@ fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: 
     let mut diagnostic = Diagnostic::error(file, message).on_line(line, source.map(|line| line.raw));
     let Some(source) = source else { return diagnostic };
     let open = unterminated_before(lines, index);
-    let first = tokens(&source.code).first().map(|(bytes, _)| bytes.clone());
-    let bytes = if open.is_some() && first.as_ref().is_some_and(|first| is_a(unexpected, &source.code[first.clone()])) {
-        diagnostic.help = open.map(|line| format!("line {line} does not end with ';'"));
-        first
-    } else {
-        suspect(&source.code, unexpected)
+    let tokens = source.tokens();
+    let token = match tokens.first().filter(|first| open.is_some() && is_a(unexpected, first)) {
+        Some(first) => {
+            diagnostic.help = open.map(|line| format!("line {line} does not end with ';'"));
+            Some(first)
+        }
+        None => suspect(&tokens, unexpected),
     };
-    match bytes {
-        Some(bytes) => diagnostic.under(bytes),
+    match token {
+        Some(token) => diagnostic.under(token.bytes.clone()),
         None => diagnostic,
     }
 }
 
 /// The last line of code before `index`, if it looks like a statement without `;`. Skips blank lines and directives.
 fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
-    let is_code = |line: &&Line<'_>| !line.code.trim().is_empty() && !line.code.trim_start().starts_with('#');
-    let before = lines.get(..index)?.iter().rev().find(is_code)?;
-    let tokens = tokens(&before.code);
-    let (first, last) = (tokens.first()?.1, tokens.last()?.1);
-    let opens_block = matches!(first, "if" | "for" | "while" | "else" | "switch" | "do");
-    let ends_value = last.ends_with(is_word) || matches!(last, ")" | "]");
-    (ends_value && !opens_block).then_some(before.number)
+    let before = lines.get(..index)?.iter().rev().find(|line| line.is_code())?;
+    let tokens = before.tokens();
+    let opens_block = matches!(tokens.first()?.text, "if" | "for" | "while" | "else" | "switch" | "do");
+    (is_value(tokens.last()?) && !opens_block).then_some(before.number)
 }
 
-/// Whether `word` can be the token that the parser calls `name`.
-fn is_a(name: &str, word: &str) -> bool {
+/// Whether a token can end a value.
+fn is_value(token: &Token<'_>) -> bool {
+    matches!(token.kind, TokenKind::Word | TokenKind::Number) || matches!(token.text, ")" | "]")
+}
+
+/// The kind of the token that the parser calls `name`; `None` if it has a name for this token alone.
+fn kind_of(name: &str) -> Option<TokenKind> {
     match name {
-        "IDENTIFIER" | "TYPE_NAME" => word.starts_with(|c: char| is_word(c) && !c.is_ascii_digit()),
-        "FLOATCONSTANT" | "INTCONSTANT" | "UINTCONSTANT" | "DOUBLECONSTANT" => {
-            word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-        }
-        name => spelled(name).trim_matches('\'').starts_with(word),
+        "IDENTIFIER" | "TYPE_NAME" => Some(TokenKind::Word),
+        "FLOATCONSTANT" | "INTCONSTANT" | "UINTCONSTANT" | "DOUBLECONSTANT" => Some(TokenKind::Number),
+        _ => None,
     }
 }
 
+/// Whether a token can be the one that the parser calls `name`.
+fn is_a(name: &str, token: &Token<'_>) -> bool {
+    let is_spelled = || spelled(name).trim_matches('\'').starts_with(token.text);
+    kind_of(name).map_or_else(is_spelled, |kind| token.kind == kind)
+}
+
 /// The likely cause in the line: a value that follows a value, or the last occurrence of the named sign.
-fn suspect(code: &str, name: &str) -> Option<Range<usize>> {
-    let tokens = tokens(code);
-    let value = |word: &str| word.starts_with(is_word) || matches!(word, ")" | "]");
-    let fits = |at: &usize| is_a(name, tokens[*at].1);
-    let at = if is_a(name, "x") || is_a(name, "1") {
-        let follows = |at: &usize| {
-            // `type name` is not a pair of values: the first of a pair must be part of an expression.
-            let inside =
-                *at >= 2 && (!tokens[at - 2].1.starts_with(is_word) && !matches!(tokens[at - 2].1, ";" | "{" | "}"));
-            *at >= 1 && value(tokens[at - 1].1) && (inside || is_a("INTCONSTANT", tokens[at - 1].1))
-        };
-        (0..tokens.len()).filter(fits).find(follows).or_else(|| (0..tokens.len().min(1)).find(fits))?
-    } else {
-        (0..tokens.len()).rev().find(fits)?
+fn suspect<'a, 'b>(tokens: &'a [Token<'b>], name: &str) -> Option<&'a Token<'b>> {
+    let fits = |at: &usize| is_a(name, &tokens[*at]);
+    let is_word = |token: &Token<'_>| matches!(token.kind, TokenKind::Word | TokenKind::Number);
+    let mut all = 0..tokens.len();
+    if kind_of(name).is_none() {
+        return all.rfind(fits).map(|at| &tokens[at]);
+    }
+    let follows = |at: &usize| {
+        // `type name` is not a pair of values: the first of a pair must be part of an expression.
+        let inside = *at >= 2 && !is_word(&tokens[at - 2]) && !matches!(tokens[at - 2].text, ";" | "{" | "}");
+        *at >= 1 && is_value(&tokens[at - 1]) && (inside || tokens[at - 1].kind == TokenKind::Number)
     };
-    Some(tokens[at].0.clone())
+    let at = all.clone().filter(fits).find(follows).or_else(|| all.next().filter(fits))?;
+    Some(&tokens[at])
 }
 
 /// The spelling of a token that the parser calls `name`.

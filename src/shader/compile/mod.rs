@@ -16,9 +16,9 @@ use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, Sh
 
 use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{Line, lines, tokens};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::lines;
 use crate::shader::spirv::bindings::assign_set;
 use include::Includes;
 
@@ -296,11 +296,11 @@ fn unknown_version(file: &str, text: &str, kind: StageKind) -> Option<Diagnostic
         return None;
     }
     let lines = lines(text);
-    let first = lines.iter().find(|line| !line.code.trim().is_empty());
-    let mut words = first.map(|line| line.code.split_whitespace()).into_iter().flatten();
-    let is_known = words.next() == Some("#version")
-        && words.next().is_some_and(|version| matches!(version, "450" | "460"))
-        && words.next().is_none_or(|profile| profile == "core");
+    let first = lines.iter().find(|line| !line.is_blank());
+    let tokens = first.map(Line::tokens).unwrap_or_default();
+    let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
+    let is_known =
+        matches!(words.as_slice(), ["#", "version", "450" | "460"] | ["#", "version", "450" | "460", "core"]);
     let error = || {
         let error = Diagnostic::error(file, format!("a {} stage begins with `#version 460`", kind.name()));
         first.map_or(error.clone(), |line| error.on_line(line.number, Some(line.raw)))
@@ -342,8 +342,7 @@ fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) 
 
 /// Whether the text of a stage declares a pass.
 pub fn declares_pass(text: &str) -> bool {
-    text.contains("//@pass")
-        && lines(text).iter().any(|line| line.annotation.is_some_and(|at| line.raw[at..].starts_with("//@pass")))
+    text.contains("//@pass") && tokens(text).any(|token| token.text.starts_with("//@pass"))
 }
 
 /// The macro that compute shaders are compiled with, so that a file that they share with other stages can tell.

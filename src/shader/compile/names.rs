@@ -1,9 +1,10 @@
 //! Names that the files of a stage declare, and the nearest of them to an unknown name.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
+use crate::shader::glsl::{Code, Token, is_name, tokens};
 use crate::shader::source::TreePath;
-use crate::shader::source::text::{Line, is_word, lines, tokens};
 
 /// Where a declared name can be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,7 +29,7 @@ pub struct Names(BTreeMap<TreePath, Vec<Declared>>);
 
 impl Names {
     /// Finds the declarations in the texts of files, without a preprocessor: those of all branches count.
-    pub fn of<'a>(files: impl Iterator<Item = (&'a TreePath, String)>) -> Self {
+    pub fn of<'a>(files: impl Iterator<Item = (&'a TreePath, Arc<str>)>) -> Self {
         Self(files.map(|(path, text)| (path.clone(), Scanner::scan(&text))).collect())
     }
 
@@ -101,9 +102,8 @@ enum Body {
 }
 
 /// Reads declarations from the tokens of a file: pairs of a type and a name, and the names that follow in a list.
-#[derive(Default)]
 struct Scanner<'a> {
-    tokens: Vec<(u32, &'a str)>,
+    code: Code<'a>,
     out: Vec<Declared>,
     /// Open braces.
     depth: u32,
@@ -117,27 +117,21 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    fn scan(text: &str) -> Vec<Declared> {
-        let lines = lines(text);
-        let mut scanner = Scanner::default();
-        let mut is_directive = false;
-        for line in &lines {
-            is_directive |= line.code.trim_start().starts_with('#');
-            if is_directive {
-                scanner.out.extend(macro_name(line));
-            } else {
-                scanner.tokens.extend(tokens(&line.code).into_iter().map(|(_, token)| (line.number, token)));
-            }
-            is_directive &= line.code.trim_end().ends_with('\\');
-        }
-        for at in 0..scanner.tokens.len() {
+    fn scan(text: &'a str) -> Vec<Declared> {
+        let (code, out) = (Code::new(text), macros(text).collect());
+        let mut scanner = Self { code, out, depth: 0, nested: 0, body: None, statement: (0, 0), list: None };
+        for at in 0..scanner.code.tokens.len() {
             scanner.read(at);
         }
         scanner.out
     }
 
     fn token(&self, at: usize) -> &'a str {
-        self.tokens.get(at).map_or("", |(_, token)| token)
+        self.code.tokens.get(at).map_or("", |token| token.text)
+    }
+
+    fn line(&self, at: usize) -> u32 {
+        self.code.number_at(self.code.tokens[at].bytes.start)
     }
 
     fn read(&mut self, at: usize) {
@@ -193,7 +187,7 @@ impl<'a> Scanner<'a> {
     }
 
     fn declare(&mut self, kind: &str, at: usize) {
-        let (line, name) = self.tokens[at];
+        let (line, name) = (self.line(at), self.token(at));
         let scope = match &self.body {
             Some(Body::Function(_)) => Scope::Local(line, u32::MAX),
             Some(Body::Members(owner, _)) => Scope::Member(owner.clone()),
@@ -209,7 +203,7 @@ impl<'a> Scanner<'a> {
     fn opened(&mut self, at: usize) -> Body {
         let (first, declared) = self.statement;
         if at > 0 && self.token(at - 1) == ")" {
-            let line = self.tokens[first].0;
+            let line = self.line(first);
             for parameter in &mut self.out[declared..] {
                 if parameter.scope == Scope::Local(0, 0) {
                     parameter.scope = Scope::Local(line, u32::MAX);
@@ -225,7 +219,7 @@ impl<'a> Scanner<'a> {
 
     /// Ends a body at file level.
     fn close(&mut self, at: usize) {
-        let line = self.tokens[at].0;
+        let line = self.line(at);
         match self.body.take() {
             Some(Body::Function(first)) => {
                 for declared in &mut self.out[first..] {
@@ -236,7 +230,7 @@ impl<'a> Scanner<'a> {
             }
             // The members of a block without a name of its own are global.
             Some(Body::Members(owner, first)) => {
-                let is_struct = self.tokens[self.statement.0..at].iter().any(|(_, token)| *token == "struct");
+                let is_struct = self.code.tokens[self.statement.0..at].iter().any(|token| token.text == "struct");
                 if is_name(self.token(at + 1)) {
                     self.declare(&owner, at + 1);
                 } else if !is_struct {
@@ -250,15 +244,17 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// The name that a line `#define NAME` declares.
-fn macro_name(line: &Line<'_>) -> Option<Declared> {
-    let rest = line.code.trim_start().strip_prefix('#')?.trim_start().strip_prefix("define ")?;
-    let name = tokens(rest).first()?.1.to_owned();
-    Some(Declared { name, type_name: String::new(), scope: Scope::Global })
-}
-
-fn is_name(token: &str) -> bool {
-    token.starts_with(|c: char| is_word(c) && !c.is_ascii_digit())
+/// The names that lines `#define NAME` declare.
+fn macros(text: &str) -> impl Iterator<Item = Declared> {
+    let mut before = ["", ""];
+    let names = tokens(text).filter(move |token| {
+        let is_macro = token.in_directive && before == ["#", "define"];
+        before = [before[1], token.text];
+        is_macro
+    });
+    let declared =
+        |token: Token<'_>| Declared { name: token.text.to_owned(), type_name: String::new(), scope: Scope::Global };
+    names.map(declared)
 }
 
 /// Words that can precede a name and are no type.
@@ -338,7 +334,7 @@ mod tests {
         void main() { Hit hit; float exposure = GAIN; }\n";
 
     fn names() -> Names {
-        Names::of([(&TreePath::from("m.frag"), TEXT.to_owned())].into_iter())
+        Names::of([(&TreePath::from("m.frag"), TEXT.into())].into_iter())
     }
 
     #[test]

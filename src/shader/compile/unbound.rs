@@ -2,69 +2,40 @@
 
 use std::collections::BTreeSet;
 
-use crate::shader::source::text::{is_word, lines, tokens};
+use crate::shader::glsl::syntax::outside_brackets;
+use crate::shader::glsl::{Token, code, is_name};
 
 /// The names of uniforms, and of uniform and buffer blocks, that are declared without `layout(binding = ...)`. Knows no macros.
 pub fn unbound(text: &str) -> BTreeSet<String> {
     if !text.contains("uniform") && !text.contains("buffer") {
         return BTreeSet::new();
     }
-    let lines = lines(text);
-    let code: Vec<&str> =
-        lines.iter().map(|line| line.code.as_str()).filter(|c| !c.trim_start().starts_with('#')).collect();
-    let mut names = BTreeSet::new();
-    let mut statement: Vec<&str> = Vec::new();
-    let mut depth = 0_u32;
-    for token in code.iter().flat_map(|code| tokens(code)).map(|(_, token)| token) {
-        match token {
-            "{" => {
-                if depth == 0 {
-                    names.extend(declared(&statement, true));
-                }
-                depth += 1;
-            }
-            "}" => {
-                depth = depth.saturating_sub(1);
-                statement.clear();
-            }
-            _ if depth > 0 => {}
-            ";" => {
-                names.extend(declared(&statement, false));
-                statement.clear();
-            }
-            token => statement.push(token),
+    let code = code(text);
+    let (mut names, mut first, mut depth) = (BTreeSet::new(), 0, 0_u32);
+    for (at, token) in code.iter().enumerate() {
+        if depth == 0 && matches!(token.text, "{" | ";") {
+            names.extend(declared(&code[first..at]));
+        }
+        match token.text {
+            "{" => depth += 1,
+            "}" => (depth, first) = (depth.saturating_sub(1), at + 1),
+            ";" => first = at + 1,
+            _ => {}
         }
     }
     names
 }
 
 /// The names that a statement at file level declares, if it declares uniforms or buffers without a binding.
-fn declared(statement: &[&str], is_block: bool) -> Vec<String> {
-    let is_name = |token: &&str| token.starts_with(|c: char| is_word(c) && !c.is_ascii_digit());
+fn declared(statement: &[Token<'_>]) -> Vec<String> {
     // Without what is in brackets: the layout, and lengths of arrays.
-    let mut depth = 0_u32;
-    let plain: Vec<&str> = statement
-        .iter()
-        .copied()
-        .filter(|token| {
-            depth += u32::from(matches!(*token, "(" | "["));
-            let keep = depth == 0;
-            depth = depth.saturating_sub(u32::from(matches!(*token, ")" | "]")));
-            keep
-        })
-        .collect();
-    let is = |word: &str| statement.contains(&word);
+    let plain: Vec<&str> = outside_brackets(statement).map(|(_, token)| token.text).collect();
+    let is = |word: &str| statement.iter().any(|token| token.text == word);
     if !(plain.contains(&"uniform") || plain.contains(&"buffer")) || is("binding") || is("push_constant") {
         return Vec::new();
     }
-    if is_block {
-        return plain.iter().rev().find(|token| is_name(token)).map(|name| (*name).to_owned()).into_iter().collect();
-    }
-    plain
-        .split(|token| *token == ",")
-        .filter_map(|part| part.iter().rev().find(|token| is_name(token)))
-        .map(|name| (*name).to_owned())
-        .collect()
+    let names = plain.split(|token| *token == ",").filter_map(|part| part.iter().rev().find(|token| is_name(token)));
+    names.map(|name| (*name).to_owned()).collect()
 }
 
 #[cfg(test)]

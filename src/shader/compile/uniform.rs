@@ -1,10 +1,8 @@
 //! The error about a number that is declared as a uniform outside a block, with the lines that make a slider of it.
 
-use std::ops::Range;
-
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{Line, TokenKind};
 use crate::shader::source::TreePath;
-use crate::shader::source::text::{Line, is_word, tokens};
 
 /// Text that glslang prints in place of a name.
 pub(super) const OUTSIDE: &str = "non-opaque uniforms outside a block";
@@ -13,12 +11,12 @@ const PRECISIONS: [&str; 3] = ["lowp", "mediump", "highp"];
 
 /// The error, with the caret under the name. `None` if the line does not declare a uniform.
 pub(super) fn outside_a_block(file: &str, line: &Line<'_>, stage: &TreePath) -> Option<Diagnostic> {
-    let tokens = tokens(&line.code);
-    let at = tokens.iter().position(|(_, word)| *word == "uniform")?;
-    let mut words = tokens[at + 1..].iter().filter(|(_, word)| !PRECISIONS.contains(word));
-    let is_name = |word: &str| word.starts_with(|c: char| is_word(c) && !c.is_ascii_digit());
-    let (_, kind) = words.next().filter(|(_, word)| is_name(word))?;
-    let (bytes, name) = words.next().filter(|(_, word)| is_name(word))?;
+    let tokens = line.tokens();
+    let at = tokens.iter().position(|token| token.text == "uniform")?;
+    let mut words = tokens[at + 1..].iter().filter(|token| !PRECISIONS.contains(&token.text));
+    let kind = words.next().filter(|token| token.kind == TokenKind::Word)?.text;
+    let declared = words.next().filter(|token| token.kind == TokenKind::Word)?;
+    let name = declared.text;
     let message = format!("`{name}` is a {kind} outside a block; only samplers and images are uniforms of their own");
     let member = match slider(kind) {
         Some(ui) => format!("{kind} {name};   //@ui \"{}\" {ui}", label(name)),
@@ -31,8 +29,8 @@ pub(super) fn outside_a_block(file: &str, line: &Line<'_>, stage: &TreePath) -> 
             format!("put it into the block `Params` of user/params.glsl, where //@ui makes it a slider:\n    {member}")
         }
     };
-    let bytes: Range<usize> = bytes.clone();
-    Some(Diagnostic::error(file, message).on_line(line.number, Some(line.raw)).under(bytes).with_help(help))
+    let error = Diagnostic::error(file, message).on_line(line.number, Some(line.raw));
+    Some(error.under(declared.bytes.clone()).with_help(help))
 }
 
 /// An example of the rest of a `//@ui`; `None` for a type that has none.

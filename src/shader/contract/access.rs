@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::interface::{Resource, StageRole, block};
 use crate::shader::compile::Compiler;
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{find_word, lines};
 use crate::shader::source::TreePath;
-use crate::shader::source::text::{find_word, lines};
 use crate::shader::spirv::reach::{Used, line_of};
 use crate::shader::spirv::reflect::Reflection;
 

@@ -16,9 +16,9 @@ use crate::interface::{self, BindingKind, block};
 
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{find_word, lines};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{find_word, lines};
 use crate::shader::spirv::reflect::{Block, Descriptor, Location, Reflection, Scalar};
 
 /// The file in every tree that holds the contract.

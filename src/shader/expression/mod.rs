@@ -16,11 +16,10 @@ mod follow;
 mod overlay;
 pub(in crate::shader) mod place;
 mod scope;
-pub(in crate::shader) mod syntax;
 
 use std::fmt;
 
-use crate::shader::source::text::tokens;
+use crate::shader::glsl::{assigns, code};
 
 pub use follow::follow;
 pub use overlay::{MODE, Overlay, STAGE, components_of, is_about_expression, is_virtual};
@@ -102,20 +101,14 @@ fn check(expression: &str) -> Result<(), String> {
     if let Some(c) = expression.chars().find(wrong) {
         return Err(format!("an expression holds no `{}`", c.escape_debug()));
     }
-    let signs: Vec<_> = tokens(expression);
+    let tokens = code(expression);
     let mut depth = 0_i32;
-    for (at, (bytes, text)) in signs.iter().enumerate() {
-        depth += i32::from(matches!(*text, "(" | "[")) - i32::from(matches!(*text, ")" | "]"));
-        let touches =
-            |next: usize| signs.get(next).filter(|(range, _)| range.start == bytes.end).map(|(_, text)| *text);
-        let before = at.checked_sub(1).and_then(|at| signs.get(at)).map_or("", |(_, text)| *text);
-        // `<` before `=` compares, unless another `<` shifts.
-        let shifts =
-            matches!(before, "<" | ">") && at >= 2 && signs.get(at - 2).is_some_and(|(_, text)| *text == before);
-        let compares = matches!(before, "=" | "<" | ">" | "!") && !shifts;
-        let assigns = *text == "=" && touches(at + 1) != Some("=") && !compares;
-        let counts = matches!(*text, "+" | "-") && touches(at + 1) == Some(*text);
-        if assigns || counts {
+    for (at, token) in tokens.iter().enumerate() {
+        let text = token.text;
+        depth += i32::from(matches!(text, "(" | "[")) - i32::from(matches!(text, ")" | "]"));
+        let next = tokens.get(at + 1).filter(|next| next.bytes.start == token.bytes.end).map(|next| next.text);
+        let counts = matches!(text, "+" | "-") && next == Some(text);
+        if assigns(&tokens, at) || counts {
             return Err("the expression changes a variable, so it would change the picture".to_owned());
         }
         if depth < 0 {

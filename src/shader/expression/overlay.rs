@@ -5,15 +5,15 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::place::{Placed, inserted, occurrence, place};
-use super::syntax::{Code, functions};
 use super::{Expression, variables};
 use crate::interface;
 use crate::message::did_you_mean;
 use crate::shader::compile::include::files_of;
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::syntax::{functions, within};
+use crate::shader::glsl::{Code, Entry};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::lines;
 
 /// The stage that shows the expression. No tree lists it: names of files with a dot at their start are hidden.
 pub const STAGE: &str = ".expression.frag";
@@ -207,41 +207,19 @@ fn stage_text(
     outside: Option<&str>,
 ) -> Result<BTreeMap<TreePath, Arc<str>>, String> {
     let text = snapshot.read(host).map_err(|error| format!("{host} {error}"))?;
+    let Entry { main, color, include } = Entry::of(&text)?;
     let code = Code::new(&text);
-    let tokens = code.tokens();
-    let bodies: Vec<Range<usize>> = functions(&tokens).into_iter().map(|function| function.body.bytes).collect();
-    let is_outside = |at: usize| !bodies.iter().any(|body| body.contains(&at));
-    let words: Vec<(&str, &Range<usize>)> = tokens.iter().map(|token| (token.text, &token.bytes)).collect();
-    let mut edits: Vec<(Range<usize>, &str)> = Vec::new();
-
-    let main = words.windows(2).find(|pair| pair[0].0 == "main" && pair[1].0 == "(" && is_outside(pair[0].1.start));
-    edits.push((main.ok_or("has no main()")?[0].1.clone(), "watched_main"));
-    let is_color =
-        |three: &&[(&str, &Range<usize>)]| three[0].0 == "out" && three[1].0 == "vec4" && is_outside(three[0].1.start);
-    let color = words.windows(3).find(is_color).ok_or("has no `out vec4` color")?[2].0;
+    let mut edits: Vec<(Range<usize>, &str)> = vec![(main, "watched_main"), (include.bytes, LIBRARY)];
     let has_chosen = closure.iter().filter_map(|path| snapshot.read(path).ok());
     if has_chosen.into_iter().any(|text| text.contains("chosen_lights()")) {
-        let all = words.iter().filter(|(word, bytes)| *word == "all_lights" && !is_outside(bytes.start));
-        edits.extend(all.map(|(_, bytes)| ((*bytes).clone(), "chosen_lights")));
+        let functions = functions(&code.tokens);
+        let inside = functions.iter().flat_map(|function| within(&code.tokens, &function.body.bytes));
+        let all = inside.filter(|token| token.text == "all_lights");
+        edits.extend(all.map(|token| (token.bytes.clone(), "chosen_lights")));
     }
     // The annotations of the stage itself are read from its own file.
-    let mut include = None;
-    for (number, found) in (1..).zip(lines(&text)) {
-        let start = code.start(number);
-        if let Some(at) = found.annotation {
-            edits.push((start + at + 2..start + at + 3, " "));
-        }
-        let directive = found.code.trim_start().strip_prefix('#').map(str::trim_start);
-        if include.is_none()
-            && directive.is_some_and(|rest| rest.starts_with("include"))
-            && let (Some(open), Some(close)) = (found.raw.find('"'), found.raw.rfind('"'))
-            && close > open
-        {
-            include = Some(&found.raw[open + 1..close]);
-            edits.push((start + open + 1..start + close, LIBRARY));
-        }
-    }
-    let include = include.ok_or("includes no file")?;
+    let annotations = code.lines().iter().filter_map(|line| Some(line.start + line.annotation?));
+    edits.extend(annotations.map(|at| (at + 2..at + 3, " ")));
     edits.sort_by_key(|(bytes, _)| std::cmp::Reverse(bytes.start));
     let mut stage = text.to_string();
     for (bytes, new) in edits {
@@ -259,7 +237,7 @@ fn stage_text(
          const uint MODE_EXPRESSION = {MODE_ID}u;\n\
          void main() {{ watched_main();{call} {color} = hdr_pixel(if_present(watch_reached, watch_shown), 1.0, no_data); }}\n"
     );
-    let include = format!("#include \"{include}\"\n");
+    let include = format!("#include \"{}\"\n", include.name);
     let functions = library(expression.evaluation);
     // Extensions must stand before any code, and interface.glsl names them.
     let library = if include.contains("interface.glsl") { include + &functions } else { functions + &include };
@@ -336,8 +314,8 @@ fn components(kind: &str) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shader::glsl::find_word;
     use crate::shader::source::Source;
-    use crate::shader::source::text::find_word;
 
     const HOST: &str = "//@pass model \"Model\" draw=model to=picture\n#version 460\n#include \"interface.glsl\"\n\
         #include \"a.glsl\"\nlayout(location = 0) out vec4 color;\nvoid main() { color = f(all_lights()); }\n";

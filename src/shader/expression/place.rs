@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::syntax::{Code, Kind, Statement, Token, functions};
-use crate::shader::source::text::{find_word, is_word};
+use crate::shader::glsl::syntax::{Statement, StatementKind, functions, within};
+use crate::shader::glsl::{Code, Token, find_word, is_name, is_word, spelled};
 
 /// The texts to insert into a file, with their byte offsets, in order.
 pub type Insertions = Vec<(usize, String)>;
@@ -30,16 +30,16 @@ pub fn place(
     call: impl Fn(&str) -> String,
 ) -> Result<Placed, String> {
     let Some(line) = code.line(number) else { return Err(format!("the file has no line {number}")) };
-    if code.is_directive(number) {
+    if line.is_directive {
         return Err("this line is a preprocessor directive, in which nothing is evaluated".to_owned());
     }
-    let tokens = code.tokens();
+    let tokens = &code.tokens;
     let start = code.start(number);
     let found = occurrence(&line.code, expression, column);
     let at = found.clone().map(|bytes| bytes.start).or(column).map(|byte| byte + start);
     // On an empty line, the statement that follows it.
     let at = at.or_else(|| tokens.iter().find(|token| token.bytes.start >= start).map(|token| token.bytes.start));
-    let functions = functions(&tokens);
+    let functions = functions(tokens);
     let at = at.unwrap_or(start);
     let no_return = || "there is no `return` on this line".to_owned();
     let in_head = |range: &Range<usize>| range.contains(&at);
@@ -53,11 +53,11 @@ pub fn place(
         if function.body.bytes.contains(&at) {
             let statement = innermost(&function.body, at);
             let expression = match (expression, statement.kind) {
-                ("return", Kind::Jump) => returned(statement, &tokens)?,
+                ("return", StatementKind::Jump) => returned(statement, tokens)?,
                 ("return", _) => return Err(no_return()),
                 _ => expression.to_owned(),
             };
-            return Ok(Placed::Inside(insert(statement, at, &tokens, &expression, &call(&expression))));
+            return Ok(Placed::Inside(insert(statement, at, tokens, &expression, &call(&expression))));
         }
     }
     match tokens.iter().any(|token| token.bytes.start >= start) || found.is_some() {
@@ -86,28 +86,10 @@ fn innermost(statement: &Statement, at: usize) -> &Statement {
 
 /// The expression of `return e;`.
 fn returned(statement: &Statement, tokens: &[Token<'_>]) -> Result<String, String> {
-    let inside: Vec<_> = tokens.iter().filter(|token| statement.bytes.contains(&token.bytes.start)).collect();
-    match inside.as_slice() {
-        [first, middle @ .., _] if first.text == "return" && !middle.is_empty() => {
-            let range = middle[0].bytes.start..middle[middle.len() - 1].bytes.end;
-            Ok(text_of(tokens, range))
-        }
+    match within(tokens, &statement.bytes) {
+        [first, middle @ .., _] if first.text == "return" && !middle.is_empty() => Ok(spelled(middle)),
         _ => Err("the statement on this line returns nothing".to_owned()),
     }
-}
-
-/// The code of a byte range on one line, without comments.
-fn text_of(tokens: &[Token<'_>], range: Range<usize>) -> String {
-    let mut out = String::new();
-    let mut end = range.start;
-    for token in tokens.iter().filter(|token| range.contains(&token.bytes.start)) {
-        if token.bytes.start > end && !out.is_empty() {
-            out.push(' ');
-        }
-        out.push_str(token.text);
-        end = token.bytes.end;
-    }
-    out
 }
 
 fn insert(statement: &Statement, at: usize, tokens: &[Token<'_>], expression: &str, call: &str) -> Insertions {
@@ -117,27 +99,27 @@ fn insert(statement: &Statement, at: usize, tokens: &[Token<'_>], expression: &s
         false => vec![(start, format!("{{ {call} ")), (end, " }".to_owned())],
     };
     let into = |body: &Statement| match body.kind {
-        Kind::Block => vec![(body.bytes.start + 1, format!(" {call}"))],
+        StatementKind::Block => vec![(body.bytes.start + 1, format!(" {call}"))],
         _ => vec![(body.bytes.start, format!("{{ {call} ")), (body.bytes.end, " }".to_owned())],
     };
     match statement.kind {
-        Kind::Simple if is_after(statement, tokens, expression) => match statement.is_in_block {
+        StatementKind::Simple if is_after(statement, tokens, expression) => match statement.is_in_block {
             true => vec![(end, format!(" {call}"))],
             false => vec![(start, "{ ".to_owned()), (end, format!(" {call} }}"))],
         },
         // The condition of an `if` is evaluated whether it holds or not.
-        Kind::Simple | Kind::Jump | Kind::Branch => before(call),
+        StatementKind::Simple | StatementKind::Jump | StatementKind::Branch => before(call),
         // A variable of the header is declared only inside.
-        Kind::Loop => statement.parts.first().map(into).unwrap_or_default(),
-        Kind::DoLoop => match statement.parts.first() {
-            Some(body) if body.kind == Kind::Block => vec![(body.bytes.end - 1, format!("{call} "))],
+        StatementKind::Loop => statement.parts.first().map(into).unwrap_or_default(),
+        StatementKind::DoLoop => match statement.parts.first() {
+            Some(body) if body.kind == StatementKind::Block => vec![(body.bytes.end - 1, format!("{call} "))],
             Some(body) => {
                 vec![(body.bytes.start, "{ ".to_owned()), (body.bytes.end, format!(" {call} }}"))]
             }
             None => Vec::new(),
         },
-        Kind::Block if at == start => vec![(start + 1, format!(" {call}"))],
-        Kind::Block => vec![(end - 1, format!("{call} "))],
+        StatementKind::Block if at == start => vec![(start + 1, format!(" {call}"))],
+        StatementKind::Block => vec![(end - 1, format!("{call} "))],
     }
 }
 
@@ -147,8 +129,7 @@ fn is_after(statement: &Statement, tokens: &[Token<'_>], expression: &str) -> bo
     if expression.chars().all(|c| is_word(c) || matches!(c, '.' | '[' | ']' | ' ')) {
         return true;
     }
-    let inside: Vec<_> = tokens.iter().filter(|token| statement.bytes.contains(&token.bytes.start)).collect();
-    let is_name = |text: &str| text.starts_with(|c: char| is_word(c) && !c.is_ascii_digit());
+    let inside = within(tokens, &statement.bytes);
     // `TYPE NAME`: two words in a row.
     let is_declaration = inside.windows(2).any(|pair| is_name(pair[0].text) && is_name(pair[1].text));
     let declared = inside.windows(2).filter(|pair| is_name(pair[0].text) && matches!(pair[1].text, "=" | ";" | ","));

@@ -1,7 +1,7 @@
 //! The names that can be watched on a line.
 
-use super::syntax::{Code, Function, Kind, Statement, Token, functions};
-use crate::shader::source::text::is_word;
+use crate::shader::glsl::syntax::{Function, Statement, StatementKind, functions, within};
+use crate::shader::glsl::{Code, Token, is_name};
 
 /// The types whose values can be shown.
 const TYPES: [&str; 17] = [
@@ -13,7 +13,7 @@ const TYPES: [&str; 17] = [
 /// the line itself come before.
 pub fn variables(text: &str, number: u32) -> Vec<(String, String)> {
     let code = Code::new(text);
-    let tokens = code.tokens();
+    let tokens = &code.tokens;
     let end = code.start(number) + code.line(number).map_or(0, |line| line.raw.len());
     let start = code.start(number);
     let inside = |function: &&Function| {
@@ -21,10 +21,10 @@ pub fn variables(text: &str, number: u32) -> Vec<(String, String)> {
         whole.start < end.max(start + 1) && whole.end > start
     };
     let mut out = Vec::new();
-    if let Some(function) = functions(&tokens).iter().find(inside) {
-        collect(&function.body, end, &tokens, &mut out);
+    if let Some(function) = functions(tokens).iter().find(inside) {
+        collect(&function.body, end, tokens, &mut out);
         out.reverse();
-        declared(&tokens, function.head.start..function.head.end, &mut out);
+        declared(tokens, function.head.start..function.head.end, &mut out);
     }
     out.dedup();
     let mut seen = std::collections::BTreeSet::new();
@@ -39,8 +39,8 @@ fn collect(statement: &Statement, end: usize, tokens: &[Token<'_>], out: &mut Ve
             break;
         }
         match part.kind {
-            Kind::Simple => declared(tokens, part.bytes.clone(), out),
-            Kind::Jump => {}
+            StatementKind::Simple => declared(tokens, part.bytes.clone(), out),
+            StatementKind::Jump => {}
             _ if part.bytes.end >= end => {
                 declared(tokens, part.header.clone(), out);
                 collect(part, end, tokens, out);
@@ -52,8 +52,7 @@ fn collect(statement: &Statement, end: usize, tokens: &[Token<'_>], out: &mut Ve
 
 /// Adds the variables that a piece of code declares: `TYPE NAME`, and after it `, NAME` with an initializer or none.
 fn declared(tokens: &[Token<'_>], bytes: std::ops::Range<usize>, out: &mut Vec<(String, String)>) {
-    let inside: Vec<&Token<'_>> = tokens.iter().filter(|token| bytes.contains(&token.bytes.start)).collect();
-    let is_name = |text: &str| text.starts_with(|c: char| is_word(c) && !c.is_ascii_digit());
+    let inside = within(tokens, &bytes);
     let mut kind = None;
     let mut depth = 0_i32;
     for (at, token) in inside.iter().enumerate() {

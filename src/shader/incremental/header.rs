@@ -1,6 +1,6 @@
 //! The header of a function definition.
 
-use super::token::{Kind, Token};
+use crate::shader::glsl::{Token, TokenKind};
 
 /// Return type, name and parameters of a function.
 pub struct Header {
@@ -36,22 +36,27 @@ impl Parameter {
         let is_opaque = OPAQUE.iter().any(|word| kind.text.trim_start_matches(['i', 'u']).starts_with(word));
         let is_sizes = |tokens: &[Token<'_>]| {
             let ends = tokens.first().is_none_or(|t| t.text == "[") && tokens.last().is_none_or(|t| t.text == "]");
-            ends && tokens.iter().all(|token| token.kind == Kind::Word || matches!(token.text, "[" | "]"))
+            ends && tokens.iter().all(is_of_type)
         };
         // The first word outside of brackets is the name, which may be missing.
         let mut depth = 0_i32;
         let is_name = |token: &Token<'_>| {
             depth += i32::from(token.text == "[") - i32::from(token.text == "]");
-            depth == 0 && token.kind == Kind::Word
+            depth == 0 && token.kind == TokenKind::Word
         };
         let (before, after) = match rest.iter().position(is_name) {
             Some(at) => (&rest[..at], &rest[at + 1..]),
             None => (rest, &[][..]),
         };
-        let is_known = kind.kind == Kind::Word && !is_opaque && is_sizes(before) && is_sizes(after);
+        let is_known = kind.kind == TokenKind::Word && !is_opaque && is_sizes(before) && is_sizes(after);
         let text = |tokens: &[Token<'_>]| tokens.iter().map(|token| token.text).collect::<String>();
         is_known.then(|| Self { kind: format!("{}{}", kind.text, text(before)), sizes: text(after) })
     }
+}
+
+/// Whether a token can be part of a type: of its name, or of the sizes of an array.
+fn is_of_type(token: &Token<'_>) -> bool {
+    matches!(token.kind, TokenKind::Word | TokenKind::Number) || matches!(token.text, "[" | "]")
 }
 
 impl Header {
@@ -59,11 +64,11 @@ impl Header {
     pub fn parse(tokens: &[Token<'_>]) -> Option<Self> {
         let open = tokens.iter().position(|token| token.text == "(")?;
         let (name, returns) = tokens[..open].split_last()?;
-        let is_type = |token: &Token<'_>| token.kind == Kind::Word || matches!(token.text, "[" | "]");
-        let is_name = name.kind == Kind::Word && returns.first().is_some_and(|token| token.kind == Kind::Word);
+        let is_name =
+            name.kind == TokenKind::Word && returns.first().is_some_and(|token| token.kind == TokenKind::Word);
         let (close, parameters) = tokens[open + 1..].split_last()?;
         let is_list = close.text == ")" && !parameters.iter().any(|token| matches!(token.text, "(" | ")" | "="));
-        if !is_name || !is_list || !returns.iter().all(is_type) {
+        if !is_name || !is_list || !returns.iter().all(is_of_type) {
             return None;
         }
         let parameters = match parameters {

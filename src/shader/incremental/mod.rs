@@ -24,7 +24,6 @@ mod difference;
 mod header;
 mod scan;
 mod thin;
-mod token;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, PoisonError};

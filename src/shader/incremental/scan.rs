@@ -5,7 +5,12 @@ use std::sync::{Arc, OnceLock};
 use foldhash::HashSet;
 
 use super::header::{Header, Parameter};
-use super::token::{Kind, Token, tokens};
+use crate::shader::glsl::syntax::{self, within};
+use crate::shader::glsl::{Token, TokenKind, tokens};
+
+/// Words through which an edit of one function changes the code of others, so that functions cannot be compiled
+/// separately: line numbers shift, and `precise` affects the operands of other assignments.
+const FAR_REACHING: [&str; 3] = ["__LINE__", "__FILE__", "precise"];
 
 /// A file's text, which is scanned at the first use of [`File::parts`].
 #[derive(Debug)]
@@ -59,110 +64,87 @@ impl File {
 }
 
 fn parts(text: &str) -> Option<Parts> {
-    Scanner::default().run(&tokens(text)?)
-}
-
-/// Code without comments. Each run of white space is one space.
-#[derive(Default)]
-struct Code {
-    text: String,
-    words: HashSet<Box<str>>,
-}
-
-impl Code {
-    fn push(&mut self, token: &Token<'_>) {
-        if token.kind == Kind::Directive {
-            let words = token.text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
-            self.words.extend(words.filter(|word| !word.is_empty()).map(Box::from));
-            self.text.extend(["\n", token.text, "\n"]);
-            return;
-        }
-        if token.is_spaced && !self.text.is_empty() && !self.text.ends_with('\n') {
-            self.text.push(' ');
-        }
-        self.text.push_str(token.text);
-        if token.kind == Kind::Word && !self.words.contains(token.text) {
-            self.words.insert(token.text.into());
-        }
-    }
-}
-
-#[derive(Default)]
-struct Scanner {
-    rest: Code,
-    functions: Vec<Function>,
-    /// Whether a function precedes the next token of the rest.
-    is_behind_function: bool,
-}
-
-impl Scanner {
-    fn run(mut self, tokens: &[Token<'_>]) -> Option<Parts> {
-        // The first token of the current declaration.
-        let (mut first, mut at) = (0, 0);
-        while let Some(token) = tokens.get(at) {
-            match (token.kind, token.text) {
-                (Kind::Directive, _) | (_, ";") => {
-                    at += 1;
-                    self.rest(&tokens[first..at]);
-                    first = at;
-                }
-                (_, "{") => {
-                    let end = at + block(&tokens[at..])?;
-                    if !self.function(&tokens[first..at], &tokens[at..end]) {
-                        self.rest(&tokens[first..end]);
-                    }
-                    (first, at) = (end, end);
-                }
-                (_, "}") => return None,
-                _ => at += 1,
-            }
-        }
-        self.rest(&tokens[first..]);
-        Some(Parts { functions: self.functions, rest: self.rest.text, rest_words: self.rest.words })
-    }
-
-    fn rest(&mut self, tokens: &[Token<'_>]) {
-        for token in tokens {
-            // A space stands for a function, so that the rest is the same with and without the function.
-            let is_spaced = std::mem::take(&mut self.is_behind_function) || token.is_spaced;
-            self.rest.push(&Token { is_spaced, ..*token });
-        }
-    }
-
-    /// Adds a function. Returns false if `before` is not the header of a function, or if the function contains
-    /// directives, so that only a preprocessor knows its code.
-    fn function(&mut self, before: &[Token<'_>], block: &[Token<'_>]) -> bool {
-        let has_directive = block.iter().any(|token| token.kind == Kind::Directive);
-        let (Some(header), false) = (Header::parse(before), has_directive) else { return false };
-        let (mut head, mut body) = (Code::default(), Code::default());
-        before.iter().for_each(|token| head.push(token));
-        block.iter().for_each(|token| body.push(token));
-        self.is_behind_function = true;
-        self.functions.push(Function {
+    let tokens = separable(text)?;
+    let code: Vec<Token<'_>> = tokens.iter().filter(|token| !token.in_directive).cloned().collect();
+    let depth = code.iter().try_fold(0_usize, |depth, token| match token.text {
+        "{" => Some(depth + 1),
+        "}" => depth.checked_sub(1),
+        _ => Some(depth),
+    });
+    // Only a preprocessor knows which braces belong together.
+    depth.filter(|depth| *depth == 0)?;
+    let (mut functions, mut rest, mut end) = (Vec::new(), Plain::default(), 0);
+    for syntax::Function { head, body } in syntax::functions(&code) {
+        let has_directive = within(&tokens, &(head.start..body.bytes.end)).iter().any(|token| token.in_directive);
+        let (Some(header), false) = (Header::parse(within(&tokens, &head)), has_directive) else { continue };
+        rest.extend(within(&tokens, &(end..head.start)));
+        rest.end_directive();
+        end = body.bytes.end;
+        let (mut plain_head, mut plain_body) = (Plain::default(), Plain::default());
+        plain_head.extend(within(&tokens, &head));
+        plain_body.extend(within(&tokens, &body.bytes));
+        functions.push(Function {
             name: header.name.into(),
             returns: header.returns.into(),
             parameters: header.parameters,
-            place: self.rest.text.len(),
-            head: head.text,
-            body: body.text,
-            words: body.words,
+            place: rest.text.len(),
+            head: plain_head.text,
+            body: plain_body.text,
+            words: plain_body.words,
         });
-        true
     }
+    rest.extend(within(&tokens, &(end..text.len())));
+    Some(Parts { functions, rest: rest.text, rest_words: rest.words })
 }
 
-/// The number of tokens from the opening brace to the matching closing brace, both included. `None` if there is none.
-fn block(tokens: &[Token<'_>]) -> Option<usize> {
-    let mut depth = 0_usize;
-    for (at, token) in tokens.iter().enumerate() {
-        match token.text {
-            "{" => depth += 1,
-            "}" if depth == 1 => return Some(at + 1),
-            "}" => depth -= 1,
-            _ => {}
+/// The tokens of a file without comments. `None` if a function's code depends on more than its own text.
+fn separable(text: &str) -> Option<Vec<Token<'_>>> {
+    let is_plain = |token: &Token<'_>| match token.kind {
+        TokenKind::Comment => token.text.starts_with("//") || (token.text.len() > 3 && token.text.ends_with("*/")),
+        // Part of a `##`, of a string without an end, or of a line that goes on behind its break.
+        TokenKind::Sign => !token.text.starts_with(['#', '"', '\\']),
+        _ => !FAR_REACHING.contains(&token.text),
+    };
+    let all: Vec<_> = tokens(text).collect();
+    all.iter().all(is_plain).then(|| all.into_iter().filter(|token| token.kind != TokenKind::Comment).collect())
+}
+
+/// Code without comments. Each run of white space is one space, and directives have lines of their own.
+#[derive(Default)]
+struct Plain {
+    text: String,
+    words: HashSet<Box<str>>,
+    /// The end of the last token in the file.
+    end: usize,
+    in_directive: bool,
+}
+
+impl Plain {
+    fn extend(&mut self, tokens: &[Token<'_>]) {
+        tokens.iter().for_each(|token| self.push(token));
+    }
+
+    fn push(&mut self, token: &Token<'_>) {
+        if token.kind == TokenKind::Directive || !token.in_directive {
+            self.end_directive();
+        }
+        if token.kind == TokenKind::Directive {
+            self.text.push('\n');
+        } else if token.bytes.start > self.end && !self.text.is_empty() && !self.text.ends_with('\n') {
+            self.text.push(' ');
+        }
+        self.text.push_str(token.text);
+        (self.end, self.in_directive) = (token.bytes.end, token.in_directive);
+        if token.kind == TokenKind::Word && !self.words.contains(token.text) {
+            self.words.insert(token.text.into());
         }
     }
-    None
+
+    fn end_directive(&mut self) {
+        if std::mem::take(&mut self.in_directive) {
+            self.text.push('\n');
+        }
+    }
 }
 
 #[cfg(test)]

@@ -15,10 +15,10 @@ use crate::shader::contract::access::{Run, check_access};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
 use crate::shader::expression;
+use crate::shader::glsl::lines;
 use crate::shader::graph::{Graph, GraphPass, Input, PassStage, unlike_neighbors};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::lines;
 use crate::shader::spirv::reflect::Reflection;
 
 /// The parts of a set that all stages share.
@@ -235,7 +235,7 @@ fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
         layout(location = 0) in Fragment fragment;\nlayout(location = 0) out vec4 color;";
     let text = texts.snapshot.read(texts.stage).unwrap_or_default();
     let found = lines(&text).into_iter().find_map(|line| {
-        let is_include = line.code.trim_start().starts_with('#') && line.code.contains("include");
+        let is_include = line.keyword == Some("include");
         let at = line.code.find(COVERING).filter(|_| is_include)?;
         let error = Diagnostic::error(&pass.desc.place.file, message.clone());
         Some(error.on_line(line.number, Some(line.raw)).under(at..at + COVERING.len()))

@@ -12,9 +12,9 @@ use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{Line, TokenKind, code, find_word, is_name, lines};
 use crate::shader::graph::{FULL_SCREEN, Graph, RenderPhase, missing_passes, read_later};
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
 
 impl Library {
@@ -175,20 +175,16 @@ fn idle(path: &TreePath, snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
 
 /// Whether a text declares the constant `name` as false or 0, or as another constant that is.
 fn is_zero(text: &str, name: &str) -> bool {
-    let Some(line) = lines(text).into_iter().find(|line| declares(&line.code, name)) else { return false };
-    let value = line.code.rsplit('=').next().unwrap_or_default().trim().trim_end_matches(';').trim_end();
+    let tokens: Vec<&str> = code(text).into_iter().map(|token| token.text).collect();
+    let value = tokens.windows(6).find_map(|six| match *six {
+        ["const", _, found, "=", value, ";"] if found == name => Some(value),
+        _ => None,
+    });
     match value {
-        "false" | "0" | "0u" => true,
-        other => other != name && other.starts_with(|c: char| c.is_ascii_alphabetic()) && is_zero(text, other),
+        Some("false" | "0" | "0u") => true,
+        Some(other) => other != name && is_name(other) && is_zero(text, other),
+        None => false,
     }
-}
-
-/// Whether a line is the declaration of the constant `name`.
-fn declares(code: &str, name: &str) -> bool {
-    let before_value = code.rsplit_once('=').map(|(before, _)| before.trim_end());
-    code.contains("const ")
-        && before_value.is_some_and(|before| before.ends_with(name))
-        && find_word(code, name).is_some()
 }
 
 fn is_text(path: &TreePath) -> bool {
@@ -201,12 +197,10 @@ fn read_names(text: &str) -> BTreeSet<String> {
     if !text.contains("uniform") {
         return BTreeSet::new();
     }
-    let declared = lines(text).into_iter().map(|line| line.code).filter(|code| code.contains("uniform"));
-    let words = declared.flat_map(|code| {
-        let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
-        words.flat_map(|word| [Some(word), read_later(word)]).flatten().map(str::to_owned).collect::<Vec<_>>()
-    });
-    words.collect()
+    let lines = lines(text);
+    let declared = lines.iter().filter(|line| line.code.contains("uniform"));
+    let words = declared.flat_map(Line::tokens).filter(|token| token.kind == TokenKind::Word).map(|token| token.text);
+    words.flat_map(|word| [Some(word), read_later(word)]).flatten().map(str::to_owned).collect()
 }
 
 /// The comment behind the output with this name, in a stage that draws several images.

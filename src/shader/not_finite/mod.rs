@@ -30,7 +30,8 @@ use serde::Serialize;
 use super::compile::include::files_of;
 use super::contract;
 use super::expression::place::{Insertions, inserted};
-use super::expression::syntax::{Code, Function, Kind, Statement, Token, functions};
+use super::glsl::syntax::{Function, Statement, StatementKind, functions, within};
+use super::glsl::{Code, Token, code, spelled};
 use super::library::Stage;
 use super::source::TreePath;
 use super::source::snapshot::{Read, Snapshot};
@@ -38,7 +39,7 @@ use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use report::{ELSEWHERE, NotFinite};
 use stage::FUNCTION;
 use statement::{Found, Traced, of_return, of_simple};
-use types::{Types, structs, within};
+use types::{Types, structs};
 
 /// A place that makes a value which is traced.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -142,13 +143,10 @@ impl Instrumented {
         let texts: Vec<(TreePath, Arc<str>)> = closure.iter().filter_map(read).collect();
         let mut types = Types::default();
         for (path, text) in &texts {
-            let code = Code::new(text);
-            let tokens = code.tokens();
-            types.learn(&structs(&tokens), !before.contains(path));
+            types.learn(&structs(&code(text)), !before.contains(path));
         }
         for (_, text) in &texts {
-            let code = Code::new(text);
-            let tokens = code.tokens();
+            let tokens = code(text);
             let bodies = functions(&tokens);
             let is_outside = |token: &Token<'_>| {
                 !bodies.iter().any(|of| (of.head.start..of.body.bytes.end).contains(&token.bytes.start))
@@ -161,11 +159,10 @@ impl Instrumented {
         for (path, text) in texts.iter().filter(|(path, _)| !before.contains(path)) {
             let file = snapshot.display_path(path);
             let code = Code::new(text);
-            let tokens = code.tokens();
             let mut writer = Writer {
                 text,
                 code: &code,
-                tokens: &tokens,
+                tokens: &code.tokens,
                 types: &types,
                 file,
                 without,
@@ -173,7 +170,7 @@ impl Instrumented {
                 sites: &mut this.sites,
             };
             writer.structs();
-            let functions = functions(&tokens);
+            let functions = functions(&code.tokens);
             functions.iter().for_each(|function| writer.function(function));
             if path == host {
                 writer.inputs(&functions);
@@ -221,8 +218,8 @@ impl Writer<'_, '_> {
     fn statement(&mut self, statement: &Statement, kind: &str, opaque: &BTreeSet<String>) {
         let tokens = within(self.tokens, &statement.bytes);
         let found = match statement.kind {
-            Kind::Simple => of_simple(tokens, statement.is_in_block, self.types, opaque),
-            Kind::Jump => of_return(tokens, kind, self.types),
+            StatementKind::Simple => of_simple(tokens, statement.is_in_block, self.types, opaque),
+            StatementKind::Jump => of_return(tokens, kind, self.types),
             _ => Vec::new(),
         };
         for Found { traced, shown } in found {
@@ -269,16 +266,7 @@ impl Writer<'_, '_> {
             return None;
         }
         let start = self.code.start(line);
-        let tokens = within(self.tokens, shown);
-        let mut code = String::new();
-        let mut end = shown.start;
-        for token in tokens {
-            if token.bytes.start > end && !code.is_empty() {
-                code.push(' ');
-            }
-            code.push_str(token.text);
-            end = token.bytes.end;
-        }
+        let code = spelled(within(self.tokens, shown));
         let column = u32::try_from(at - start + 1).unwrap_or(1);
         self.sites.push(Site { file: self.file.clone(), line, column, code });
         Some(self.sites.len())

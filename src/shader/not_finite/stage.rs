@@ -4,10 +4,9 @@ use std::fmt::Write as _;
 
 use super::types::{FLOATS, OTHERS};
 use crate::shader::contract;
-use crate::shader::expression::syntax::{Code, functions};
+use crate::shader::glsl::Entry;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::lines;
 
 /// The function that values pass through.
 pub(super) const FUNCTION: &str = "trace_finite";
@@ -18,23 +17,12 @@ pub(super) const MARK: f32 = 4242.0;
 
 /// The text of the stage, and of the file that it includes first. `text` already calls the functions.
 pub(super) fn texts(text: &str, host: &TreePath, snapshot: &Snapshot<'_>) -> Result<(String, String), String> {
-    let code = Code::new(text);
-    let tokens = code.tokens();
-    let bodies: Vec<_> = functions(&tokens).into_iter().map(|function| function.body.bytes).collect();
-    let is_outside = |at: usize| !bodies.iter().any(|body| body.contains(&at));
-    let main =
-        tokens.windows(2).find(|pair| pair[0].text == "main" && pair[1].text == "(" && is_outside(pair[0].bytes.start));
-    let main = main.ok_or_else(|| format!("{host} has no main()"))?[0].bytes.clone();
-    let color = tokens
-        .windows(3)
-        .find(|three| three[0].text == "out" && three[1].text == "vec4" && is_outside(three[0].bytes.start));
-    let color = color.ok_or_else(|| format!("{host} has no `out vec4` color"))?[2].text;
-    let (name, include) = first_include(text).ok_or_else(|| format!("{host} includes no file"))?;
-    let found = host.sibling(&name).filter(|path| snapshot.read(path).is_ok());
-    let name = found.map_or(name, |path| path.to_string());
+    let Entry { main, color, include } = Entry::of(text).map_err(|lack| format!("{host} {lack}"))?;
+    let found = host.sibling(include.name).filter(|path| snapshot.read(path).is_ok());
+    let name = found.map_or(include.name.to_owned(), |path| path.to_string());
 
     let mut stage = text.to_owned();
-    let mut edits = [(main, "traced_main"), (include, LIBRARY)];
+    let mut edits = [(main, "traced_main"), (include.bytes, LIBRARY)];
     edits.sort_by_key(|(bytes, _)| std::cmp::Reverse(bytes.start));
     edits.into_iter().for_each(|(bytes, new)| stage.replace_range(bytes, new));
     let _ = write!(
@@ -51,18 +39,6 @@ pub(super) fn texts(text: &str, host: &TreePath, snapshot: &Snapshot<'_>) -> Res
         let _ = writeln!(library, "#include \"{name}\"");
     }
     Ok((stage, library))
-}
-
-/// The name of the first file that a text includes, and the bytes of the name.
-fn first_include(text: &str) -> Option<(String, std::ops::Range<usize>)> {
-    let code = Code::new(text);
-    lines(text).into_iter().find_map(|line| {
-        let directive = line.code.trim_start().strip_prefix('#')?.trim_start();
-        let (open, close) = (line.raw.find('"')?, line.raw.rfind('"')?);
-        let start = code.start(line.number);
-        (directive.starts_with("include") && close > open)
-            .then(|| (line.raw[open + 1..close].to_owned(), start + open + 1..start + close))
-    })
 }
 
 /// For each type, a function that returns its value and remembers the first statements that made NaN or infinity.

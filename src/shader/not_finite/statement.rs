@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::types::{FLOATS, OTHERS, Types, is_name};
-use crate::shader::expression::syntax::Token;
+use super::types::{FLOATS, OTHERS, Types};
+use crate::shader::glsl::syntax::outside_brackets;
+use crate::shader::glsl::{Token, assigns, is_name};
 
 /// The target of a trace call.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,34 +29,10 @@ fn range(tokens: &[Token<'_>]) -> Option<Range<usize>> {
 
 /// Splits at the commas that stand in no bracket.
 fn parts<'a, 'b>(tokens: &'a [Token<'b>]) -> Vec<&'a [Token<'b>]> {
-    let (mut out, mut depth, mut first) = (Vec::new(), 0_i32, 0);
-    for (at, token) in tokens.iter().enumerate() {
-        match token.text {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => depth -= 1,
-            "," if depth == 0 => {
-                out.push(&tokens[first..at]);
-                first = at + 1;
-            }
-            _ => {}
-        }
-    }
-    out.push(&tokens[first..]);
-    out
-}
-
-/// The place of the sign that assigns, outside of brackets.
-fn assignment(tokens: &[Token<'_>]) -> Option<usize> {
-    let mut depth = 0_i32;
-    for (at, token) in tokens.iter().enumerate() {
-        match token.text {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => depth -= 1,
-            "=" if depth == 0 => return tokens.get(at + 1).is_none_or(|next| next.text != "=").then_some(at),
-            _ => {}
-        }
-    }
-    None
+    let commas = outside_brackets(tokens).filter(|(_, token)| token.text == ",").map(|(at, _)| at);
+    let ends: Vec<usize> = commas.chain([tokens.len()]).collect();
+    let starts = std::iter::once(0).chain(ends.iter().map(|end| end + 1));
+    starts.zip(&ends).map(|(start, end)| &tokens[start..*end]).collect()
 }
 
 /// Whether a value is a struct that is made in place: `NAME(...)`.
@@ -117,7 +94,7 @@ fn declared(kind: &str, names: &[Token<'_>], is_const: bool, is_in_block: bool, 
 
 /// The bytes of an assignment whose value is traced.
 fn assigned(part: &[Token<'_>], types: &Types, opaque: &BTreeSet<String>) -> Option<Range<usize>> {
-    let at = assignment(part)?;
+    let (at, _) = outside_brackets(part).find(|(at, _)| assigns(part, *at))?;
     let (target, value) = (&part[..at], &part[at + 1..]);
     let is_made = is_made(value, types).is_some();
     let last = target.iter().rposition(|token| is_name(token.text) || token.text == "]")?;

@@ -1,10 +1,8 @@
 //! The types that a traced value can have, as far as they are known without a compiler.
 
 use std::collections::BTreeSet;
-use std::ops::Range;
 
-use crate::shader::expression::syntax::Token;
-use crate::shader::source::text::is_word;
+use crate::shader::glsl::{Token, is_name};
 
 /// The types of floats, vectors and matrices.
 pub(super) const FLOATS: [&str; 13] = [
@@ -13,11 +11,6 @@ pub(super) const FLOATS: [&str; 13] = [
 /// The types that are always finite. Calls with their values do nothing.
 pub(super) const OTHERS: [&str; 12] =
     ["int", "uint", "bool", "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4", "bvec2", "bvec3", "bvec4"];
-
-/// Whether a token is an identifier.
-pub(super) fn is_name(text: &str) -> bool {
-    text.starts_with(|c: char| is_word(c) && !c.is_ascii_digit())
-}
 
 /// A struct of a file.
 #[derive(Debug, PartialEq)]
@@ -107,11 +100,4 @@ impl Types {
         let name = &of.name;
         format!(" {name} {call}(uint site, {name} value) {{ {calls}return value; }}")
     }
-}
-
-/// The part of tokens that lies in a range of bytes.
-pub(super) fn within<'a, 'b>(tokens: &'a [Token<'b>], bytes: &Range<usize>) -> &'a [Token<'b>] {
-    let start = tokens.partition_point(|token| token.bytes.start < bytes.start);
-    let end = tokens.partition_point(|token| token.bytes.start < bytes.end);
-    &tokens[start..end.max(start)]
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use super::Edit;
 use super::literals::float;
 use crate::settings::ShaderValue;
+use crate::shader::glsl::{Line, Token, is_name, is_word, lines};
 use crate::shader::source::TreePath;
-use crate::shader::source::text::{Line, find_word, is_word, lines, tokens};
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::{constant_number, misfits, parameter_numbers};
 use crate::shader::{Constant, Parameter, ShaderSet};
@@ -99,9 +99,9 @@ fn of_constant(
     let all = lines(text);
     let first = (constant.line as usize).saturating_sub(1);
     // The declaration stands on the line of its annotation or follows it.
-    let declared = all.iter().skip(first).find(|line| !line.code.trim().is_empty());
+    let declared = all.iter().skip(first).find(|line| !line.is_blank());
     let line = declared.ok_or_else(|| lost(&constant.name, path, constant.line))?;
-    let bytes = initializer(&line.code, &constant.name).ok_or_else(|| lost(&constant.name, path, line.number))?;
+    let bytes = initializer(line, &constant.name).ok_or_else(|| lost(&constant.name, path, line.number))?;
     let default = match constant.scalar {
         Scalar::Float => f64::from(f32::from_bits(constant.default)),
         Scalar::Int => f64::from(constant.default.cast_signed()),
@@ -121,31 +121,22 @@ fn of_constant(
 }
 
 /// The bytes of the initializer in `... NAME = INITIALIZER;`.
-fn initializer(code: &str, name: &str) -> Option<Range<usize>> {
-    let mut from = 0;
-    while let Some(found) = find_word(&code[from..], name) {
-        let behind = from + found.end;
-        let rest = code[behind..].trim_start();
-        if rest.starts_with('=') && !rest.starts_with("==") {
-            let start = code.len() - rest.len() + 1;
-            let end = start + code[start..].find(';')?;
-            let trimmed = code[start..end].trim();
-            let start = start + code[start..end].len() - code[start..end].trim_start().len();
-            return Some(start..start + trimmed.len());
-        }
-        from = behind;
-    }
-    None
+fn initializer(line: &Line<'_>, name: &str) -> Option<Range<usize>> {
+    let tokens = line.tokens();
+    let assigns = |three: &[Token<'_>]| three[0].text == name && three[1].text == "=" && three[2].text != "=";
+    let start = tokens.windows(3).position(assigns)? + 2;
+    let end = start + tokens[start..].iter().position(|token| token.text == ";")?;
+    let value = &tokens[start..end];
+    Some(value.first()?.bytes.start..value.last()?.bytes.end)
 }
 
 /// The name of the new value, if the old one is a name: a constant beside the one of that name, in an unbroken list of constants.
 fn sibling(all: &[Line<'_>], old: &str, new: &str) -> Option<String> {
-    if !old.chars().all(is_word) || old.starts_with(|c: char| c.is_ascii_digit()) {
+    if !is_name(old) || !old.chars().all(is_word) {
         return None;
     }
     let plain = |line: &Line<'_>| -> Option<(String, String)> {
-        let words: Vec<&str> = tokens(&line.code).into_iter().map(|(_, text)| text).collect();
-        match words.as_slice() {
+        match line.tokens().iter().map(|token| token.text).collect::<Vec<_>>().as_slice() {
             ["const", _, name, "=", value, ";"] => Some(((*name).to_owned(), (*value).to_owned())),
             _ => None,
         }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::shader::source::text::{Line, is_word, lines};
+use crate::shader::glsl::{TokenKind, lines};
 
 /// A number in a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,42 +20,16 @@ pub struct Literal {
 /// The numbers in the code of a line, from the left. Those of directives are left out, and those in the name of something.
 pub fn literals(text: &str, number: u32) -> Vec<Literal> {
     let all = lines(text);
-    let Some(line) = all.get((number as usize).wrapping_sub(1)) else { return Vec::new() };
-    if line.code.trim_start().starts_with('#') { Vec::new() } else { of_line(line) }
-}
-
-fn of_line(line: &Line<'_>) -> Vec<Literal> {
-    let code = &line.code;
-    let bytes = code.as_bytes();
-    let mut out = Vec::new();
-    let mut at = 0;
-    while at < bytes.len() {
-        let is_start =
-            bytes[at].is_ascii_digit() || (bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit));
-        let before = at.checked_sub(1).map(|before| bytes[before]);
-        // A digit behind a letter belongs to a name, as in `vec3`; behind a dot, to nothing that can be dragged.
-        let is_free = before.is_none_or(|b| !(is_word(b as char) || b == b'.'));
-        if !is_start || !is_free {
-            at += 1;
-            continue;
-        }
-        let length = length(&code[at..]);
-        out.extend(parsed(&code[at..at + length], at));
-        at += length;
-    }
-    out
-}
-
-/// The bytes of the number at the start of a text.
-fn length(text: &str) -> usize {
-    let mut previous = ' ';
-    let goes_on = |c: char| {
-        let is_sign = matches!(c, '+' | '-') && matches!(previous, 'e' | 'E') && !text.starts_with("0x");
-        previous = c;
-        is_word(c) || c == '.' || is_sign
+    let line = all.get((number as usize).wrapping_sub(1)).filter(|line| !line.is_directive);
+    let tokens = line.map(|line| line.tokens()).unwrap_or_default();
+    // Digits behind a dot or a name are nothing that can be dragged.
+    let follows = |at: usize| {
+        let before = at.checked_sub(1).map(|before| &tokens[before]);
+        let before = before.filter(|before| before.bytes.end == tokens[at].bytes.start);
+        before.is_some_and(|before| before.kind == TokenKind::Word || before.text == ".")
     };
-    let mut goes_on = goes_on;
-    text.find(|c| !goes_on(c)).unwrap_or(text.len())
+    let numbers = (0..tokens.len()).filter(|at| tokens[*at].kind == TokenKind::Number && !follows(*at));
+    numbers.filter_map(|at| parsed(tokens[at].text, tokens[at].bytes.start)).collect()
 }
 
 fn parsed(text: &str, start: usize) -> Option<Literal> {

@@ -7,7 +7,6 @@ pub mod pattern;
 pub mod quarantine;
 mod read;
 pub mod snapshot;
-pub(super) mod text;
 mod toy;
 
 use std::collections::BTreeMap;

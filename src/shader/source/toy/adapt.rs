@@ -1,7 +1,7 @@
 //! Changes the text of an opened file so that it compiles in a pass. Each line keeps its number.
 
 use super::channel::{Channel, channel, channels, samplers};
-use crate::shader::source::text::{find_word, lines};
+use crate::shader::glsl::{TokenKind, code, find_word, includes, lines, tokens};
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
 pub(super) const COMMON: &str = "common";
@@ -37,9 +37,10 @@ pub(super) fn reads_keyboard(text: &str) -> bool {
 /// The names of the outputs that a text declares.
 pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| is_replaced(line)).filter_map(|line| {
-        let code = line.split(';').next()?.trim();
-        let is_output = code.split_whitespace().any(|word| word == "out") && !code.starts_with("//");
-        code.split_whitespace().next_back().filter(|_| is_output)
+        let tokens = code(line);
+        let declared = tokens.split(|token| token.text == ";").next()?;
+        let is_output = declared.iter().any(|token| token.text == "out");
+        declared.last().filter(|_| is_output).map(|name| name.text)
     })
 }
 
@@ -49,11 +50,8 @@ pub(super) fn named_files(text: &str) -> Vec<String> {
         Channel::This | Channel::Keyboard => None,
         Channel::Drawing(file) | Channel::Image(file, _) => Some(file),
     };
-    let included = |line: &str| {
-        let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
-        Some(rest.trim().trim_matches(['"', '<', '>']).to_owned())
-    };
-    channels(text).into_iter().filter_map(of_channel).chain(text.lines().filter_map(included)).collect()
+    let included = includes(text).map(|include| include.name.to_owned());
+    channels(text).into_iter().filter_map(of_channel).chain(included).collect()
 }
 
 /// The name of the texture of a channel.
@@ -83,20 +81,17 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
 
 /// Whether the stage says this instead: a version, a uniform of toy.glsl, an input or output, or a channel's further line.
 fn is_replaced(line: &str) -> bool {
-    let code = line.trim();
-    let mut words = code.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty());
-    let is_uniform = || words.clone().any(|word| UNIFORMS.contains(&word));
-    let is_global = || code.ends_with(';') && (code.starts_with("layout") || !code.contains('('));
-    code.starts_with("#version")
-        || code.starts_with("#iChannel")
-        || code.starts_with(KEY_FUNCTIONS)
-        || match words.clone().next() {
-            Some("uniform") => is_uniform(),
-            Some("varying") => true,
-            Some("in" | "out") => is_global(),
-            Some("layout") => is_global() && words.any(|word| word == "out"),
-            _ => false,
-        }
+    let words: Vec<&str> =
+        tokens(line).filter(|token| token.kind != TokenKind::Comment).map(|token| token.text).collect();
+    let is_global = || words.ends_with(&[";"]) && (words[0] == "layout" || !words.contains(&"("));
+    match words.as_slice() {
+        ["#", word, ..] => ["version", "iChannel", "iKeyboard"].iter().any(|known| word.starts_with(known)),
+        ["uniform", ..] => words.iter().any(|word| UNIFORMS.contains(word)),
+        ["varying", ..] => true,
+        ["in" | "out", ..] => is_global(),
+        ["layout", ..] => is_global() && words.contains(&"out"),
+        _ => false,
+    }
 }
 
 /// The line with names that toy.glsl gives to what Vulkan has not, or has otherwise. They are as long as those of the file.

@@ -7,8 +7,8 @@ use super::adapt::{COMMON, has_key_functions, outputs};
 use super::channel::{Channel, channel, samplers};
 use super::{STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{find_word, lines};
 use crate::shader::source::read::read_file;
-use crate::shader::source::text::{find_word, lines};
 
 /// Shadertoy's entry point.
 const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";

@@ -10,8 +10,8 @@ use super::beside::{is_there, not_found};
 use super::channel::{CHANNELS, Channel, Sampler, channel, channels, samplers};
 use crate::message::{did_you_mean, either};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::glsl::{Line, is_word, lines};
 use crate::shader::source::TreePath;
-use crate::shader::source::text::{Line, is_word, lines};
 
 const CHANNEL: &str = "#iChannel";
 /// The options of a channel in editors' Shadertoy extensions. All but `Type` change nothing.

@@ -2,78 +2,11 @@
 
 use std::ops::Range;
 
-use crate::shader::source::text::{Line, lines, tokens};
-
-/// A word, number or sign of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Token<'a> {
-    /// Bytes in the file.
-    pub bytes: Range<usize>,
-    /// Its text.
-    pub text: &'a str,
-}
-
-/// The lines of a file.
-#[derive(Debug)]
-pub struct Code<'a> {
-    lines: Vec<Line<'a>>,
-    /// Byte offset of each line.
-    starts: Vec<usize>,
-    /// Whether each line belongs to a preprocessor directive.
-    directives: Vec<bool>,
-}
-
-impl<'a> Code<'a> {
-    /// Splits a text.
-    pub fn new(text: &'a str) -> Self {
-        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        let lines = lines(text);
-        let mut continues = false;
-        let mut directives = Vec::with_capacity(lines.len());
-        for line in &lines {
-            let is_directive = continues || line.code.trim_start().starts_with('#');
-            continues = is_directive && line.raw.trim_end().ends_with('\\');
-            directives.push(is_directive);
-        }
-        Self { lines, starts, directives }
-    }
-
-    /// A line by its number, from 1.
-    pub fn line(&self, number: u32) -> Option<&Line<'a>> {
-        self.lines.get((number as usize).checked_sub(1)?)
-    }
-
-    /// The byte offset of a line by its number, from 1.
-    pub fn start(&self, number: u32) -> usize {
-        (number as usize).checked_sub(1).and_then(|index| self.starts.get(index)).copied().unwrap_or_default()
-    }
-
-    /// The number of the line that holds a byte, from 1.
-    pub fn number_at(&self, byte: usize) -> u32 {
-        u32::try_from(self.starts.partition_point(|start| *start <= byte)).unwrap_or(u32::MAX)
-    }
-
-    /// Whether a line belongs to a preprocessor directive.
-    pub fn is_directive(&self, number: u32) -> bool {
-        (number as usize).checked_sub(1).and_then(|index| self.directives.get(index)).copied().unwrap_or_default()
-    }
-
-    /// All tokens outside of comments and directives.
-    pub fn tokens(&self) -> Vec<Token<'_>> {
-        let mut out = Vec::new();
-        for ((line, start), is_directive) in self.lines.iter().zip(&self.starts).zip(&self.directives) {
-            if !is_directive {
-                let found = tokens(&line.code).into_iter();
-                out.extend(found.map(|(bytes, text)| Token { bytes: bytes.start + start..bytes.end + start, text }));
-            }
-        }
-        out
-    }
-}
+use super::token::Token;
 
 /// Kind of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum StatementKind {
     /// `{ ... }`
     Block,
     /// A declaration, an assignment or a call, up to its `;`.
@@ -92,7 +25,7 @@ pub enum Kind {
 #[derive(Debug)]
 pub struct Statement {
     /// Kind of the statement.
-    pub kind: Kind,
+    pub kind: StatementKind,
     /// All of its bytes.
     pub bytes: Range<usize>,
     /// The bytes that belong to none of its substatements: the parentheses of a condition or of a loop.
@@ -139,6 +72,23 @@ pub fn functions(tokens: &[Token<'_>]) -> Vec<Function> {
         }
     }
     out
+}
+
+/// The tokens that stand in no brackets, with their indices.
+pub fn outside_brackets<'a, 'b>(tokens: &'a [Token<'b>]) -> impl Iterator<Item = (usize, &'a Token<'b>)> {
+    let mut depth = 0_i32;
+    tokens.iter().enumerate().filter(move |(_, token)| {
+        let inside = depth;
+        depth += i32::from(matches!(token.text, "(" | "[" | "{")) - i32::from(matches!(token.text, ")" | "]" | "}"));
+        inside == 0 && depth == 0
+    })
+}
+
+/// The part of tokens that lies in a range of bytes.
+pub fn within<'a, 'b>(tokens: &'a [Token<'b>], bytes: &Range<usize>) -> &'a [Token<'b>] {
+    let start = tokens.partition_point(|token| token.bytes.start < bytes.start);
+    let end = tokens.partition_point(|token| token.bytes.start < bytes.end);
+    &tokens[start..end.max(start)]
 }
 
 /// The index of the bracket that closes the one at `open`.
@@ -226,7 +176,7 @@ impl Parser<'_, '_> {
                     parts.extend(self.part_of_block()?);
                 }
                 self.at += 1;
-                Kind::Block
+                StatementKind::Block
             }
             word @ ("if" | "switch") => {
                 let is_if = word == "if";
@@ -237,13 +187,13 @@ impl Parser<'_, '_> {
                     self.at += 1;
                     parts.push(self.statement(false)?);
                 }
-                Kind::Branch
+                StatementKind::Branch
             }
             "for" | "while" => {
                 self.at += 1;
                 header = self.brackets()?;
                 parts.push(self.statement(false)?);
-                Kind::Loop
+                StatementKind::Loop
             }
             "do" => {
                 self.at += 1;
@@ -251,15 +201,15 @@ impl Parser<'_, '_> {
                 let from = self.start();
                 self.skip_statement()?;
                 header = from..self.end();
-                Kind::DoLoop
+                StatementKind::DoLoop
             }
             "return" | "discard" | "break" | "continue" => {
                 self.skip_statement()?;
-                Kind::Jump
+                StatementKind::Jump
             }
             _ => {
                 self.skip_statement()?;
-                Kind::Simple
+                StatementKind::Simple
             }
         };
         Some(Statement { kind, bytes: start..self.end(), header, parts, is_in_block })
@@ -281,6 +231,7 @@ impl Parser<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::code;
     use super::*;
 
     #[test]
@@ -288,13 +239,12 @@ mod tests {
         let text = "#define F(x) {\nstruct S { float a; };\nfloat f(float x) {\n  for (int i = 0; i < 2; ++i) x += 1.0;\n  \
             if (x > 0.0) { return x; } else return 0.0;\n  switch (1) { case 1: x = 2.0; break; default: }\n  return x;\n}\n\
             const float c = 1.0; vec2 g() { return vec2(0.0); }\n";
-        let code = Code::new(text);
-        let tokens = code.tokens();
+        let tokens = code(text);
         let found = functions(&tokens);
         let heads: Vec<&str> = found.iter().map(|function| &text[function.head.clone()]).collect();
         assert_eq!(heads, ["float f(float x)", "vec2 g()"]);
-        let kinds: Vec<Kind> = found[0].body.parts.iter().map(|part| part.kind).collect();
-        assert_eq!(kinds, [Kind::Loop, Kind::Branch, Kind::Branch, Kind::Jump]);
+        let kinds: Vec<StatementKind> = found[0].body.parts.iter().map(|part| part.kind).collect();
+        assert_eq!(kinds, [StatementKind::Loop, StatementKind::Branch, StatementKind::Branch, StatementKind::Jump]);
         let inner = &found[0].body.parts[0].parts[0];
         assert_eq!((&text[inner.bytes.clone()], inner.is_in_block), ("x += 1.0;", false));
         let of_switch = &found[0].body.parts[2].parts[0].parts;

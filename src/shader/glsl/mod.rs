@@ -1,0 +1,13 @@
+//! Reads GLSL without a preprocessor: its tokens, lines, includes, and the functions and statements that can be found without a
+//! compiler. Everything in Specula that looks into a shader's text looks through this module.
+
+mod entry;
+mod include;
+mod lines;
+pub mod syntax;
+mod token;
+
+pub use entry::Entry;
+pub use include::includes;
+pub use lines::{Code, Line, find_word, is_same_code, lines};
+pub use token::{Token, TokenKind, assigns, code, is_name, is_word, spelled, tokens};
