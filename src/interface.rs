@@ -1,7 +1,7 @@
 //! The contract between Rust and GLSL: descriptor sets, bindings, specialization ids and the structs that both sides use.
 //!
 //! Rust writes this memory, so Rust declares it. [`glsl`] prints the contract as `shaders/interface.glsl`, and
-//! `shader::contract` checks every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and [`BLOCKS`].
+//! `shader::contract` checks every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and [`blocks`].
 //!
 //! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
 //!
@@ -12,20 +12,36 @@
 mod access;
 mod blocks;
 mod constants;
+mod material;
 mod print;
-mod textures;
 
 use std::mem::offset_of;
 use std::ops::Range;
 
 pub use access::{Resource, StageRole, table as access_table};
 pub use blocks::{
-    BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
-    TracedTriangle, Vertex, block,
+    Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Member, Task, TracedCorners, TracedMaterial, TracedTriangle,
+    Vertex,
 };
+use blocks::{FRAME_BLOCKS, OTHER_BLOCKS};
 pub use constants::*;
+pub use material::*;
 pub use print::glsl;
-pub use textures::*;
+
+/// Every struct of the contract, in the order in which GLSL needs them.
+pub fn blocks() -> impl Iterator<Item = &'static Block> {
+    FRAME_BLOCKS.iter().chain(MATERIAL_BLOCKS).chain(OTHER_BLOCKS)
+}
+
+/// The struct of this name.
+pub fn block(name: &str) -> Option<&'static Block> {
+    blocks().find(|block| block.name == name)
+}
+
+/// Name and value of every constant that GLSL compares with.
+pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
+    MODE_CONSTANTS.iter().chain(MATERIAL_CONSTANTS).chain(OTHER_CONSTANTS).copied()
+}
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
 pub const VERSION: u32 = 9;
@@ -94,36 +110,9 @@ impl BindingKind {
     }
 }
 
-/// Binding in [`SET_FRAME`] of the block [`Frame`].
-pub const BINDING_FRAME: u32 = 0;
-/// Binding in [`SET_FRAME`] of the lights.
-pub const BINDING_LIGHTS: u32 = 1;
-/// Binding in [`SET_FRAME`] of the author's parameters.
-pub const BINDING_PARAMS: u32 = 2;
-/// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
-pub const BINDING_RESULTS: u32 = 5;
-/// Binding in [`SET_TASK`] of the small lights of an environment, for the tasks that read them.
-pub const BINDING_SMALL_LIGHTS: u32 = 9;
-/// Binding in [`SET_TASK`] of the texels that a task writes with a shared exponent, a word each.
-pub const BINDING_PACKED: u32 = 10;
-/// Binding in [`SET_TASK`] of the samples of a pair of specular levels, for the task that chooses them.
-pub const BINDING_LOBE_TARGET: u32 = 6;
-/// Binding in [`SET_TASK`] of the same samples, for the task that reads them.
-pub const BINDING_LOBE: u32 = 7;
-/// Binding in [`SET_TASK`] of the block [`Task`].
-pub const BINDING_TASK: u32 = 0;
-/// Binding in [`SET_TASK`] of the image that a task reads.
-pub const BINDING_SOURCE: u32 = 1;
-/// Binding in [`SET_TASK`] of the cube map that a task reads.
-pub const BINDING_SOURCE_CUBE: u32 = 2;
-/// Binding in [`SET_TASK`] of the mip level that a task writes.
-pub const BINDING_TARGET: u32 = 3;
-/// Binding in [`SET_TASK`] of a mip level that a task reads.
-pub const BINDING_LEVEL_ABOVE: u32 = 4;
-
 /// Sets and bindings of the buffer that Specula adds to a stage with loops that might not end: see `shader::spirv::loops`.
 /// Compute stages have it in [`SET_TASK`], the others in [`SET_FRAME`].
-pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, 20), (SET_TASK, 8)];
+pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, BINDING_LOOPS), (SET_TASK, BINDING_TASK_LOOPS)];
 
 /// The bytes of [`Frame`] that change while the time runs.
 pub const CLOCK: [Range<usize>; 7] = [
@@ -160,28 +149,13 @@ pub struct Binding {
     pub resource: Option<Resource>,
 }
 
-const fn binding(
-    resource: Resource,
-    set: u32,
-    binding: u32,
-    name: &'static str,
-    kind: BindingKind,
-    size: usize,
-) -> Binding {
-    Binding { set, binding, name, kind, size: size as u32, resource: Some(resource) }
-}
-
-/// A descriptor that Specula itself adds to stages.
-const fn added((set, binding): (u32, u32), name: &'static str, kind: BindingKind, size: usize) -> Binding {
-    Binding { set, binding, name, kind, size: size as u32, resource: None }
-}
-
 /// Every descriptor of the contract.
 pub const BINDINGS: &[Binding] = &{
-    let mut all = [OTHERS[0]; OTHERS.len() + TEXTURE_COUNT];
+    let mut all = [OTHER_BINDINGS[0]; OTHER_BINDINGS.len() + TEXTURE_COUNT];
     let mut at = 0;
     while at < all.len() {
-        all[at] = if at < OTHERS.len() { OTHERS[at] } else { TEXTURES[at - OTHERS.len()].binding };
+        let others = OTHER_BINDINGS.len();
+        all[at] = if at < others { OTHER_BINDINGS[at] } else { TEXTURES[at - others].binding };
         at += 1;
     }
     all
@@ -190,54 +164,93 @@ pub const BINDINGS: &[Binding] = &{
 /// Bytes of the block of lights and suns.
 pub(crate) const LIGHT_BYTES: usize = (MAX_LIGHTS + MAX_SUNS) * size_of::<Light>();
 
-/// Every descriptor that is not a material's texture.
-const OTHERS: &[Binding] = &[
-    binding(Resource::Frame, SET_FRAME, BINDING_FRAME, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
-    // Lights are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
-    binding(Resource::Lights, SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, LIGHT_BYTES),
-    binding(
-        Resource::Params,
-        SET_FRAME,
-        BINDING_PARAMS,
-        "BINDING_PARAMS",
-        BindingKind::UniformBuffer,
-        PARAMS_SIZE as usize,
-    ),
-    binding(Resource::Environment, SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
-    binding(Resource::Environment, SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),
-    binding(Resource::Environment, SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
-    binding(Resource::Environment, SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::Sampler2D, 0),
-    binding(Resource::Tables, SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
-    binding(Resource::Tables, SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
-    binding(Resource::Tables, SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
-    binding(Resource::Tables, SET_FRAME, 10, "BINDING_SHEEN_ALBEDO", BindingKind::Sampler2D, 0),
-    // Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
-    // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
-    added((SET_FRAME, 11), "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
-    binding(Resource::Tables, SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
-    // Two channels of BINDING_DFG, for lamps: a software device reads them in two thirds of the time that four take.
-    binding(Resource::Tables, SET_FRAME, 13, "BINDING_LAMP_DFG", BindingKind::Sampler2D, 0),
-    binding(Resource::Scene, SET_FRAME, 14, "BINDING_BVH", BindingKind::StorageBuffer, 0),
-    binding(Resource::Scene, SET_FRAME, 15, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
-    binding(Resource::Scene, SET_FRAME, 16, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
-    binding(Resource::Scene, SET_FRAME, 17, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
-    binding(Resource::Scene, SET_FRAME, 18, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
-    binding(Resource::Scene, SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
-    added(LOOPS[0], "BINDING_LOOPS", BindingKind::StorageBuffer, 0),
-    binding(Resource::Material, SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
-    binding(Resource::Task, SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
-    binding(Resource::Task, SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
-    binding(Resource::Task, SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
-    binding(Resource::Task, SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
-    binding(Resource::Task, SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
-    binding(Resource::Task, SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
-    binding(Resource::Task, SET_TASK, BINDING_LOBE_TARGET, "BINDING_LOBE_TARGET", BindingKind::StorageBuffer, 0),
-    // 16 KiB is the largest uniform block that every device has.
-    binding(Resource::Task, SET_TASK, BINDING_LOBE, "BINDING_LOBE", BindingKind::UniformBuffer, 16384),
-    binding(Resource::Task, SET_TASK, BINDING_SMALL_LIGHTS, "BINDING_SMALL_LIGHTS", BindingKind::UniformBuffer, 16384),
-    binding(Resource::Task, SET_TASK, BINDING_PACKED, "BINDING_PACKED", BindingKind::StorageBuffer, 0),
-    added(LOOPS[1], "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
-];
+/// Declares bindings as constants and as a table. A row is `NAME = set, binding, kind(size), resource`; `size`: the largest in bytes that a
+/// shader may declare.
+macro_rules! bindings {
+    ($($(#[doc = $doc:literal])+ $name:ident = $set:ident, $binding:literal, $kind:ident($($size:expr)?), $resource:expr;)+) => {
+        $($(#[doc = $doc])+ pub const $name: u32 = $binding;)+
+
+        /// Every descriptor that is not a material's texture.
+        const OTHER_BINDINGS: &[Binding] = &[$(Binding {
+            set: $set,
+            binding: $binding,
+            name: stringify!($name),
+            kind: BindingKind::$kind,
+            size: 0 $(+ $size as u32)?,
+            resource: $resource,
+        },)+];
+    };
+}
+
+bindings! {
+    /// The block [`Frame`].
+    BINDING_FRAME = SET_FRAME, 0, UniformBuffer(size_of::<Frame>()), Some(Resource::Frame);
+    /// The lights. They are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
+    BINDING_LIGHTS = SET_FRAME, 1, UniformBuffer(LIGHT_BYTES), Some(Resource::Lights);
+    /// The author's parameters.
+    BINDING_PARAMS = SET_FRAME, 2, UniformBuffer(PARAMS_SIZE), Some(Resource::Params);
+    /// The environment's cube map.
+    BINDING_ENVIRONMENT = SET_FRAME, 3, SamplerCube(), Some(Resource::Environment);
+    /// The environment's prefiltered radiance.
+    BINDING_PREFILTERED = SET_FRAME, 4, Sampler2D(), Some(Resource::Environment);
+    /// The environment's radiance, prefiltered for sheen.
+    BINDING_PREFILTERED_SHEEN = SET_FRAME, 5, SamplerCube(), Some(Resource::Environment);
+    /// The environment's irradiance.
+    BINDING_IRRADIANCE = SET_FRAME, 6, Sampler2D(), Some(Resource::Environment);
+    /// Directional albedo of the BRDF.
+    BINDING_DFG = SET_FRAME, 7, Sampler2D(), Some(Resource::Tables);
+    /// Linearly transformed cosines, for rectangular lights.
+    BINDING_LTC = SET_FRAME, 8, Sampler2D(), Some(Resource::Tables);
+    /// The measured BRDF.
+    BINDING_MEASURED = SET_FRAME, 9, StorageBuffer(), Some(Resource::Tables);
+    /// Directional albedo of the sheen.
+    BINDING_SHEEN_ALBEDO = SET_FRAME, 10, Sampler2D(), Some(Resource::Tables);
+    /// Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
+    /// own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
+    BINDING_UNUSED = SET_FRAME, 11, UniformBuffer(16_u32), None;
+    /// Directional albedo of the diffuse lobe.
+    BINDING_DIFFUSE_ALBEDO = SET_FRAME, 12, Sampler2D(), Some(Resource::Tables);
+    /// Two channels of [`BINDING_DFG`], for lamps: a software device reads them in two thirds of the time that four take.
+    BINDING_LAMP_DFG = SET_FRAME, 13, Sampler2D(), Some(Resource::Tables);
+    /// The bounding volume hierarchy that random paths trace.
+    BINDING_BVH = SET_FRAME, 14, StorageBuffer(), Some(Resource::Scene);
+    /// The triangles that random paths can hit.
+    BINDING_TRACED_TRIANGLES = SET_FRAME, 15, StorageBuffer(), Some(Resource::Scene);
+    /// Attributes at the corners of these triangles.
+    BINDING_TRACED_CORNERS = SET_FRAME, 16, StorageBuffer(), Some(Resource::Scene);
+    /// Their materials.
+    BINDING_TRACED_MATERIALS = SET_FRAME, 17, StorageBuffer(), Some(Resource::Scene);
+    /// The textures of these materials.
+    BINDING_TRACED_TEXTURES = SET_FRAME, 18, Sampler2DArray(), Some(Resource::Scene);
+    /// The environment's cells, as an alias table.
+    BINDING_ENVIRONMENT_CELLS = SET_FRAME, 19, StorageBuffer(), Some(Resource::Scene);
+    /// What loops of a graphics stage report: see [`LOOPS`].
+    BINDING_LOOPS = SET_FRAME, 20, StorageBuffer(), None;
+    /// The block [`Material`].
+    BINDING_MATERIAL = SET_MATERIAL, 0, UniformBuffer(size_of::<Material>()), Some(Resource::Material);
+    /// The block [`Task`].
+    BINDING_TASK = SET_TASK, 0, UniformBuffer(size_of::<Task>()), Some(Resource::Task);
+    /// The image that a task reads.
+    BINDING_SOURCE = SET_TASK, 1, Sampler2D(), Some(Resource::Task);
+    /// The cube map that a task reads.
+    BINDING_SOURCE_CUBE = SET_TASK, 2, SamplerCube(), Some(Resource::Task);
+    /// The mip level that a task writes.
+    BINDING_TARGET = SET_TASK, 3, StorageImage(), Some(Resource::Task);
+    /// A mip level that a task reads.
+    BINDING_LEVEL_ABOVE = SET_TASK, 4, StorageImage(), Some(Resource::Task);
+    /// The buffer that a task writes numbers to. It is as large as the stages declare.
+    BINDING_RESULTS = SET_TASK, 5, StorageBuffer(), Some(Resource::Task);
+    /// The samples of a pair of specular levels, for the task that chooses them.
+    BINDING_LOBE_TARGET = SET_TASK, 6, StorageBuffer(), Some(Resource::Task);
+    /// The same samples, for the task that reads them. 16 KiB is the largest uniform block that every device has.
+    BINDING_LOBE = SET_TASK, 7, UniformBuffer(16384_u32), Some(Resource::Task);
+    /// The small lights of an environment, for the tasks that read them.
+    BINDING_SMALL_LIGHTS = SET_TASK, 9, UniformBuffer(16384_u32), Some(Resource::Task);
+    /// The texels that a task writes with a shared exponent, a word each.
+    BINDING_PACKED = SET_TASK, 10, StorageBuffer(), Some(Resource::Task);
+    /// What loops of a task report: see [`LOOPS`].
+    BINDING_TASK_LOOPS = SET_TASK, 8, StorageBuffer(), None;
+}
 
 /// A specialization constant that Rust sets.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,7 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
+use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, PUSH_CONSTANT_SIZE};
 
 /// A struct of the contract.
 #[derive(Debug)]
@@ -35,14 +35,9 @@ pub struct Member {
     pub offset: u32,
 }
 
-/// The struct of this name.
-pub fn block(name: &str) -> Option<&'static Block> {
-    BLOCKS.iter().find(|block| block.name == name)
-}
-
 /// GLSL's types as Rust writes them in scalar layout. Matrices are arrays of columns.
 #[expect(non_camel_case_types, reason = "these are the names in GLSL")]
-mod types {
+pub(super) mod types {
     pub type float = f32;
     pub type uint = u32;
     pub type vec2 = [f32; 2];
@@ -61,8 +56,9 @@ mod types {
 }
 use types::*;
 
+/// Declares structs, and a table of them.
 macro_rules! blocks {
-    ($($(#[$attribute:meta])* $name:ident: $before:literal, $after:literal {
+    ($(#[doc = $table_doc:literal])+ $table:ident: $($(#[$attribute:meta])* $name:ident: $before:literal, $after:literal {
         $(#[doc = $doc:literal] $member:ident: $type:ty,)+
     })+) => {
         $(
@@ -74,8 +70,8 @@ macro_rules! blocks {
             }
         )+
 
-        /// Every struct of the contract, in the order in which GLSL needs them.
-        pub const BLOCKS: &[Block] = &[$(Block {
+        $(#[doc = $table_doc])+
+        pub const $table: &[Block] = &[$(Block {
             name: stringify!($name),
             around: [$before, $after],
             size: size_of::<$name>() as u32,
@@ -89,7 +85,12 @@ macro_rules! blocks {
     };
 }
 
+pub(super) use blocks;
+
 blocks! {
+    /// The blocks of a frame.
+    FRAME_BLOCKS:
+
     /// Values that all draws of a frame share: camera, output, counts.
     Frame: "layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame", "frame" {
         /// World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
@@ -201,76 +202,11 @@ blocks! {
         /// Rectangle: from its center to the middle of a neighboring edge, meters.
         half_y_ws: vec3,
     }
+}
 
-    /// A material's numbers.
-    Material: "layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material", "material" {
-        /// Linear RGBA.
-        base_color_factor: vec4,
-        /// Linear RGB times cd/m^2, KHR_materials_emissive_strength included.
-        emissive_factor: vec3,
-        /// 0 dielectric .. 1 metal.
-        metallic_factor: float,
-        /// Perceptual roughness 0..1.
-        roughness_factor: float,
-        /// Scale of the normal texture's x and y.
-        normal_scale: float,
-        /// 0 no occlusion .. 1 as in the texture.
-        occlusion_strength: float,
-        /// ALPHA_MASK: a fragment with less coverage is discarded.
-        alpha_cutoff: float,
-        /// Bit TEXTURE_*: the material has this texture; else a default one is bound.
-        texture_mask: uint,
-        /// Bit TEXTURE_*: the texture is read at TEXCOORD_1.
-        uv1_mask: uint,
-        /// Index of the material, for the id mode.
-        id: uint,
-        /// Clear coat factor 0..1.
-        clearcoat_factor: float,
-        /// Perceptual roughness of the clear coat.
-        clearcoat_roughness: float,
-        /// Scale of the clear coat normal texture's x and y.
-        clearcoat_normal_scale: float,
-        /// Anisotropy strength 0..1.
-        anisotropy_strength: float,
-        /// Cosine and sine of the rotation from the tangent towards the bitangent.
-        anisotropy_rotation: vec2,
-        /// Perceptual roughness of the sheen.
-        sheen_roughness: float,
-        /// Linear RGB.
-        sheen_color: vec3,
-        /// Weight of the dielectric's specular reflection 0..1 (KHR_materials_specular).
-        specular_factor: float,
-        /// Linear RGB, tints the dielectric's F0; specular-glossiness: F0 itself.
-        specular_color: vec3,
-        /// Index of refraction, at least 1; 0 stands for infinity.
-        ior: float,
-        /// Iridescence factor 0..1.
-        iridescence_factor: float,
-        /// Index of refraction of the thin film.
-        iridescence_ior: float,
-        /// Thickness of the film where its texture is 0 and where it is 1, nanometers.
-        iridescence_thickness_nm: vec2,
-        /// Transmission factor 0..1.
-        transmission_factor: float,
-        /// Thickness of the volume below the surface, meters in object space; 0: thin wall.
-        thickness: float,
-        /// Color of white light after attenuation_distance.
-        attenuation_color: vec3,
-        /// Meters; infinite without attenuation.
-        attenuation_distance: float,
-        /// 20 / Abbe number (KHR_materials_dispersion).
-        dispersion: float,
-        /// Part of the diffuse light that is transmitted, 0..1.
-        diffuse_transmission_factor: float,
-        /// Linear RGB.
-        diffuse_transmission_color: vec3,
-        /// Real part of the metal's index of refraction at about 650, 550 and 450 nm.
-        conductor_n: vec3,
-        /// Imaginary part (extinction coefficient), positive.
-        conductor_k: vec3,
-        /// KHR_texture_transform of each texture, applied to (u, v, 1).
-        uv_from_texture: [mat3x2; TEXTURE_COUNT],
-    }
+blocks! {
+    /// All other blocks.
+    OTHER_BLOCKS:
 
     /// The parameters of one compute dispatch.
     Task: "layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task", "task" {

@@ -1,67 +1,30 @@
 //! The numbers that Rust writes and GLSL compares with: each is a Rust constant and a `const uint` of the same name in GLSL.
 
+/// Declares constants, and a table with the name and value of each.
 macro_rules! constants {
-    ($(#[doc = $doc:literal] $name:ident = $value:expr;)+) => {
+    ($(#[doc = $table_doc:literal])+ $table:ident: $(#[doc = $doc:literal] $name:ident = $value:expr;)+) => {
         $(#[doc = $doc] pub const $name: u32 = $value;)+
 
-        /// Name and value of every constant in this file.
-        pub const UINTS: &[(&str, u32)] = &[$((stringify!($name), $name),)+];
+        $(#[doc = $table_doc])+
+        pub const $table: &[(&str, u32)] = &[$((stringify!($name), $name),)+];
     };
 }
 
+pub(super) use constants;
+
 constants! {
+    /// Modes that no shader tree declares.
+    MODE_CONSTANTS:
+
     /// The mode in which `debug.frag` draws the edges of triangles over the picture.
     EDGES_MODE = (1 << 30) - 1;
     /// Modes from here on show the image of a declared pass.
     PASS_MODES = 1 << 30;
+}
 
-    /// glTF `alphaMode` OPAQUE.
-    ALPHA_OPAQUE = 0;
-    /// glTF `alphaMode` MASK.
-    ALPHA_MASK = 1;
-    /// glTF `alphaMode` BLEND.
-    ALPHA_BLEND = 2;
-
-    /// Drawn without lighting: KHR_materials_unlit, and points and lines without normals (glTF 2.0, section 3.9).
-    FEATURE_UNLIT = 1;
-    /// The material has a normal texture, and the mesh has a tangent frame for it.
-    FEATURE_NORMAL_TEXTURE = 1 << 1;
-    /// KHR_materials_clearcoat.
-    FEATURE_CLEARCOAT = 1 << 2;
-    /// The clear coat has a normal texture of its own.
-    FEATURE_CLEARCOAT_NORMAL = 1 << 3;
-    /// KHR_materials_anisotropy.
-    FEATURE_ANISOTROPY = 1 << 4;
-    /// KHR_materials_sheen.
-    FEATURE_SHEEN = 1 << 5;
-    /// KHR_materials_specular.
-    FEATURE_SPECULAR = 1 << 6;
-    /// KHR_materials_iridescence.
-    FEATURE_IRIDESCENCE = 1 << 7;
-    /// KHR_materials_transmission.
-    FEATURE_TRANSMISSION = 1 << 8;
-    /// KHR_materials_volume.
-    FEATURE_VOLUME = 1 << 9;
-    /// KHR_materials_dispersion.
-    FEATURE_DISPERSION = 1 << 10;
-    /// KHR_materials_diffuse_transmission.
-    FEATURE_DIFFUSE_TRANSMISSION = 1 << 11;
-    /// KHR_materials_pbrSpecularGlossiness: diffuse color, F0 and glossiness replace metallic-roughness.
-    FEATURE_SPECULAR_GLOSSINESS = 1 << 12;
-    /// The model gives the metal's complex index of refraction.
-    FEATURE_CONDUCTOR = 1 << 13;
-    /// Occlusion is the red channel of the metallic-roughness texture, so one read serves both.
-    FEATURE_PACKED_OCCLUSION = 1 << 14;
-    /// Image-based light replaces `Frame::ambient`. The same for all materials of a frame.
-    FEATURE_ENVIRONMENT = 1 << 15;
-    /// There are rectangular lights. The same for all materials of a frame.
-    FEATURE_RECT_LIGHTS = 1 << 16;
-    /// Some texture is read at TEXCOORD_1, or moved by KHR_texture_transform.
-    FEATURE_TEXTURE_COORDINATES = 1 << 17;
-    /// The mesh has TEXCOORD_1.
-    FEATURE_UV1 = 1 << 18;
-    /// The mesh has COLOR_0, and the material does not replace it.
-    FEATURE_VERTEX_COLOR = 1 << 19;
+constants! {
+    /// All other constants.
+    OTHER_CONSTANTS:
 
     /// `Draw::attributes`: the file has normals; else flat ones are generated.
     ATTRIBUTE_NORMAL = 1;
@@ -125,6 +88,3 @@ constants! {
     /// `SPEC_TONEMAP`: debug modes whose values are not light skip exposure and tone mapping.
     TONEMAP_OFF = u32::MAX;
 }
-
-/// Number of the highest `FEATURE_*` bit. All bits below it are features.
-pub const LAST_FEATURE: u32 = FEATURE_VERTEX_COLOR.ilog2();

@@ -30,7 +30,7 @@ pub fn glsl() -> String {
     }
     constant("int", "USER_CONSTANTS", USER_CONSTANTS.to_string());
     let textures = (0..).zip(TEXTURES).map(|(index, texture)| (texture.name, index));
-    for (name, value) in UINTS.iter().copied().chain(textures) {
+    for (name, value) in constants().chain(textures) {
         constant("uint", name, if value > 0xffff { format!("0x{value:x}u") } else { format!("{value}u") });
     }
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
@@ -42,7 +42,7 @@ pub fn glsl() -> String {
     for s in SPECIALIZATION {
         let _ = writeln!(out, "layout(constant_id = {}) const uint {} = 0u; // {}", s.id, s.name, s.doc);
     }
-    for block in BLOCKS {
+    for block in blocks() {
         // A `String` takes everything.
         let _ = print_block(&mut out, block);
     }

@@ -8,6 +8,7 @@ mod bvh;
 mod camera;
 pub mod environment;
 mod error;
+mod extensions;
 mod features;
 mod gltf;
 mod lights;
@@ -32,6 +33,7 @@ pub use bvh::Bvh;
 pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, frame};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile, Sun, has_exact_sun, separates_suns};
 pub use error::{LoadError, Problem};
+pub use extensions::MaterialFactor;
 pub use features::{features, packs_occlusion};
 pub use gltf::triangles;
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
@@ -41,7 +43,7 @@ pub use model::*;
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, point_at, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
-pub use replace::{factor, override_material, replace_channels, replace_factors};
+pub use replace::{material_factors, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};
 
 /// Loads a file, or else the built-in model of that name. Without a path, loads the first built-in model.

@@ -5,11 +5,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::interface::{
-    TEXTURE_BASE_COLOR, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_DIFFUSE_TRANSMISSION_COLOR, TEXTURE_EMISSIVE,
-    TEXTURE_METALLIC_ROUGHNESS, TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SHEEN_COLOR, TEXTURE_SPECULAR_COLOR,
-    TEXTURES,
-};
+use crate::interface::{TEXTURE_METALLIC_ROUGHNESS, TEXTURE_OCCLUSION, TEXTURES, TextureContent};
 use crate::scene::{Image, Material, Model, packs_occlusion};
 
 /// A texture as the materials read it. Indices are into `Model::images`.
@@ -50,8 +46,9 @@ impl TextureSource {
     pub fn of(model: &Model, material: &Material, slot: usize) -> Self {
         let image_in = |slot: usize| material.textures[slot].map(|used| model.textures[used.texture].image);
         let is = |of: &[u32]| of.iter().any(|texture| *texture as usize == slot);
+        let content = TEXTURES[slot].content;
         let Some(image) = image_in(slot) else {
-            return if is(&[TEXTURE_NORMAL, TEXTURE_CLEARCOAT_NORMAL]) { Self::FlatNormal } else { Self::White };
+            return if content == TextureContent::Normal { Self::FlatNormal } else { Self::White };
         };
         if is(&[TEXTURE_METALLIC_ROUGHNESS, TEXTURE_OCCLUSION])
             && let Some(metallic_roughness) = image_in(TEXTURE_METALLIC_ROUGHNESS as usize)
@@ -61,15 +58,8 @@ impl TextureSource {
         {
             return Self::Packed { metallic_roughness, occlusion };
         }
-        let colors = [
-            TEXTURE_BASE_COLOR,
-            TEXTURE_EMISSIVE,
-            TEXTURE_SHEEN_COLOR,
-            TEXTURE_SPECULAR_COLOR,
-            TEXTURE_DIFFUSE_TRANSMISSION_COLOR,
-        ];
         let is_glossiness = material.specular_glossiness && is(&[TEXTURE_METALLIC_ROUGHNESS]);
-        Self::Image { image, srgb: is(&colors) || is_glossiness }
+        Self::Image { image, srgb: content == TextureContent::Color || is_glossiness }
     }
 
     /// Whether its colors are sRGB-encoded.
@@ -129,6 +119,7 @@ pub fn texture_sources(model: &Model) -> BTreeSet<TextureSource> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interface::{TEXTURE_BASE_COLOR, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_NORMAL};
     use crate::scene::{Sampler, Texture, TextureUse};
 
     /// Images of these sizes, each with a texture. All pixels are different.

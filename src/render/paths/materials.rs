@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{Affine2, Vec3};
+use glam::Affine2;
 
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Use, one_shot, vk};
 use crate::interface::{
@@ -42,14 +42,12 @@ impl<'a> Materials<'a> {
 
     /// A material of the model, or the material override.
     pub(super) fn pack(&mut self, material: &Material) -> TracedMaterial {
-        let dielectric = 1.0 - material.metallic_factor;
+        let numbers = &material.numbers;
         // F0 = ((n - 1) / (n + 1))^2; ior 0 stands for infinity (KHR_materials_ior).
-        let from_ior = if material.ior > 0.0 { ((material.ior - 1.0) / (material.ior + 1.0)).powi(2) } else { 1.0 };
-        let specular = &material.specular;
-        let f0 = if material.specular_glossiness {
-            specular.color
-        } else {
-            (specular.color * from_ior).min(Vec3::ONE) * specular.factor
+        let from_ior = if numbers.ior > 0.0 { ((numbers.ior - 1.0) / (numbers.ior + 1.0)).powi(2) } else { 1.0 };
+        let f0 = match material.specular_glossiness {
+            true => numbers.specular_color,
+            false => numbers.specular_color.map(|color| (color * from_ior).min(1.0) * numbers.specular_factor),
         };
         let uses = SLOTS.map(|slot| material.textures[slot as usize].filter(|used| used.uv_set == uv_set(material)));
         let mut layers = [NO_TEXTURE; 3];
@@ -61,24 +59,24 @@ impl<'a> Materials<'a> {
             }
         }
         TracedMaterial {
-            base_color_factor: material.base_color_factor.to_array(),
-            emissive_factor: if material.unlit { [0.0; 3] } else { material.emissive_factor.to_array() },
-            metallic_factor: if material.specular_glossiness { 0.0 } else { material.metallic_factor },
+            base_color_factor: numbers.base_color_factor,
+            emissive_factor: if material.unlit { [0.0; 3] } else { numbers.emissive_factor },
+            metallic_factor: if material.specular_glossiness { 0.0 } else { numbers.metallic_factor },
             roughness_factor: match material.specular_glossiness {
-                true => 1.0 - material.roughness_factor,
-                false => material.roughness_factor,
+                true => 1.0 - numbers.roughness_factor,
+                false => numbers.roughness_factor,
             },
-            alpha_cutoff: material.alpha_cutoff,
+            alpha_cutoff: numbers.alpha_cutoff,
             alpha_mode: match material.alpha_mode {
                 AlphaMode::Opaque => ALPHA_OPAQUE,
                 AlphaMode::Mask => ALPHA_MASK,
                 AlphaMode::Blend => ALPHA_BLEND,
             },
             unlit: material.unlit.into(),
-            transmission: material.transmission_factor * dielectric,
-            ior: material.ior,
-            f0: f0.to_array(),
-            f90: specular.factor,
+            transmission: numbers.transmission_factor * (1.0 - numbers.metallic_factor),
+            ior: numbers.ior,
+            f0,
+            f90: numbers.specular_factor,
             layers,
             uv_from_texture: uses.map(|used| columns(used.map_or(Affine2::IDENTITY, |used| used.uv_from_mesh))),
         }

@@ -31,7 +31,9 @@ impl MaterialSets<'_> {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let buffer = Buffer::new(gpu, "material", size_of_val(&packed) as u64, usage, Memory::Upload)?;
         buffer.write(0, bytemuck::bytes_of(&packed));
-        let mut writer = SetWriter::default().named(&format!("material `{}`", material.name)).buffer(0, &buffer);
+        let mut writer = SetWriter::default()
+            .named(&format!("material `{}`", material.name))
+            .buffer(interface::BINDING_MATERIAL, &buffer);
         for (slot, used) in material.textures.iter().enumerate() {
             let wanted = used.map(|used| model.textures[used.texture].sampler).unwrap_or_default();
             let sampler = match samplers.get(&wanted) {
@@ -41,7 +43,7 @@ impl MaterialSets<'_> {
             if let Some(image) = textures.get(&TextureSource::of(model, material, slot)) {
                 let ones = constant_channels(material, slot);
                 let image = if ones == [false; 4] { image.clone() } else { image.with_ones(ones)? };
-                writer = writer.texture(1 + slot as u32, &image, &sampler);
+                writer = writer.texture(interface::TEXTURES[slot].binding.binding, &image, &sampler);
             }
         }
         DescriptorSet::new(layouts, interface::SET_MATERIAL, writer)

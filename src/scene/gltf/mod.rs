@@ -3,11 +3,11 @@
 
 mod file;
 mod geometry;
-mod materials;
+pub(super) mod materials;
 mod nodes;
 #[cfg(test)]
 mod tests;
-mod values;
+pub(super) mod values;
 mod variants;
 
 use std::collections::HashMap;

@@ -6,7 +6,6 @@ use std::ops::RangeInclusive;
 use gltf::json;
 
 use super::super::error::Problem;
-use super::materials::textures::Slot;
 
 /// Extensions that the parser does not know, by name.
 pub type Extensions = serde_json::Map<String, json::Value>;
@@ -130,19 +129,6 @@ impl<'a> Fields<'a> {
     pub fn index(&self, key: &str, kind: &str) -> Result<usize, Problem> {
         index(self.get(key), &self.at(key), kind)
     }
-
-    /// A textureInfo.
-    pub fn slot(&self, key: &str) -> Result<Option<Slot>, Problem> {
-        let Some(info) = self.open_member(key)? else { return Ok(None) };
-        let texture = info.index("index", "textures")?;
-        let uv_set = match info.get("texCoord") {
-            None => 0,
-            Some(value) => whole(value)
-                .ok_or_else(|| Problem::invalid(info.at("texCoord"), "a TEXCOORD set's number", quote(value)))?,
-        };
-        let others = info.get("extensions").and_then(json::Value::as_object);
-        Slot::raw(texture, uv_set, others, &info.place).map(Some)
-    }
 }
 
 /// A required index into a list of the file.
@@ -151,7 +137,8 @@ pub fn index(value: Option<&json::Value>, place: &str, kind: &str) -> Result<usi
     value.and_then(whole).ok_or_else(|| Problem::invalid(place, format!("an index into {kind}"), found()))
 }
 
-fn whole<T: TryFrom<u64>>(value: &json::Value) -> Option<T> {
+/// A whole number of a type.
+pub fn whole<T: TryFrom<u64>>(value: &json::Value) -> Option<T> {
     value.as_u64().and_then(|value| T::try_from(value).ok())
 }
 

@@ -286,8 +286,8 @@ fn features(cursor: &mut Cursor<'_>) -> Result<u32, Box<Diagnostic>> {
     let mut bits = 0;
     for name in value.split(',') {
         let constant = format!("FEATURE_{}", name.trim().to_uppercase().replace('-', "_"));
-        let Some((_, bit)) = interface::UINTS.iter().find(|(known, _)| *known == constant) else {
-            let known = interface::UINTS.iter().filter_map(|(known, _)| known.strip_prefix("FEATURE_"));
+        let Some((_, bit)) = interface::constants().find(|(known, _)| *known == constant) else {
+            let known = interface::constants().filter_map(|(known, _)| known.strip_prefix("FEATURE_"));
             let known: Vec<String> = known.map(|name| name.to_lowercase().replace('_', "-")).collect();
             let hint = did_you_mean(name, known.iter().map(String::as_str));
             let message = format!(

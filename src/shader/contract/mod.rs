@@ -89,7 +89,7 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     }
     // Structs behind arrays and buffer references, which no descriptor shows.
     let has_contract = texts.dependencies.iter().any(|path| path.as_str() == INTERFACE_FILE);
-    let structs = interface::BLOCKS.iter().filter(|block| block.around[0].starts_with("struct "));
+    let structs = interface::blocks().filter(|block| block.around[0].starts_with("struct "));
     for known in structs.filter(|_| has_contract) {
         let found = reflection.structs.get(known.name);
         out.extend(found.and_then(|found| check_block(found, known.name, texts)));

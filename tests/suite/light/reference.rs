@@ -172,7 +172,7 @@ fn anisotropy() {
         let material = inputs.material(pixel);
         let plain = material.textures.iter().all(Option::is_none);
         let Some(found) = inputs.extra(pixel, "anisotropy-direction").filter(|_| plain) else { continue };
-        let (sin, cos) = f64::from(material.anisotropy.rotation).sin_cos();
+        let [cos, sin] = material.numbers.anisotropy_rotation.map(f64::from);
         let expected = inputs.shown(pixel, "tangent") * cos + inputs.shown(pixel, "bitangent") * sin;
         // Interpolated tangents are not exactly unit, nor exactly perpendicular to the normal.
         assert!(found.dot(expected) > 1.0 - 1e-3, "pixel {pixel}: found {found}, expected {expected}");

@@ -29,9 +29,9 @@ fn a_model_larger_than_the_staging_buffer_arrives_whole_and_its_pixels_leave_the
         (TEXTURE_OCCLUSION, [51, 9, 9, 255]),
     ]);
     let material = &mut model.materials[1];
-    material.base_color_factor = glam::Vec4::ONE;
-    material.emissive_factor = glam::Vec3::ONE;
-    (material.metallic_factor, material.roughness_factor) = (1.0, 1.0);
+    material.numbers.base_color_factor = [1.0; 4];
+    material.numbers.emissive_factor = [1.0; 3];
+    (material.numbers.metallic_factor, material.numbers.roughness_factor) = (1.0, 1.0);
     // 34 MB of vertices and as many of indices, which nothing draws, lie before those of the square.
     let square = model.primitives[0].clone();
     let vertices = vec![Vertex::default(); (34 << 20) / size_of::<Vertex>()];

@@ -12,8 +12,8 @@ use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::{Row, color, edit_number, heading, set_option, short};
 use crate::frame::Scene;
-use crate::scene::{AlphaMode, Material, factor, slot_name};
-use crate::settings::{Factor, FactorValue, Settings, factor_path};
+use crate::scene::{Material, MaterialFactor, material_factors, slot_name};
+use crate::settings::{FactorValue, Settings, factor_path};
 
 /// Shows the material with this index. Values that are set are stored under its name.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, index: usize, commands: &mut Vec<Command>) {
@@ -31,10 +31,11 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, index: usize
     });
     note_override(ui, settings);
     let shown = scene.material(index);
-    let (used, unused): (Vec<Factor>, Vec<Factor>) =
-        Factor::ALL.iter().copied().filter(|factor| applies(*factor, of_file)).partition(|factor| {
-            let is_set = settings.materials.get(&key).is_some_and(|values| values.contains_key(factor));
-            is_set || is_used(*factor, shown)
+    // Factors of extensions that the material does not use are folded away.
+    let (used, unused): (Vec<&MaterialFactor>, Vec<&MaterialFactor>) =
+        material_factors().filter(|factor| (factor.applies)(of_file)).partition(|factor| {
+            let is_set = settings.materials.get(&key).is_some_and(|values| values.contains_key(&factor.factor));
+            is_set || (factor.is_used)(shown)
         });
     for factor in used {
         row(ui, settings, &key, of_file, factor);
@@ -78,8 +79,9 @@ fn note_override(ui: &mut Ui, settings: &Settings) {
 }
 
 /// The row of a factor.
-fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: Factor) {
-    let (entry, original) = (of.entry(), factor(of_file, of));
+fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, field: &MaterialFactor) {
+    let of = field.factor;
+    let (entry, original) = (of.entry(), (field.get)(of_file));
     let set = settings.materials.get(key).and_then(|values| values.get(&of)).copied();
     let before = set.unwrap_or(original);
     let text = match before {
@@ -115,51 +117,10 @@ fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: 
     }
 }
 
-/// Whether a factor can have an effect on a material of this kind.
-fn applies(factor: Factor, material: &Material) -> bool {
-    match factor {
-        Factor::Metallic | Factor::Ior | Factor::Specular => !material.specular_glossiness,
-        Factor::Alpha => material.alpha_mode != AlphaMode::Opaque,
-        Factor::AlphaCutoff => material.alpha_mode == AlphaMode::Mask,
-        Factor::NormalScale => material.textures[crate::interface::TEXTURE_NORMAL as usize].is_some(),
-        Factor::Occlusion => material.textures[crate::interface::TEXTURE_OCCLUSION as usize].is_some(),
-        _ => true,
-    }
-}
-
-/// Whether a factor has an effect now; those of extensions that the material does not use are folded away.
-fn is_used(factor: Factor, material: &Material) -> bool {
-    let has_volume = material.volume.thickness > 0.0;
-    match factor {
-        Factor::BaseColor
-        | Factor::Alpha
-        | Factor::AlphaCutoff
-        | Factor::Metallic
-        | Factor::Roughness
-        | Factor::NormalScale
-        | Factor::Occlusion
-        | Factor::Emissive => true,
-        Factor::EmissiveStrength => material.emissive_factor != glam::Vec3::ZERO,
-        Factor::Ior => material.ior != 1.5 || material.transmission_factor > 0.0,
-        Factor::Specular | Factor::SpecularColor => {
-            material.specular.factor != 1.0 || material.specular.color != glam::Vec3::ONE
-        }
-        Factor::Clearcoat | Factor::ClearcoatRoughness => material.clearcoat.factor > 0.0,
-        Factor::SheenColor | Factor::SheenRoughness => material.sheen.color != glam::Vec3::ZERO,
-        Factor::Anisotropy | Factor::AnisotropyRotation => material.anisotropy.strength > 0.0,
-        Factor::Iridescence | Factor::IridescenceIor | Factor::IridescenceThickness => {
-            material.iridescence.factor > 0.0
-        }
-        Factor::Transmission => material.transmission_factor > 0.0,
-        Factor::Thickness | Factor::AttenuationColor | Factor::AttenuationDistance => has_volume,
-        Factor::Dispersion => material.dispersion > 0.0,
-        Factor::DiffuseTransmission | Factor::DiffuseTransmissionColor => material.diffuse_transmission.factor > 0.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Factor;
 
     #[test]
     fn rows_that_nobody_edits_set_nothing() {
@@ -167,8 +128,8 @@ mod tests {
         let mut settings = Settings::default();
         for _ in 0..3 {
             let _ = egui.run_ui(egui::RawInput::default(), |ui| {
-                for factor in Factor::ALL {
-                    row(ui, &mut settings, "Paint", &Material::default(), *factor);
+                for factor in material_factors() {
+                    row(ui, &mut settings, "Paint", &Material::default(), factor);
                 }
             });
         }
@@ -177,7 +138,8 @@ mod tests {
         settings.materials.entry("Paint".into()).or_default().insert(Factor::Roughness, FactorValue::Number(0.3));
         let before = settings.clone();
         let _ = egui.run_ui(egui::RawInput::default(), |ui| {
-            row(ui, &mut settings, "Paint", &Material::default(), Factor::Roughness);
+            let roughness = material_factors().find(|known| known.factor == Factor::Roughness).unwrap();
+            row(ui, &mut settings, "Paint", &Material::default(), roughness);
         });
         assert_eq!(settings, before);
     }

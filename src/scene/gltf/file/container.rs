@@ -1,30 +1,27 @@
 //! Parses the file: the GLB container, the JSON, the version, the extensions.
 
+use std::collections::BTreeSet;
+
 use gltf::json;
 
 use crate::scene::error::Problem;
+use crate::scene::extensions::EXTENSIONS;
 
-/// Extensions that a model may require.
-pub const SUPPORTED: &[&str] = &[
+/// Extensions that a model may require, beside those of `scene::extensions`.
+const SUPPORTED: &[&str] = &[
     "EXT_texture_webp",
     "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_iridescence",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_variants",
-    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+/// All extensions that a model may require.
+fn supported() -> BTreeSet<&'static str> {
+    SUPPORTED.iter().copied().chain(EXTENSIONS.iter().map(|extension| extension.name)).collect()
+}
 
 const MAGIC: &[u8; 4] = b"glTF";
 const HEADER_SIZE: usize = 12;
@@ -137,8 +134,9 @@ fn check_version(asset: &json::Asset) -> Result<(), Problem> {
 
 /// An unsupported extension is an error if the file requires it, otherwise a warning.
 fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
+    let supported = supported();
     let missing = |names: &[String]| {
-        let mut names: Vec<String> = names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect();
+        let mut names: Vec<String> = names.iter().filter(|n| !supported.contains(n.as_str())).cloned().collect();
         names.sort();
         names.dedup();
         names
@@ -148,7 +146,7 @@ fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
         return Err(Problem::Extensions {
             names: required.join(", "),
             pronoun: if required.len() == 1 { "it" } else { "them" },
-            supported: SUPPORTED.join(", "),
+            supported: Vec::from_iter(supported.iter().copied()).join(", "),
         });
     }
     let ignored = |name| {

@@ -17,7 +17,7 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     if from_file || made {
         primitive.attributes |= contract::ATTRIBUTE_TANGENT_FRAME;
     }
-    let anisotropic = |material: usize| materials.get(material).is_some_and(|m| m.anisotropy.strength > 0.0);
+    let anisotropic = |material: usize| materials.get(material).is_some_and(|m| m.numbers.anisotropy_strength > 0.0);
     if !(from_file || made) && materials_of(primitive).any(anisotropic) {
         geometry.warnings.push(format!(
             "{}: its material is anisotropic, but there are no tangents or texture coordinates to say along which \

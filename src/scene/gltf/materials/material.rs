@@ -1,15 +1,17 @@
-//! Reads the core properties of materials. `extensions` reads the rest.
+//! Reads materials: their core properties here, the rest by the descriptors of `scene::extensions`.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use gltf::json;
 use json::validation::Checked;
 
-use super::extensions;
+use super::conductor;
+use super::reader::Reader;
 use super::textures::{Collector, Origin, Slot};
 use crate::interface as contract;
 use crate::scene::error::Problem;
+use crate::scene::extensions::{EXTENSIONS, SPECULAR_GLOSSINESS};
 use crate::scene::gltf::place;
-use crate::scene::gltf::values::{self, clamp, roughness};
+use crate::scene::gltf::values::{self, Extensions, Fields, clamp, roughness};
 use crate::scene::model::{AlphaMode, Material, Texture};
 
 /// The materials of a file, with the textures and images that they use.
@@ -47,16 +49,37 @@ fn read_one(source: &json::Material, place: &str, collector: &mut Collector<'_>)
     };
     if let Some(cutoff) = source.alpha_cutoff {
         let place = format!("{place}.alphaCutoff");
-        material.alpha_cutoff = clamp(cutoff.0, 0.0..=f32::MAX, &place, &mut collector.warnings)?;
+        material.numbers.alpha_cutoff = clamp(cutoff.0, 0.0..=f32::MAX, &place, &mut collector.warnings)?;
     }
+    let others = known.map(|extensions| &extensions.others).cloned().unwrap_or_default();
     // If a material has specular-glossiness, its metallic-roughness is only a fallback. Both use the same members.
-    if !extensions::specular_glossiness(&mut material, source, place, collector)? {
+    if others.contains_key(SPECULAR_GLOSSINESS) {
+        extensions(&mut material, &others, |name| name == SPECULAR_GLOSSINESS, place, collector)?;
+    } else {
         metallic_roughness(&mut material, &source.pbr_metallic_roughness, place, collector)?;
     }
     relief(&mut material, source, place, collector)?;
     emission(&mut material, source, place, collector)?;
-    extensions::read(&mut material, source, place, collector)?;
+    extensions(&mut material, &others, |name| name != SPECULAR_GLOSSINESS, place, collector)?;
+    conductor::read(&mut material, source, place)?;
     Ok(material)
+}
+
+/// Reads the extensions with chosen names.
+fn extensions(
+    material: &mut Material,
+    others: &Extensions,
+    is_chosen: impl Fn(&str) -> bool,
+    place: &str,
+    collector: &mut Collector<'_>,
+) -> Result<(), Problem> {
+    let place = format!("{place}.extensions");
+    for extension in EXTENSIONS.iter().filter(|extension| is_chosen(extension.name)) {
+        if let Some(fields) = Fields::open(others, extension.name, &place)? {
+            (extension.read)(&mut Reader { material, collector, fields, others })?;
+        }
+    }
+    Ok(())
 }
 
 fn metallic_roughness(
@@ -70,9 +93,10 @@ fn metallic_roughness(
     for channel in &mut base {
         *channel = clamp(*channel, 0.0..=1.0, &at("baseColorFactor"), &mut collector.warnings)?;
     }
-    material.base_color_factor = Vec4::from(base);
-    material.metallic_factor = clamp(pbr.metallic_factor.0, 0.0..=1.0, &at("metallicFactor"), &mut collector.warnings)?;
-    material.roughness_factor = roughness(pbr.roughness_factor.0, &at("roughnessFactor"))?;
+    material.numbers.base_color_factor = base;
+    material.numbers.metallic_factor =
+        clamp(pbr.metallic_factor.0, 0.0..=1.0, &at("metallicFactor"), &mut collector.warnings)?;
+    material.numbers.roughness_factor = roughness(pbr.roughness_factor.0, &at("roughnessFactor"))?;
     let slot = pbr.base_color_texture.as_ref().map(Slot::new);
     collector.bind(material, contract::TEXTURE_BASE_COLOR, slot, &at("baseColorTexture"))?;
     let slot = pbr.metallic_roughness_texture.as_ref().map(Slot::new);
@@ -88,7 +112,7 @@ fn relief(
 ) -> Result<(), Problem> {
     if let Some(normal) = &source.normal_texture {
         let place = format!("{place}.normalTexture");
-        material.normal_scale = values::finite(normal.scale, &format!("{place}.scale"))?;
+        material.numbers.normal_scale = values::finite(normal.scale, &format!("{place}.scale"))?;
         let others = normal.extensions.as_ref().map(|extensions| &extensions.others);
         let slot = Slot::raw(normal.index.value(), normal.tex_coord, others, &place)?;
         collector.bind(material, contract::TEXTURE_NORMAL, Some(slot), &place)?;
@@ -96,7 +120,8 @@ fn relief(
     if let Some(occlusion) = &source.occlusion_texture {
         let place = format!("{place}.occlusionTexture");
         let strength = format!("{place}.strength");
-        material.occlusion_strength = clamp(occlusion.strength.0, 0.0..=1.0, &strength, &mut collector.warnings)?;
+        material.numbers.occlusion_strength =
+            clamp(occlusion.strength.0, 0.0..=1.0, &strength, &mut collector.warnings)?;
         let others = occlusion.extensions.as_ref().map(|extensions| &extensions.others);
         let slot = Slot::raw(occlusion.index.value(), occlusion.tex_coord, others, &place)?;
         collector.bind(material, contract::TEXTURE_OCCLUSION, Some(slot), &place)?;
@@ -118,10 +143,11 @@ fn emission(
     for channel in &mut factor {
         *channel = clamp(*channel, 0.0..=1.0, &at("emissiveFactor"), &mut collector.warnings)?;
     }
-    material.emissive_factor = Vec3::from(factor) * strength;
-    if !material.emissive_factor.is_finite() {
-        return Err(Problem::invalid(place, "a finite emission", material.emissive_factor.to_string()));
+    let emission = Vec3::from(factor) * strength;
+    if !emission.is_finite() {
+        return Err(Problem::invalid(place, "a finite emission", emission.to_string()));
     }
+    material.numbers.emissive_factor = emission.to_array();
     let slot = source.emissive_texture.as_ref().map(Slot::new);
     collector.bind(material, contract::TEXTURE_EMISSIVE, slot, &at("emissiveTexture"))
 }

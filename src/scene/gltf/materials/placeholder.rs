@@ -1,8 +1,6 @@
 //! Replaces images that cannot be read or decoded: by a checkerboard as the base color, and in every other slot as if the
 //! material had no texture there.
 
-use glam::Vec3;
-
 use crate::interface as contract;
 use crate::scene::model::{Image, Material, Texture};
 
@@ -48,7 +46,7 @@ fn clear(material: &mut Material, slot: u32) {
     match slot {
         contract::TEXTURE_BASE_COLOR => return,
         // Most of an emissive texture is black. The factor alone would make the whole surface emit.
-        contract::TEXTURE_EMISSIVE => material.emissive_factor = Vec3::ZERO,
+        contract::TEXTURE_EMISSIVE => material.numbers.emissive_factor = [0.0; 3],
         _ => {}
     }
     material.textures[slot as usize] = None;

@@ -10,7 +10,7 @@ use json::validation::Checked;
 
 use crate::scene::error::Problem;
 use crate::scene::gltf::place;
-use crate::scene::gltf::values::{self, Extensions};
+use crate::scene::gltf::values::{self, Extensions, Fields};
 use crate::scene::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 
 /// The highest TEXCOORD set of a vertex.
@@ -52,6 +52,20 @@ impl Slot {
     pub fn new(info: &json::texture::Info) -> Self {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
         Self { texture: info.index.value(), uv_set: info.tex_coord, transform }
+    }
+
+    /// Reads a textureInfo of a material extension.
+    pub fn of(fields: &Fields<'_>, key: &str) -> Result<Option<Self>, Problem> {
+        let Some(info) = fields.open_member(key)? else { return Ok(None) };
+        let texture = info.index("index", "textures")?;
+        let uv_set = match info.get("texCoord") {
+            None => 0,
+            Some(value) => values::whole(value).ok_or_else(|| {
+                Problem::invalid(info.at("texCoord"), "a TEXCOORD set's number", values::quote(value))
+            })?,
+        };
+        let others = info.get("extensions").and_then(json::Value::as_object);
+        Self::raw(texture, uv_set, others, &info.place).map(Some)
     }
 
     /// Reads a slot whose extensions are raw JSON: that of a normal or occlusion texture, or of a material extension.

@@ -1,8 +1,6 @@
 //! Material extensions: values, defaults, mistakes.
 
-use glam::{Vec3, Vec4};
-
-use super::super::super::model::{Anisotropy, Clearcoat, Conductor, Iridescence, Material, Sheen, Specular};
+use super::super::super::model::Material;
 use super::*;
 use crate::interface as contract;
 
@@ -69,12 +67,15 @@ fn values_of_layers() {
         },
         "KHR_materials_anisotropy": { "anisotropyStrength": 0.7, "anisotropyRotation": -7 },
     }));
-    assert_eq!(material.clearcoat, Clearcoat { factor: 0.5, roughness: 0.25, normal_scale: -2.0 });
-    assert_eq!(material.sheen, Sheen { color: Vec3::new(0.1, 0.2, 0.3), roughness: 0.4 });
+    let numbers = material.numbers;
+    let coat = (numbers.clearcoat_factor, numbers.clearcoat_roughness, numbers.clearcoat_normal_scale);
+    assert_eq!(coat, (0.5, 0.25, -2.0));
+    assert_eq!((numbers.sheen_color, numbers.sheen_roughness), ([0.1, 0.2, 0.3], 0.4));
     // If the maximum is below the minimum, the map is read inverted.
-    let film = Iridescence { factor: 0.6, ior: 1.8, thickness_min_nm: 50.0, thickness_max_nm: 20.0 };
-    assert_eq!(material.iridescence, film);
-    assert_eq!(material.anisotropy, Anisotropy { strength: 0.7, rotation: -7.0 });
+    assert_eq!((numbers.iridescence_factor, numbers.iridescence_ior), (0.6, 1.8));
+    assert_eq!(numbers.iridescence_thickness_nm, [50.0, 20.0]);
+    let (sin, cos) = (-7.0_f32).sin_cos();
+    assert_eq!((numbers.anisotropy_strength, numbers.anisotropy_rotation), (0.7, [cos, sin]));
 }
 
 #[test]
@@ -89,14 +90,14 @@ fn values_of_what_is_beneath() {
             "diffuseTransmissionFactor": 0.25, "diffuseTransmissionColorFactor": [1, 0.5, 0],
         },
     }));
-    assert_eq!(material.specular, Specular { factor: 0.5, color: Vec3::new(2.0, 1.0, 0.0) });
-    assert_eq!((material.ior, material.transmission_factor, material.dispersion), (2.42, 0.9, 4.0));
-    let volume = material.volume;
-    assert_eq!((volume.thickness, volume.attenuation_distance), (3.0, 0.01));
-    assert_eq!(volume.attenuation_color, Vec3::new(0.0, 0.5, 1.0));
-    assert_eq!(material.diffuse_transmission.factor, 0.25);
-    assert_eq!(material.diffuse_transmission.color, Vec3::new(1.0, 0.5, 0.0));
-    assert_eq!(Material::default().volume.attenuation_distance, f32::INFINITY);
+    let numbers = material.numbers;
+    assert_eq!((numbers.specular_factor, numbers.specular_color), (0.5, [2.0, 1.0, 0.0]));
+    assert_eq!((numbers.ior, numbers.transmission_factor, numbers.dispersion), (2.42, 0.9, 4.0));
+    assert_eq!((numbers.thickness, numbers.attenuation_distance), (3.0, 0.01));
+    assert_eq!(numbers.attenuation_color, [0.0, 0.5, 1.0]);
+    assert_eq!(numbers.diffuse_transmission_factor, 0.25);
+    assert_eq!(numbers.diffuse_transmission_color, [1.0, 0.5, 0.0]);
+    assert_eq!(Material::default().numbers.attenuation_distance, f32::INFINITY);
 }
 
 #[test]
@@ -159,15 +160,16 @@ fn specular_glossiness_takes_the_places_of_metallic_roughness() {
         json!({ "roughnessFactor": 7, "baseColorTexture": { "index": 99 } });
     let material = &builder.model().materials[1];
     assert!(material.specular_glossiness && material.textures.iter().all(Option::is_none));
-    assert_eq!(material.base_color_factor, Vec4::new(0.1, 0.2, 0.3, 0.4));
-    assert_eq!((material.roughness_factor, material.specular.color), (0.8, Vec3::new(0.5, 0.6, 0.7)));
-    let defaults = self::material(json!({ "KHR_materials_pbrSpecularGlossiness": {} }));
-    assert_eq!((defaults.base_color_factor, defaults.roughness_factor), (Vec4::ONE, 1.0));
-    assert_eq!(defaults.specular.color, Vec3::ONE);
+    let numbers = material.numbers;
+    assert_eq!(numbers.base_color_factor, [0.1, 0.2, 0.3, 0.4]);
+    assert_eq!((numbers.roughness_factor, numbers.specular_color), (0.8, [0.5, 0.6, 0.7]));
+    let defaults = self::material(json!({ "KHR_materials_pbrSpecularGlossiness": {} })).numbers;
+    assert_eq!((defaults.base_color_factor, defaults.roughness_factor), ([1.0; 4], 1.0));
+    assert_eq!(defaults.specular_color, [1.0; 3]);
     // Its F0 is not overwritten.
     builder.json["materials"][0]["extensions"]["KHR_materials_specular"] = json!({ "specularColorFactor": [0, 0, 0] });
     let model = builder.model();
-    assert_eq!(model.materials[1].specular.color, Vec3::new(0.5, 0.6, 0.7));
+    assert_eq!(model.materials[1].numbers.specular_color, [0.5, 0.6, 0.7]);
     assert!(model.warnings[0].contains("KHR_materials_specular is ignored"), "{:?}", model.warnings);
 }
 
@@ -182,7 +184,7 @@ fn an_index_of_refraction_of_0_is_infinite() {
     ];
     for (extensions, expected) in cases {
         let model = with(extensions).model();
-        assert_eq!(model.materials[1].ior, 0.0);
+        assert_eq!(model.materials[1].numbers.ior, 0.0);
         let [warning] = model.warnings.as_slice() else { panic!("{:?}", model.warnings) };
         assert!(warning.contains(expected), "{warning}");
     }
@@ -262,8 +264,9 @@ fn conductors_come_in_extras() {
         builder
     };
     let gold = json!({ "specula": { "conductor_n": [0.18, 0.42, 1.37], "conductor_k": [3.42, 2.35, 1.77] } });
-    let conductor = extras(gold).model().materials[1].conductor;
-    assert_eq!(conductor, Some(Conductor { n: Vec3::new(0.18, 0.42, 1.37), k: Vec3::new(3.42, 2.35, 1.77) }));
+    let material = extras(gold).model().materials[1].clone();
+    let (n, k) = (material.numbers.conductor_n, material.numbers.conductor_k);
+    assert_eq!((material.conductor, n, k), (true, [0.18, 0.42, 1.37], [3.42, 2.35, 1.77]));
     // Other programs' data there is ignored.
     for foreign in [
         json!(null),
@@ -273,7 +276,7 @@ fn conductors_come_in_extras() {
         json!({ "specula": null }),
         json!({ "specula": {} }),
     ] {
-        assert_eq!(extras(foreign).model().materials[1].conductor, None);
+        assert!(!extras(foreign).model().materials[1].conductor);
     }
     for (bad, words) in [
         (json!({ "conductor_n": [1, 1, 1] }), "extras.specula.conductor_k: expected 3 numbers, beside conductor_n"),

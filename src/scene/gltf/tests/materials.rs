@@ -71,7 +71,7 @@ fn textures_are_shared_by_image_and_sampler() {
     let sampler = model.textures[1].sampler;
     assert_eq!((sampler.mag_linear, sampler.min_linear, sampler.mip), (false, false, Mip::Nearest));
     assert_eq!((sampler.wrap_u, sampler.wrap_v), (Wrap::Clamp, Wrap::Mirror));
-    assert_eq!(model.materials[1].occlusion_strength, 0.5);
+    assert_eq!(model.materials[1].numbers.occlusion_strength, 0.5);
 }
 
 #[test]
@@ -113,10 +113,13 @@ fn material_numbers() {
     builder.primitive()["material"] = json!(0);
     let model = builder.model();
     let material = &model.materials[model.primitives[0].material];
-    assert_eq!((material.name.as_str(), material.alpha_mode, material.alpha_cutoff), ("paint", AlphaMode::Mask, 0.25));
+    assert_eq!(
+        (material.name.as_str(), material.alpha_mode, material.numbers.alpha_cutoff),
+        ("paint", AlphaMode::Mask, 0.25)
+    );
     assert!(material.double_sided && material.unlit);
-    assert_eq!(material.emissive_factor, glam::Vec3::new(2.0, 4.0, 0.0));
-    assert_eq!((material.metallic_factor, material.roughness_factor), (1.0, 0.5));
+    assert_eq!(material.numbers.emissive_factor, [2.0, 4.0, 0.0]);
+    assert_eq!((material.numbers.metallic_factor, material.numbers.roughness_factor), (1.0, 0.5));
     assert!(model.warnings.len() == 1 && model.warnings[0].contains("metallicFactor is 1.5"), "{:?}", model.warnings);
     // The default material comes first and is what a primitive without one gets.
     builder.primitive().as_object_mut().unwrap().remove("material");

@@ -55,7 +55,7 @@ fn other_slots_show_what_they_show_without_a_texture() {
         assert!(said.contains(words) && said.contains("(it is not PNG, JPEG or WebP)"), "{said}");
         let material = &builder.model().materials[1];
         assert_eq!(material.textures[texture as usize], None, "{slot}");
-        assert_eq!(material.emissive_factor == glam::Vec3::ZERO, slot == "emissiveTexture");
+        assert_eq!(material.numbers.emissive_factor == [0.0; 3], slot == "emissiveTexture");
     }
 }
 

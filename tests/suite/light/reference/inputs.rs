@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 use specula::headless::Headless;
 use specula::interface;
 use specula::render::Capture;
@@ -27,8 +27,8 @@ pub struct Inputs {
 fn numbered(model: &Model) -> Model {
     let mut model = model.clone();
     for (i, material) in model.materials.iter_mut().enumerate() {
-        let (double_sided, number) = (material.double_sided, Vec4::new(i as f32, 0.0, 0.0, 1.0));
-        *material = Material { base_color_factor: number, double_sided, ..Material::default() };
+        *material = Material { double_sided: material.double_sided, ..Material::default() };
+        material.numbers.base_color_factor = [i as f32, 0.0, 0.0, 1.0];
     }
     model
 }
@@ -73,7 +73,7 @@ impl Inputs {
         let material = self.material(pixel);
         let n = self.shown(pixel, "shading-normal").normalize();
         let coat_n = self.extra(pixel, "clearcoat-normal").map_or(n, DVec3::normalize);
-        let ior = f64::from(material.ior);
+        let ior = f64::from(material.numbers.ior);
         let (f0, f90) = self.dielectric(pixel, ior);
         Surface {
             n,
@@ -84,7 +84,7 @@ impl Inputs {
             ior,
             f0,
             f90,
-            emissive: material.emissive_factor.as_dvec3(),
+            emissive: DVec3::from(material.numbers.emissive_factor.map(f64::from)),
             t: self.extra(pixel, "anisotropy-direction"),
             anisotropy: number("anisotropy"),
             coat: Coat { n: coat_n, factor: number("clearcoat"), roughness: number("clearcoat-roughness") },
@@ -92,7 +92,7 @@ impl Inputs {
             sheen_roughness: number("sheen-roughness"),
             film: Film {
                 strength: number("iridescence"),
-                ior: material.iridescence.ior.into(),
+                ior: material.numbers.iridescence_ior.into(),
                 thickness: 1e3 * number("iridescence-thickness"),
                 // A partial coat counts as an index in between.
                 outside: 1.0 + 0.5 * number("clearcoat"),
@@ -110,8 +110,9 @@ impl Inputs {
         if !material.specular_glossiness || material.textures.iter().any(Option::is_some) {
             return self.shown(pixel, "base-color");
         }
-        let specular = f64::from(material.specular.color.max_element());
-        material.base_color_factor.truncate().as_dvec3() * (1.0 - specular)
+        let specular = DVec3::from(material.numbers.specular_color.map(f64::from));
+        let [r, g, b, _] = material.numbers.base_color_factor.map(f64::from);
+        DVec3::new(r, g, b) * (1.0 - specular.max_element())
     }
 
     /// F0 and F90 of the dielectric: from the file if there are no textures, else from the modes.
@@ -124,12 +125,12 @@ impl Inputs {
             let plain = DVec3::splat(((ior - 1.0) / (ior + 1.0)).powi(2));
             return (self.extra(pixel, "specular-color").unwrap_or(plain), f90);
         }
-        let color = material.specular.color.as_dvec3();
+        let color = DVec3::from(material.numbers.specular_color.map(f64::from));
         // KHR_materials_pbrSpecularGlossiness: `specular` is F0 itself.
         if material.specular_glossiness {
             return (color, 1.0);
         }
-        let weight = f64::from(material.specular.factor);
+        let weight = f64::from(material.numbers.specular_factor);
         let f0 = color * ((1.0 - ior) / (1.0 + ior)).powi(2);
         (f0.min(DVec3::ONE) * weight, weight)
     }
@@ -138,6 +139,6 @@ impl Inputs {
     fn attenuation(&self, pixel: usize) -> DVec3 {
         let shown = (self.extra(pixel, "thickness"), self.extra(pixel, "attenuation-color"));
         let (Some(thickness), Some(color)) = shown else { return DVec3::ONE };
-        color.powf(thickness.x / f64::from(self.material(pixel).volume.attenuation_distance))
+        color.powf(thickness.x / f64::from(self.material(pixel).numbers.attenuation_distance))
     }
 }
