@@ -5,8 +5,6 @@
 
 use std::fmt::Write as _;
 
-use super::{BINDINGS, SET_PASS};
-
 /// The purpose that a stage is run for. It decides which resources are bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StageRole {
@@ -115,14 +113,6 @@ impl Resource {
         Self::Pass,
         Self::Task,
     ];
-
-    /// The resource at a place of the contract. `None` for a descriptor that Specula itself adds to stages.
-    pub fn at(set: u32, binding: u32) -> Option<Self> {
-        if set == SET_PASS {
-            return Some(Self::Pass);
-        }
-        BINDINGS.iter().find(|known| (known.set, known.binding) == (set, binding))?.resource
-    }
 
     /// The resource in messages.
     pub fn name(self) -> &'static str {

@@ -7,7 +7,7 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, PUSH_CONSTANT_SIZE};
+use super::limits::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, PUSH_CONSTANT_SIZE};
 
 /// A struct of the contract.
 #[derive(Debug)]

@@ -5,9 +5,11 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::blocks::{blocks, types::*};
+use super::access::Resource;
+use super::binding::{Binding, BindingKind};
+use super::blocks::{Block, Member, blocks, types::*};
 use super::constants::constants;
-use super::{Binding, BindingKind, Block, Member, Resource, SET_MATERIAL};
+use super::limits::SET_MATERIAL;
 
 constants! {
     /// Alpha modes and features.

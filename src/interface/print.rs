@@ -2,7 +2,14 @@
 
 use std::fmt::Write as _;
 
-use super::*;
+use super::bindings::{BINDINGS, MAX_LIGHTS};
+use super::blocks::{Block, Member};
+use super::limits::{
+    COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK, USER_CONSTANTS, VERSION,
+};
+use super::lists::{blocks, constants};
+use super::material::{TEXTURE_COUNT, TEXTURES};
+use super::specialization::SPECIALIZATION;
 
 /// The contract as GLSL: the content of `shaders/interface.glsl`.
 pub fn glsl() -> String {

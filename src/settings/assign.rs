@@ -1,6 +1,8 @@
 //! `path=value`, as `--set` takes it.
 
-use super::{Settings, Value, catalog, factors, setting};
+use super::catalog::{self, setting};
+use super::value::Value;
+use super::{Settings, factors};
 use crate::message::{did_you_mean, either};
 
 /// Before the name of a material.

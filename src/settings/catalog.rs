@@ -2,37 +2,11 @@
 
 use std::sync::LazyLock;
 
-use super::value::Part as _;
-use super::{Entry, Settings, Value};
+use super::Settings;
+use super::entry::Entry;
+use super::part::Part as _;
+use super::setting::Setting;
 use crate::message;
-
-/// A setting: its path, its entry, and what follows from its type.
-#[derive(Debug)]
-pub struct Setting {
-    /// Path for `--set`, as `lights.orbit.0.strength`.
-    pub path: String,
-    /// What was declared with its field.
-    pub entry: &'static Entry,
-    /// Kind of value: a number, three numbers, a name, ...
-    pub takes: &'static str,
-    /// The names that it takes, if these are all that it takes.
-    pub names: Vec<String>,
-    /// Value without any option.
-    pub default: Value,
-}
-
-impl Setting {
-    /// Path of its group; empty at the top.
-    pub fn group(&self) -> &str {
-        self.path.rsplit_once('.').map_or("", |(group, _)| group)
-    }
-
-    /// Its meaning with the names that it takes.
-    pub fn doc(&self) -> String {
-        let doc = self.entry.doc();
-        if self.names.is_empty() { doc.to_owned() } else { format!("{doc}. One of {}", self.names.join(", ")) }
-    }
-}
 
 /// All settings: those at the top, then group by group in the order of their declaration.
 pub fn catalog() -> &'static [Setting] {
@@ -85,6 +59,8 @@ pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::entry::When;
+    use super::super::value::Value;
     use super::*;
 
     /// What a path and the value at it mean to `--set` and to a look file.
@@ -128,6 +104,35 @@ mod tests {
                 }
                 assert!(slider.ends.0 < slider.ends.1 && !entry.label.is_empty(), "{path}");
             }
+        }
+    }
+
+    #[test]
+    fn conditions_are_on_settings() {
+        fn check(condition: When) {
+            match condition {
+                When::Always => {}
+                When::Is(path, text) | When::Not(path, text) => {
+                    assert!(setting(path).is_some(), "{path}");
+                    Settings::default().assign(&format!("{path}={text}")).unwrap();
+                }
+                When::All(conditions) | When::Any(conditions) => conditions.iter().copied().for_each(check),
+            }
+        }
+        catalog().iter().for_each(|setting| check(setting.entry.used));
+        let mut settings = Settings::default();
+        for (assignment, path, is_used) in [
+            ("view.background=#000000", "environment.blur", false),
+            ("view.background=env", "environment.blur", true),
+            ("environment.name=none", "environment.blur", false),
+            ("material.override=roughness", "material.metallic", false),
+            ("material.override=roughness,anisotropy", "material.anisotropy", true),
+            ("material.anisotropy=0", "material.anisotropy_rotation", false),
+            ("material.anisotropy=0.5", "material.anisotropy_rotation", true),
+            ("material.enabled=true", "material.metallic", true),
+        ] {
+            settings.assign(assignment).unwrap();
+            assert_eq!(settings.uses(setting(path).unwrap().entry), is_used, "{path} after {assignment}");
         }
     }
 

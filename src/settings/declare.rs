@@ -4,7 +4,7 @@
 ///
 /// An entry is `name: Type = default, option(arguments) ...;` below its doc comment. The comment is what `specula help set`, the panel and
 /// the palette say of the setting. The default may be left out where the type has the right one. The options are the methods of
-/// [`Entry`](super::Entry), as `limits(0.0, 1.0) row("Blur") slider(0.0, 1.0, 2)`. `as "name"` gives a setting a name that is no identifier.
+/// [`Entry`](super::entry::Entry), as `limits(0.0, 1.0) row("Blur") slider(0.0, 1.0, 2)`. `as "name"` gives a setting a name that is no identifier.
 macro_rules! settings {
     ($(#[$meta:meta])* pub struct $group:ident {
         $($(#[doc = $doc:literal])+ $(#[serde($($serde:tt)+)])?
@@ -21,37 +21,37 @@ macro_rules! settings {
             }
         }
 
-        impl $crate::settings::value::Part for $group {
+        impl $crate::settings::part::Part for $group {
             fn list(
                 &self,
                 path: &str,
-                _: &'static $crate::settings::Entry,
-                list: &mut Vec<$crate::settings::Setting>,
+                _: &'static $crate::settings::entry::Entry,
+                list: &mut Vec<$crate::settings::setting::Setting>,
             ) {
                 let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
                 $({
                     #[allow(unused_imports)]
-                    use $crate::settings::entry::unit::*;
-                    static ENTRY: $crate::settings::Entry =
-                        $crate::settings::Entry::new(concat!($($doc),+))$($(.$option($($argument)*))+)?;
-                    $crate::settings::value::Part::list(
+                    use $crate::settings::entry::{When::*, unit::*};
+                    static ENTRY: $crate::settings::entry::Entry =
+                        $crate::settings::entry::Entry::new(concat!($($doc),+))$($(.$option($($argument)*))+)?;
+                    $crate::settings::part::Part::list(
                         &self.$field, &below(settings!(@name $field $($renamed)?)), &ENTRY, list,
                     );
                 })+
             }
 
-            fn at(&self, path: &str) -> Option<$crate::settings::Value> {
+            fn at(&self, path: &str) -> Option<$crate::settings::value::Value> {
                 let (name, rest) = path.split_once('.').unwrap_or((path, ""));
                 $(if name == settings!(@name $field $($renamed)?) {
-                    return $crate::settings::value::Part::at(&self.$field, rest);
+                    return $crate::settings::part::Part::at(&self.$field, rest);
                 })+
                 None
             }
 
-            fn set_at(&mut self, path: &str, value: &$crate::settings::Value) {
+            fn set_at(&mut self, path: &str, value: &$crate::settings::value::Value) {
                 let (name, rest) = path.split_once('.').unwrap_or((path, ""));
                 $(if name == settings!(@name $field $($renamed)?) {
-                    $crate::settings::value::Part::set_at(&mut self.$field, rest, value);
+                    $crate::settings::part::Part::set_at(&mut self.$field, rest, value);
                 })+
             }
         }

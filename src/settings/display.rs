@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::value::{Choice, Kind};
-use super::{Value, linear_from_srgb};
+use super::part::{Choice, Kind};
+use super::value::Value;
 
 /// The range of values that the picture spreads over the display, `view.range`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -171,6 +171,11 @@ impl Colormap {
 
 fn step(index: usize) -> f32 {
     index as f32 / (COLORMAP_STEPS - 1) as f32
+}
+
+/// sRGB electro-optical transfer function (IEC 61966-2-1): linear light from an encoded value, both 0..1.
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What one setting is, apart from its type and value: meaning, valid values, unit, and its row in a panel.
 
-use super::{Settings, Value};
+use super::value::Value;
 use crate::message::either;
 
 /// The entry of a setting. It is declared with the setting's field by `settings!`; panels, command palette, `--set`, `specula help set`
@@ -20,8 +20,8 @@ pub struct Entry {
     pub slider: Option<Slider>,
     /// Names and values of choices, for a setting that takes more than them.
     pub choices: &'static [(&'static str, &'static str)],
-    /// Whether the setting changes the picture, with the others as they are.
-    pub is_used: fn(&Settings) -> bool,
+    /// When the setting changes the picture.
+    pub(super) used: When,
 }
 
 /// Valid values of a setting.
@@ -37,6 +37,34 @@ pub enum Valid {
     OneOf(&'static [u32]),
     /// A description. The type of the setting refuses the rest.
     Words(&'static str),
+}
+
+/// A condition on other settings.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum When {
+    Always,
+    /// The setting at a path has this value, as `--set` takes it. A list of names has this name.
+    Is(&'static str, &'static str),
+    /// The setting at a path has another value.
+    Not(&'static str, &'static str),
+    /// All hold.
+    All(&'static [When]),
+    /// At least one holds.
+    Any(&'static [When]),
+}
+
+impl When {
+    /// Whether it holds. `value`: the value at a path.
+    pub(super) fn holds(self, value: &dyn Fn(&str) -> Option<Value>) -> bool {
+        let is = |path, text| value(path).is_some_and(|value| value.is(text));
+        match self {
+            Self::Always => true,
+            Self::Is(path, text) => is(path, text),
+            Self::Not(path, text) => !is(path, text),
+            Self::All(conditions) => conditions.iter().all(|condition| condition.holds(value)),
+            Self::Any(conditions) => conditions.iter().any(|condition| condition.holds(value)),
+        }
+    }
 }
 
 /// A unit.
@@ -107,7 +135,7 @@ impl Entry {
             title: "",
             slider: None,
             choices: &[],
-            is_used: |_| true,
+            used: When::Always,
         }
     }
 
@@ -143,8 +171,8 @@ impl Entry {
         Self { choices, ..self }
     }
 
-    pub(super) const fn when(self, is_used: fn(&Settings) -> bool) -> Self {
-        Self { is_used, ..self }
+    pub(super) const fn when(self, used: When) -> Self {
+        Self { used, ..self }
     }
 
     pub(super) const fn slider(self, low: f64, high: f64, decimals: usize) -> Self {

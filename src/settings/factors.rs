@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::entry::Entry;
 use super::entry::unit::{DEGREES, LINEAR_RGB, LUMINANCE, METERS, NANOMETERS};
-use super::{Entry, Value};
+use super::value::Value;
 use crate::message::did_you_mean;
 
 /// Factors of one material that are replaced; the others are those of the file.

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::declare::settings;
-use super::value::{Choice, Part};
-use super::{Entry, Setting, Settings, Value};
+use super::entry::{Entry, When};
+use super::part::{Choice, Part};
+use super::setting::Setting;
+use super::value::Value;
 
 /// The lights that are on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -32,7 +34,7 @@ settings! {
         /// F, weights and cosines, which depend on the direction to a single light.
         chosen: u32, row("Terms of");
         /// Speed of the orbiting lights around the model in the window; 0 stops them (L).
-        spin: f32 = 0.0, limits(-1e4, 1e4) unit(DEGREES_PER_SECOND) row("Orbit speed") slider(-90.0, 90.0, 0) when(has_orbit);
+        spin: f32 = 0.0, limits(-1e4, 1e4) unit(DEGREES_PER_SECOND) row("Orbit speed") slider(-90.0, 90.0, 0) when(ORBIT);
         /// The three orbiting lights.
         orbit: [OrbitLight; 3] = [
             OrbitLight::default(),
@@ -42,9 +44,9 @@ settings! {
         /// The rectangular light, in addition to those of `source`, unless that is `none`.
         rect: RectLight;
         /// Color of the light from every direction. An environment replaces the ambient light.
-        ambient_color: [f32; 3] = [0.72, 0.82, 1.0], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(is_dark);
+        ambient_color: [f32; 3] = [0.72, 0.82, 1.0], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(DARK);
         /// Luminance from every direction. An environment replaces the ambient light.
-        ambient_strength: f32 = 0.12, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 2.0, 2) when(is_dark);
+        ambient_strength: f32 = 0.12, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 2.0, 2) when(DARK);
     }
 }
 
@@ -55,15 +57,15 @@ settings! {
     #[serde(deny_unknown_fields)]
     pub struct OrbitLight {
         /// Color.
-        color: [f32; 3] = [1.0, 0.93, 0.82], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(has_orbit);
+        color: [f32; 3] = [1.0, 0.93, 0.82], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(ORBIT);
         /// Illuminance at a distance of one model radius: the intensity if that radius is 1 m.
-        strength: f32 = 14.0, limits(0.0, 1e9) unit(CANDELA) row("Illuminance") slider(0.0, 60.0, 1) when(has_orbit);
+        strength: f32 = 14.0, limits(0.0, 1e9) unit(CANDELA) row("Illuminance") slider(0.0, 60.0, 1) when(ORBIT);
         /// Distance from the model's center, in radii of the model.
-        distance: f32 = 2.0, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(has_orbit);
+        distance: f32 = 2.0, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(ORBIT);
         /// Angle around +Y, from +Z towards +X.
-        azimuth: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(has_orbit);
+        azimuth: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(ORBIT);
         /// Angle from +Y.
-        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(has_orbit);
+        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(ORBIT);
     }
 }
 
@@ -75,33 +77,26 @@ settings! {
         /// One-sided area light that faces the model's center.
         enabled: bool = false, row("On") title("Rectangular light");
         /// Color.
-        color: [f32; 3] = [1.0; 3], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(has_rectangle);
+        color: [f32; 3] = [1.0; 3], limits(0.0, 1e6) unit(LINEAR_RGB) row("Color") when(RECTANGLE);
         /// Luminance of a white rectangle, independent of its size.
-        strength: f32 = 6.0, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 60.0, 1) when(has_rectangle);
+        strength: f32 = 6.0, limits(0.0, 1e9) unit(LUMINANCE) row("Luminance") slider(0.0, 60.0, 1) when(RECTANGLE);
         /// Length of the horizontal edges, in radii of the model.
-        width: f32 = 1.2, limits(1e-3, 1e3) unit(RADII) row("Width") logarithmic(0.01, 20.0, 2) when(has_rectangle);
+        width: f32 = 1.2, limits(1e-3, 1e3) unit(RADII) row("Width") logarithmic(0.01, 20.0, 2) when(RECTANGLE);
         /// Length of the other edges, in radii of the model.
-        height: f32 = 0.8, limits(1e-3, 1e3) unit(RADII) row("Height") logarithmic(0.01, 20.0, 2) when(has_rectangle);
+        height: f32 = 0.8, limits(1e-3, 1e3) unit(RADII) row("Height") logarithmic(0.01, 20.0, 2) when(RECTANGLE);
         /// Distance from the model's center, in radii of the model.
-        distance: f32 = 1.8, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(has_rectangle);
+        distance: f32 = 1.8, limits(1e-3, 1e6) unit(RADII) row("Distance") logarithmic(0.5, 10.0, 2) when(RECTANGLE);
         /// Angle around +Y, from +Z towards +X.
-        azimuth: f32 = -40.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(has_rectangle);
+        azimuth: f32 = -40.0, limits(-1e6, 1e6) unit(DEGREES) row("Azimuth") slider(-180.0, 360.0, 0) when(RECTANGLE);
         /// Angle from +Y.
-        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(has_rectangle);
+        polar: f32 = 50.0, limits(-1e6, 1e6) unit(DEGREES) row("Polar angle") slider(0.0, 180.0, 0) when(RECTANGLE);
     }
 }
 
-fn has_orbit(settings: &Settings) -> bool {
-    settings.lights.source == LightSource::Orbit
-}
-
-fn has_rectangle(settings: &Settings) -> bool {
-    settings.lights.rect.enabled && settings.lights.source != LightSource::None
-}
-
-fn is_dark(settings: &Settings) -> bool {
-    !settings.environment.is_lit()
-}
+const ORBIT: When = When::Is("lights.source", "orbit");
+const RECTANGLE: When = When::All(&[When::Is("lights.rect.enabled", "true"), When::Not("lights.source", "none")]);
+/// There is no environment, which would replace the ambient light.
+const DARK: When = When::Is("environment.name", "none");
 
 impl Part for [OrbitLight; 3] {
     fn list(&self, path: &str, entry: &'static Entry, list: &mut Vec<Setting>) {

@@ -4,10 +4,11 @@ use serde::de::{Deserializer, Error as _};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use super::Value;
 use super::declare::settings;
+use super::entry::When;
 use super::list::names;
-use super::value::Kind;
+use super::part::Kind;
+use super::value::Value;
 use crate::message::did_you_mean;
 
 /// A channel of the material override.
@@ -37,8 +38,6 @@ impl MaterialChannel {
         }
     }
 }
-
-use MaterialChannel::{Anisotropy, Metallic, Roughness};
 
 /// A set of channels; a list of names in files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,6 +104,12 @@ impl<'de> Deserialize<'de> for MaterialChannels {
     }
 }
 
+/// Whole materials are replaced, not only single channels.
+const WHOLE: When = When::Is("material.enabled", "true");
+const METALLIC: When = When::Any(&[WHOLE, When::Is("material.override", "metallic")]);
+const ROUGHNESS: When = When::Any(&[WHOLE, When::Is("material.override", "roughness")]);
+const ANISOTROPY: When = When::Any(&[WHOLE, When::Is("material.override", "anisotropy")]);
+
 settings! {
     /// A material without textures that replaces all materials of the model while it is enabled, to inspect shapes and the
     /// BRDF itself; or single channels of all of them.
@@ -118,14 +123,14 @@ settings! {
         /// Reflectance of the diffuse lobe, or of a metal: 0.5 is half the light, which a picture stores as 188 of 255.
         base_color: [f32; 3] = [0.8; 3], limits(0.0, 1.0) unit(LINEAR_RGB) row("Base color");
         /// 0 is a dielectric, 1 a metal.
-        metallic: f32 = 0.0, limits(0.0, 1.0) row("Metallic") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Metallic));
+        metallic: f32 = 0.0, limits(0.0, 1.0) row("Metallic") slider(0.0, 1.0, 2) when(METALLIC);
         /// Perceptual roughness.
-        roughness: f32 = 0.5, limits(0.0, 1.0) row("Roughness") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Roughness));
+        roughness: f32 = 0.5, limits(0.0, 1.0) row("Roughness") slider(0.0, 1.0, 2) when(ROUGHNESS);
         /// Strength of the anisotropy: 0 is isotropic. It needs meshes with tangents or texture coordinates.
-        anisotropy: f32 = 0.0, limits(0.0, 1.0) row("Anisotropy") slider(0.0, 1.0, 2) when(|all| all.material.replaces(Anisotropy));
+        anisotropy: f32 = 0.0, limits(0.0, 1.0) row("Anisotropy") slider(0.0, 1.0, 2) when(ANISOTROPY);
         /// Direction of the anisotropy: angle from the tangent towards the bitangent.
         anisotropy_rotation: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Direction") slider(-90.0, 90.0, 0)
-            when(|all| all.material.replaces(Anisotropy) && all.material.anisotropy > 0.0);
+            when(All(&[ANISOTROPY, Not("material.anisotropy", "0")]));
     }
 }
 

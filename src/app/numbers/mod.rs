@@ -131,7 +131,7 @@ impl Number {
 
     /// Whether the number changes the picture, with the other settings as they are.
     pub(super) fn is_used(&self, settings: &Settings) -> bool {
-        (self.setting.entry.is_used)(settings)
+        settings.uses(self.setting.entry)
     }
 
     /// The number as its row shows it.

@@ -221,7 +221,7 @@ pub(in crate::app) fn special(
         is_changed: value != initial,
         is_indented: false,
     };
-    let is_used = (setting.entry.is_used)(settings);
+    let is_used = settings.uses(setting.entry);
     if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| control(ui, settings)).inner) {
         settings.set_value(path, &initial);
     }
