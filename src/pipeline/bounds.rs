@@ -4,7 +4,7 @@
 //!
 //! 1. `spirv::specialize` sets the constants and drops the branches that they decide against.
 //! 2. `spirv::loops` bounds loops.
-//! 3. `spirv::separate_hits` copies the functions that path tracing calls at a hit, where a hook needs neighboring
+//! 3. `spirv/hits.rs` copies the functions that path tracing calls at a hit, where a hook needs neighboring
 //!    pixels.
 //! 4. `spirv::optimize` inlines functions and removes what is computed twice or never used.
 //!
@@ -20,10 +20,10 @@ use crate::gpu::{Gpu, GpuError, ResourceUsage, ShaderModule, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::contract::access::resource_of;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
-use crate::shader::spirv::reach::reached;
-use crate::shader::spirv::uses::{used_bindings, used_bytes};
-use crate::shader::spirv::{optimize, separate_hits, specialize_several};
+use crate::shader::spirv::loops::{Bounds, Overrun, Place};
+use crate::shader::spirv::reach::{Used, reached};
+use crate::shader::spirv::uses::used_bytes;
+use crate::shader::spirv::{self, Finished, Module, specialize_several};
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Loop iterations that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so on a GPU
@@ -78,7 +78,7 @@ pub(super) fn module_of_modes(
 fn bounded_module(
     gpu: &Arc<Gpu>,
     stage: &Stage,
-    (mut words, modes): (Vec<u32>, u32),
+    (words, modes): (Vec<u32>, u32),
     constants: &[(u32, u32)],
     is_on_display: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
@@ -104,22 +104,25 @@ fn bounded_module(
         report: stores.then_some(buffer),
         mark,
     };
-    let is_bounded = loops::bound(&mut words, &stage.spirv, &bounds);
-    let specialized = words.len();
     fault::take_module(&words);
-    let words = optimize(separate_hits(words));
+    let Finished { words, unoptimized, is_bounded } = spirv::finish(words, &stage.spirv, &bounds);
     tracing::debug!(
-        "{path}: {specialized} words, optimized {}, {}",
+        "{path}: {unoptimized} words, optimized {}, {}",
         words.len(),
         if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
     );
-    let usage = ResourceUsage {
-        frame_bindings: used_bindings(&words, interface::SET_FRAME),
-        frame_bytes: used_bytes(&words, interface::SET_FRAME, interface::BINDING_FRAME),
-        pass_bindings: used_bindings(&words, interface::SET_PASS),
-        resources: reached(&words).into_iter().filter_map(resource_of).collect(),
-    };
-    ShaderModule::optimized(gpu, path, (&words, specialized), is_bounded && stores, usage)
+    let usage = Module::parse(&words).map(|module| usage(&module)).unwrap_or_default();
+    ShaderModule::optimized(gpu, path, (&words, unoptimized), is_bounded && stores, usage)
+}
+
+fn usage(module: &Module) -> ResourceUsage {
+    let reached = reached(module);
+    ResourceUsage {
+        frame_bindings: Used::bindings(&reached, interface::SET_FRAME),
+        frame_bytes: used_bytes(module, interface::SET_FRAME, interface::BINDING_FRAME),
+        pass_bindings: Used::bindings(&reached, interface::SET_PASS),
+        resources: reached.into_iter().filter_map(resource_of).collect(),
+    }
 }
 
 /// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again to

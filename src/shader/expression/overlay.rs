@@ -14,6 +14,7 @@ use crate::shader::glsl::syntax::{functions, within};
 use crate::shader::glsl::{Code, Entry};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::Module;
 
 /// The stage that shows the expression. No tree lists it: names of files with a dot at their start are hidden.
 pub const STAGE: &str = ".expression.frag";
@@ -281,28 +282,8 @@ fn library(evaluation: u32) -> String {
 
 /// The number of components of the value that a module watches, 3 at most.
 pub fn components_of(spirv: &[u32]) -> Option<u8> {
-    const OP_NAME: u32 = 5;
-    const OP_FUNCTION_CALL: u32 = 57;
-    let mut names: BTreeMap<u32, u8> = BTreeMap::new();
-    let mut at = 5;
-    while let Some(word) = spirv.get(at) {
-        let (length, opcode) = ((word >> 16) as usize, word & 0xffff);
-        let operands = spirv.get(at + 1..at + length.max(1))?;
-        match (opcode, operands) {
-            (OP_NAME, [id, text @ ..]) => {
-                let bytes: Vec<u8> = text.iter().flat_map(|word| word.to_le_bytes()).take_while(|b| *b != 0).collect();
-                let name = String::from_utf8_lossy(&bytes);
-                let kind = name.strip_prefix(FUNCTION).and_then(|rest| rest.strip_prefix('('));
-                names.extend(kind.map(|kind| (*id, components(kind))));
-            }
-            (OP_FUNCTION_CALL, [_, _, function, ..]) if names.contains_key(function) => {
-                return names.get(function).copied();
-            }
-            _ => {}
-        }
-        at += length.max(1);
-    }
-    None
+    let module = Module::parse(spirv)?;
+    module.called_functions().find_map(|name| Some(components(name.strip_prefix(FUNCTION)?.strip_prefix('(')?)))
 }
 
 /// The components of a parameter as glslang writes its type: `f1;`, `vf3;`, `mf33;`.

@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use super::*;
 use crate::shader::Source;
 use crate::shader::compile::StageKind;
+use crate::shader::spirv::loops::Bounds;
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::{behavior_hash, optimize, specialize};
+use crate::shader::spirv::{behavior_hash, finish, optimize, specialize, validate};
 use scan::Function;
 
 type Texts = BTreeMap<TreePath, String>;
@@ -62,8 +63,13 @@ fn meaning(spirv: &[u32]) -> (Reflection, Vec<u64>) {
     (reflection, [behavior_hash(spirv)].into_iter().chain(hashes).collect())
 }
 
+/// Fails unless the module does what that of the whole text does, and is valid, as it is and as a driver gets it.
 #[track_caller]
 fn assert_same(linked: &[u32], whole: &[u32], what: &str) {
+    assert_eq!(validate(linked), Ok(()), "{what}");
+    let bounds = Bounds { rounds: 1 << 18, rounds_after: 256, report: None, mark: None };
+    let finished = finish(specialize(linked, &[]), linked, &bounds);
+    assert_eq!(validate(&finished.words), Ok(()), "{what}, finished");
     let ((reflection, hashes), (expected, expected_hashes)) = (meaning(linked), meaning(whole));
     assert_eq!(reflection.reached, expected.reached, "{what}: reached");
     assert_eq!(reflection.params_read, expected.params_read, "{what}: parameters");

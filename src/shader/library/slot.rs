@@ -12,9 +12,9 @@ use crate::shader::incremental::{FileCache, Files, Rebuilt, rebuild};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::hooks::Hooks;
+use crate::shader::spirv::reach::{Used, reached};
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::uses::used_bindings;
-use crate::shader::spirv::{behavior_hash, optimize, specialize};
+use crate::shader::spirv::{Module, behavior_hash, optimize, specialize};
 
 /// A compiled stage.
 #[derive(Debug)]
@@ -94,7 +94,10 @@ impl Stage {
     /// The bindings of `interface::SET_PASS` that the outputs of the stage depend on, whatever its constants are. Computed once, since it
     /// takes the optimizer.
     pub fn live_pass_bindings(&self) -> &BTreeSet<u32> {
-        self.live.get_or_init(|| used_bindings(&optimize(self.spirv.clone()), SET_PASS))
+        self.live.get_or_init(|| {
+            let module = Module::parse(&optimize(self.spirv.clone()));
+            module.map(|module| Used::bindings(&reached(&module), SET_PASS)).unwrap_or_default()
+        })
     }
 
     fn specialized(&self) -> MutexGuard<'_, Vec<Specialized>> {

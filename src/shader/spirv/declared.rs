@@ -1,44 +1,21 @@
-//! Parses the declarations of a SPIR-V module: types, names, decorations, variables. The SPIR-V specification, sections
-//! 3.52.2 to 3.52.9, lists the opcodes.
+//! Collects the declarations of a SPIR-V module: types, names, decorations, variables.
 
 mod locations;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
 
-use crate::interface::BindingKind;
+use foldhash::{HashMap, HashMapExt};
 
-use super::conditions::missing_in_conditions;
-use super::opcode as op;
+use crate::interface::{self, BindingKind};
+
+use super::conditions::without_value;
+use super::enums::{decoration, storage};
+use super::module::{Id, Instruction, Module, Type};
+use super::op::{Op, after_text, text};
 use super::primitive;
+use super::reach::{Used, reached};
 use super::reflect::{Block, Descriptor, Location, Member, Reflection, Scalar, SpecConstant};
-use super::types::{Type, type_of};
-
-type Id = u32;
-
-mod decoration {
-    pub const SPEC_ID: u32 = 1;
-    pub const BUFFER_BLOCK: u32 = 3;
-    pub const ARRAY_STRIDE: u32 = 6;
-    pub const MATRIX_STRIDE: u32 = 7;
-    pub const BUILT_IN: u32 = 11;
-    pub const PATCH: u32 = 15;
-    pub const NON_WRITABLE: u32 = 24;
-    pub const LOCATION: u32 = 30;
-    pub const BINDING: u32 = 33;
-    pub const DESCRIPTOR_SET: u32 = 34;
-    pub const OFFSET: u32 = 35;
-    pub const PER_PRIMITIVE: u32 = 5271;
-}
-
-mod storage {
-    pub const UNIFORM_CONSTANT: u32 = 0;
-    pub const INPUT: u32 = 1;
-    pub const UNIFORM: u32 = 2;
-    pub const OUTPUT: u32 = 3;
-    pub const PUSH_CONSTANT: u32 = 9;
-    pub const STORAGE_BUFFER: u32 = 12;
-    pub const TASK_PAYLOAD: u32 = 5402;
-}
+use super::uses::used_bytes;
 
 /// SPIR-V's execution modes LocalSize, OutputVertices and OutputPrimitivesEXT.
 const LOCAL_SIZE: u32 = 17;
@@ -48,151 +25,104 @@ const OUTPUT_PRIMITIVES: u32 = 5270;
 /// SPIR-V's value of the image format Rgba16f.
 const RGBA16F: u32 = 2;
 
-/// The declarations of one module.
-#[derive(Debug, Default)]
-pub struct Module {
-    names: HashMap<Id, String>,
-    member_names: HashMap<(Id, u32), String>,
-    decorations: HashMap<(Id, u32), u32>,
-    member_decorations: HashMap<(Id, u32, u32), u32>,
-    types: HashMap<Id, Type>,
-    constants: HashMap<Id, u32>,
-    specialization: Vec<(Id, Id, u32)>,
-    variables: Vec<(Id, Id, u32)>,
-    interface: Vec<Id>,
-    capabilities: Vec<u32>,
-    local_size: [u32; 3],
-    mesh_outputs: [u32; 2],
-    /// The execution model, and the execution modes.
-    model: u32,
-    modes: Vec<u32>,
-    with_value: HashSet<Id>,
-    without_value: Vec<Id>,
+impl Reflection {
+    /// Reflects a module. Words that are not SPIR-V declare nothing.
+    pub fn of(spirv: &[u32]) -> Self {
+        let Some(module) = Module::parse(spirv) else { return Self::default() };
+        let reached = reached(&module);
+        let reads_params = reached.contains(&Used::Descriptor(interface::SET_FRAME, interface::BINDING_PARAMS));
+        let params_read = match reads_params {
+            true => used_bytes(&module, interface::SET_FRAME, interface::BINDING_PARAMS),
+            false => Vec::new(),
+        };
+        Self { reached, params_read, ..Declarations::of(&module).reflect() }
+    }
 }
 
-impl Module {
-    /// Parses the words up to the first function. Returns an empty module if they are not SPIR-V.
-    pub fn parse(words: &[u32]) -> Self {
-        const MAGIC: u32 = 0x0723_0203;
-        const HEADER: usize = 5;
-        let mut module = Self::default();
-        if words.first() != Some(&MAGIC) {
-            return module;
-        }
-        let mut rest = words.get(HEADER..).unwrap_or_default();
-        while let Some(first) = rest.first() {
-            let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
-            let Some(operands) = rest.get(1..length) else { break };
-            if opcode == op::FUNCTION || module.instruction(opcode, operands).is_none() {
-                break;
-            }
-            rest = &rest[length..];
-        }
-        let missing = missing_in_conditions(rest, &module.with_value);
-        module.without_value.extend(missing);
-        module
-    }
+/// The declarations of one module, with names and decorations by id.
+struct Declarations<'a> {
+    module: &'a Module,
+    names: HashMap<Id, Instruction>,
+    member_names: HashMap<(Id, u32), Instruction>,
+    decorations: HashMap<(Id, u32), u32>,
+    member_decorations: HashMap<(Id, u32, u32), u32>,
+    interface: &'a [Id],
+}
 
-    /// Records that a constant has a value, and any operand of a condition that has none.
-    fn constant_result(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
-        /// SPIR-V's comparisons and logical operations, whose operands are all ids.
-        const CONDITIONS: std::ops::RangeInclusive<u32> = 164..=179;
-        let (result, operation) = (*operands.get(1)?, operands.get(2));
-        if opcode == op::SPEC_CONSTANT_OP && operation.is_some_and(|operation| CONDITIONS.contains(operation)) {
-            let missing = operands.get(3..)?.iter().filter(|id| !self.with_value.contains(id));
-            self.without_value.extend(missing);
-        }
-        self.with_value.insert(result);
-        Some(())
-    }
-
-    /// Records one declaration; `None` if operands are missing.
-    fn instruction(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
-        let at = |index: usize| operands.get(index).copied();
-        if (op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP).contains(&opcode) {
-            self.constant_result(opcode, operands)?;
-        }
-        match opcode {
-            op::NAME => {
-                self.names.insert(at(0)?, string(operands.get(1..)?).0);
-            }
-            op::MEMBER_NAME => {
-                self.member_names.insert((at(0)?, at(1)?), string(operands.get(2..)?).0);
-            }
-            op::ENTRY_POINT => {
-                let (_, words) = string(operands.get(2..)?);
-                self.model = at(0)?;
-                self.interface = operands.get(2 + words..)?.to_vec();
-            }
-            op::EXECUTION_MODE if at(1) == Some(LOCAL_SIZE) => self.local_size = [at(2)?, at(3)?, at(4)?],
-            op::EXECUTION_MODE => {
-                match at(1)? {
-                    OUTPUT_VERTICES => self.mesh_outputs[0] = at(2)?,
-                    OUTPUT_PRIMITIVES => self.mesh_outputs[1] = at(2)?,
-                    _ => {}
-                }
-                self.modes.push(at(1)?);
-            }
-            op::CAPABILITY => self.capabilities.push(at(0)?),
-            op::DECORATE => {
-                self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
-            }
-            op::MEMBER_DECORATE => {
-                self.member_decorations.insert((at(0)?, at(1)?, at(2)?), at(3).unwrap_or(0));
-            }
-            op::CONSTANT => {
-                self.constants.insert(at(1)?, at(2)?);
-            }
-            op::SPEC_CONSTANT_TRUE => self.specialize(at(0)?, at(1)?, 1),
-            op::SPEC_CONSTANT_FALSE => self.specialize(at(0)?, at(1)?, 0),
-            op::SPEC_CONSTANT => self.specialize(at(0)?, at(1)?, at(2)?),
-            op::VARIABLE => self.variables.push((at(0)?, at(1)?, at(2)?)),
-            _ => {
-                if let Some(declared) = type_of(opcode, operands)? {
-                    self.types.insert(at(0)?, declared);
-                }
-            }
-        }
-        Some(())
-    }
-
-    fn specialize(&mut self, of: Id, result: Id, default: u32) {
-        // It may size an array; the size then is the default.
-        self.constants.insert(result, default);
-        self.specialization.push((result, of, default));
-    }
-
-    /// Collects all declarations.
-    pub fn reflect(&self) -> Reflection {
-        let mut out = Reflection {
-            capabilities: self.capabilities.clone(),
-            local_size: self.local_size,
-            mesh_outputs: self.mesh_outputs,
-            takes: primitive::taken(self.model, &self.modes),
-            gives: primitive::given(self.model, &self.modes),
-            ..Reflection::default()
+impl<'a> Declarations<'a> {
+    fn of(module: &'a Module) -> Self {
+        let entry = module.entry().map_or(&[][..], |entry| &module[entry]);
+        let mut this = Self {
+            module,
+            names: HashMap::new(),
+            member_names: HashMap::new(),
+            decorations: HashMap::new(),
+            member_decorations: HashMap::new(),
+            interface: entry.get(3..).map_or(&[], |_| &entry[after_text(entry, 3)..]),
         };
-        for (pointer, variable, class) in &self.variables {
-            let Some(Type::Pointer { to, .. }) = self.types.get(pointer) else { continue };
-            match *class {
-                storage::UNIFORM_CONSTANT | storage::UNIFORM | storage::STORAGE_BUFFER => {
-                    out.descriptors.extend(self.descriptor(*variable, *to, *class));
+        for i in &module.debug {
+            match (i.op, &module[*i]) {
+                (Op::Name, [_, id, ..]) => _ = this.names.insert(*id, *i),
+                (Op::MemberName, [_, id, member, ..]) => _ = this.member_names.insert((*id, *member), *i),
+                _ => {}
+            }
+        }
+        for i in &module.decorations {
+            match (i.op, &module[*i]) {
+                (Op::Decorate, [_, id, kind, rest @ ..]) => {
+                    this.decorations.insert((*id, *kind), rest.first().copied().unwrap_or(0));
                 }
-                storage::TASK_PAYLOAD => out.has_payload |= self.interface.contains(variable),
-                storage::PUSH_CONSTANT => out.push_constants = self.block(*to),
-                storage::INPUT if self.interface.contains(variable) => {
-                    out.reads_primitive_id |= self.is_primitive_id(*variable, *to);
-                    self.locations(*variable, *to, primitive::has_arrays_of_inputs(self.model), &mut out.inputs);
-                }
-                storage::OUTPUT if self.interface.contains(variable) => {
-                    out.writes_primitive_id |= self.is_primitive_id(*variable, *to);
-                    self.locations(*variable, *to, primitive::has_arrays_of_outputs(self.model), &mut out.outputs);
+                (Op::MemberDecorate, [_, id, member, kind, rest @ ..]) => {
+                    this.member_decorations.insert((*id, *member, *kind), rest.first().copied().unwrap_or(0));
                 }
                 _ => {}
             }
         }
-        out.without_value = self.without_value.iter().map(|id| self.name(*id)).collect();
-        out.constants = self.specialization.iter().filter_map(|constant| self.constant(*constant)).collect();
+        this
+    }
+
+    /// The literals of an execution mode.
+    fn mode(&self, mode: u32) -> Option<&'a [u32]> {
+        let mut modes = self.module.head.iter().filter(|i| i.op == Op::ExecutionMode).map(|i| &self.module[*i]);
+        modes.find(|words| words[2] == mode).map(|words| &words[3..])
+    }
+
+    /// Collects all declarations.
+    fn reflect(&self) -> Reflection {
+        let module = self.module;
+        let operands = |op: Op, at: usize| module.head.iter().filter(move |i| i.op == op).map(move |i| module[*i][at]);
+        let (model, modes) = (module.model().unwrap_or(0), operands(Op::ExecutionMode, 2).collect::<Vec<_>>());
+        let largest = |mode: u32| self.mode(mode).and_then(|literals| literals.first()).copied().unwrap_or(0);
+        let mut out = Reflection {
+            capabilities: operands(Op::Capability, 1).collect(),
+            local_size: self.mode(LOCAL_SIZE).and_then(|size| size.first_chunk()).copied().unwrap_or_default(),
+            mesh_outputs: [largest(OUTPUT_VERTICES), largest(OUTPUT_PRIMITIVES)],
+            takes: primitive::taken(model, &modes),
+            gives: primitive::given(model, &modes),
+            ..Reflection::default()
+        };
+        for i in module.globals.iter().filter(|i| i.op == Op::Variable) {
+            let (variable, class) = (module[*i][2], module[*i][3]);
+            let Some((_, to)) = module.pointer(module[*i][1]) else { continue };
+            match class {
+                storage::UNIFORM_CONSTANT | storage::UNIFORM | storage::STORAGE_BUFFER => {
+                    out.descriptors.extend(self.descriptor(variable, to, class));
+                }
+                storage::TASK_PAYLOAD => out.has_payload |= self.interface.contains(&variable),
+                storage::PUSH_CONSTANT => out.push_constants = self.block(to),
+                storage::INPUT if self.interface.contains(&variable) => {
+                    out.reads_primitive_id |= self.is_primitive_id(variable, to);
+                    self.locations(variable, to, primitive::has_arrays_of_inputs(model), &mut out.inputs);
+                }
+                storage::OUTPUT if self.interface.contains(&variable) => {
+                    out.writes_primitive_id |= self.is_primitive_id(variable, to);
+                    self.locations(variable, to, primitive::has_arrays_of_outputs(model), &mut out.outputs);
+                }
+                _ => {}
+            }
+        }
+        out.without_value = without_value(module).into_iter().map(|id| self.name(id)).collect();
+        out.constants = module.globals.iter().filter_map(|i| self.constant(*i)).collect();
         out.structs = self.structs();
         out.descriptors.sort_by_key(|descriptor| (descriptor.set, descriptor.binding));
         out.constants.sort_by_key(|constant| constant.id);
@@ -202,7 +132,11 @@ impl Module {
     }
 
     fn name(&self, id: Id) -> String {
-        self.names.get(&id).cloned().unwrap_or_default()
+        self.names.get(&id).map(|i| text(&self.module[*i][2..])).unwrap_or_default()
+    }
+
+    fn member_name(&self, id: Id, index: u32) -> String {
+        self.member_names.get(&(id, index)).map(|i| text(&self.module[*i][3..])).unwrap_or_default()
     }
 
     fn decoration(&self, id: Id, decoration: u32) -> Option<u32> {
@@ -210,7 +144,7 @@ impl Module {
     }
 
     fn descriptor(&self, variable: Id, to: Id, class: u32) -> Option<Descriptor> {
-        let declared = self.types.get(&to)?;
+        let declared = self.get_type(to)?;
         let is_block = matches!(declared, Type::Struct { .. });
         let storage = class == storage::STORAGE_BUFFER || self.decoration(to, decoration::BUFFER_BLOCK).is_some();
         let glsl = self.type_name(to);
@@ -231,27 +165,27 @@ impl Module {
             name: self.name(if is_block { to } else { variable }),
             block: if is_block { self.block(to) } else { None },
             is_written: is_block && storage && !self.is_read_only(variable, to),
-            image_format: if let Type::Image { format, .. } = declared { *format } else { 0 },
+            image_format: if let Type::Image { format, .. } = declared { format } else { 0 },
         })
     }
 
     /// Whether a storage buffer is declared `readonly`, which glslang writes to each member.
     fn is_read_only(&self, variable: Id, to: Id) -> bool {
-        let Some(Type::Struct { members }) = self.types.get(&to) else { return false };
+        let Some(Type::Struct { members }) = self.get_type(to) else { return false };
         let mut members = (0..).zip(members).map(|(index, _)| (to, index, decoration::NON_WRITABLE));
         self.decoration(variable, decoration::NON_WRITABLE).is_some()
             || members.all(|member| self.member_decorations.contains_key(&member))
     }
 
     fn block(&self, id: Id) -> Option<Block> {
-        let Type::Struct { members } = self.types.get(&id)? else { return None };
+        let Type::Struct { members } = self.get_type(id)? else { return None };
         let mut block = Block { name: self.name(id), ..Block::default() };
         for (index, member) in (0..).zip(members) {
             let offset = *self.member_decorations.get(&(id, index, decoration::OFFSET))?;
             let matrix_stride = self.member_decorations.get(&(id, index, decoration::MATRIX_STRIDE)).copied();
             block.size = block.size.max(offset.saturating_add(self.size(*member, matrix_stride)));
             block.members.push(Member {
-                name: self.member_names.get(&(id, index)).cloned().unwrap_or_default(),
+                name: self.member_name(id, index),
                 offset,
                 type_name: self.type_name(*member),
                 stride: self.decoration(*member, decoration::ARRAY_STRIDE).unwrap_or(0),
@@ -260,18 +194,37 @@ impl Module {
         Some(block)
     }
 
+    /// The default that an instruction declares for a specialization constant.
+    fn default(&self, i: Instruction) -> Option<u32> {
+        match i.op {
+            Op::SpecConstantTrue => Some(1),
+            Op::SpecConstantFalse => Some(0),
+            Op::SpecConstant => Some(self.module[i][3]),
+            _ => None,
+        }
+    }
+
+    /// The number of an array's elements. A specialization constant may size it; the size then is the default.
+    fn length(&self, id: Id) -> Option<u32> {
+        self.module.number(id).or_else(|| self.default(self.module.definition(id)?))
+    }
+
+    fn get_type(&self, id: Id) -> Option<Type<'a>> {
+        self.module.get_type(id)
+    }
+
     /// Size in bytes. Matrices in arrays share the member's matrix stride.
     fn size(&self, id: Id, matrix_stride: Option<u32>) -> u32 {
-        match self.types.get(&id) {
+        match self.get_type(id) {
             Some(Type::Bool) => 4,
             Some(Type::Int { bits, .. } | Type::Float { bits }) => bits / 8,
-            Some(Type::Vector { of, count }) => self.size(*of, None).saturating_mul(*count),
+            Some(Type::Vector { of, count }) => self.size(of, None).saturating_mul(count),
             Some(Type::Matrix { column, count }) => {
-                matrix_stride.unwrap_or_else(|| self.size(*column, None)).saturating_mul(*count)
+                matrix_stride.unwrap_or_else(|| self.size(column, None)).saturating_mul(count)
             }
             Some(Type::Array { of, length }) => {
-                let stride = self.decoration(id, decoration::ARRAY_STRIDE).unwrap_or_else(|| self.size(*of, None));
-                stride.saturating_mul(self.constants.get(length).copied().unwrap_or(0))
+                let stride = self.decoration(id, decoration::ARRAY_STRIDE).unwrap_or_else(|| self.size(of, None));
+                stride.saturating_mul(self.length(length).unwrap_or(0))
             }
             Some(Type::Struct { .. }) => self.block(id).map_or(0, |block| block.size),
             // The only pointers stored in memory are buffer references, which are 64-bit addresses.
@@ -281,13 +234,15 @@ impl Module {
     }
 
     fn structs(&self) -> BTreeMap<String, Block> {
-        let ids = self.types.iter().filter(|(_, declared)| matches!(declared, Type::Struct { .. }));
-        let blocks = ids.filter_map(|(id, _)| self.block(*id));
+        let ids = self.module.globals.iter().filter(|i| i.op == Op::TypeStruct).map(|i| self.module[*i][1]);
+        let blocks = ids.filter_map(|id| self.block(id));
         blocks.filter(|block| !block.members.is_empty()).map(|block| (block.name.clone(), block)).collect()
     }
 
-    fn constant(&self, (id, of, default): (Id, Id, u32)) -> Option<SpecConstant> {
-        let scalar = match self.types.get(&of)? {
+    fn constant(&self, i: Instruction) -> Option<SpecConstant> {
+        let default = self.default(i)?;
+        let (of, id) = (self.module[i][1], self.module[i][2]);
+        let scalar = match self.get_type(of)? {
             Type::Bool => Scalar::Bool,
             Type::Int { bits: 32, signed: true } => Scalar::Int,
             Type::Int { bits: 32, signed: false } => Scalar::Uint,
@@ -299,7 +254,7 @@ impl Module {
 
     /// The type as GLSL spells it.
     fn type_name(&self, id: Id) -> String {
-        let Some(declared) = self.types.get(&id) else { return "?".to_owned() };
+        let Some(declared) = self.get_type(id) else { return "?".to_owned() };
         match declared {
             Type::Bool => "bool".to_owned(),
             Type::Int { bits, signed } => match (bits, signed) {
@@ -311,10 +266,10 @@ impl Module {
             Type::Float { bits: 32 } => "float".to_owned(),
             Type::Float { bits: 64 } => "double".to_owned(),
             Type::Float { bits } => format!("float{bits}_t"),
-            Type::Vector { of, count } => format!("{}vec{count}", self.prefix(*of)),
-            Type::Matrix { column, count } => match self.types.get(column) {
-                Some(Type::Vector { of, count: rows }) if rows == count => format!("{}mat{count}", self.prefix(*of)),
-                Some(Type::Vector { of, count: rows }) => format!("{}mat{count}x{rows}", self.prefix(*of)),
+            Type::Vector { of, count } => format!("{}vec{count}", self.prefix(of)),
+            Type::Matrix { column, count } => match self.get_type(column) {
+                Some(Type::Vector { of, count: rows }) if rows == count => format!("{}mat{count}", self.prefix(of)),
+                Some(Type::Vector { of, count: rows }) => format!("{}mat{count}x{rows}", self.prefix(of)),
                 _ => "?".to_owned(),
             },
             Type::Image { sampled, dim, depth, arrayed, multi, storage, format } => {
@@ -326,28 +281,28 @@ impl Module {
                     5 => "Buffer",
                     _ => "?",
                 };
-                let kind = if *storage { "image" } else { "texture" };
+                let kind = if storage { "image" } else { "texture" };
                 // Only storage images have a format; the contract uses rgba16f only.
-                let format = if *format == RGBA16F { "rgba16f " } else { "" };
-                let suffixes = [(*multi, "MS"), (*arrayed, "Array"), (*depth, "Shadow")];
+                let format = if format == RGBA16F { "rgba16f " } else { "" };
+                let suffixes = [(multi, "MS"), (arrayed, "Array"), (depth, "Shadow")];
                 let suffix: String = suffixes.iter().filter(|(is, _)| *is).map(|(_, suffix)| *suffix).collect();
-                format!("{format}{}{kind}{dimension}{suffix}", self.prefix(*sampled))
+                format!("{format}{}{kind}{dimension}{suffix}", self.prefix(sampled))
             }
             Type::Sampler => "sampler".to_owned(),
-            Type::SampledImage { image } => self.type_name(*image).replacen("texture", "sampler", 1),
+            Type::SampledImage { image } => self.type_name(image).replacen("texture", "sampler", 1),
             Type::Array { of, length } => {
-                let length = self.constants.get(length).map_or_else(|| "?".to_owned(), u32::to_string);
-                format!("{}[{length}]", self.type_name(*of))
+                let length = self.length(length).map_or_else(|| "?".to_owned(), |length| length.to_string());
+                format!("{}[{length}]", self.type_name(of))
             }
-            Type::RuntimeArray { of } => format!("{}[]", self.type_name(*of)),
+            Type::RuntimeArray { of } => format!("{}[]", self.type_name(of)),
             Type::Struct { .. } => self.name(id),
-            Type::Pointer { to, .. } => self.name(*to),
+            Type::Pointer { to, .. } => self.name(to),
         }
     }
 
     /// The prefix of `vec`, `mat` and `sampler` in GLSL.
     fn prefix(&self, scalar: Id) -> &'static str {
-        match self.types.get(&scalar) {
+        match self.get_type(scalar) {
             Some(Type::Int { signed: true, .. }) => "i",
             Some(Type::Int { signed: false, .. }) => "u",
             Some(Type::Bool) => "b",
@@ -355,11 +310,4 @@ impl Module {
             _ => "",
         }
     }
-}
-
-/// A literal string and its length in words.
-fn string(words: &[u32]) -> (String, usize) {
-    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-    (String::from_utf8_lossy(&bytes[..length]).into_owned(), length / 4 + 1)
 }

@@ -3,13 +3,10 @@
 //! behind it, so a hash of the words would tell most edits from each other that the driver cannot.
 
 use foldhash::{HashMap, HashMapExt};
-
 use xxhash_rust::xxh3::Xxh3;
 
-use super::opcode as op;
-use super::operands::is_id;
-
-const HEADER: usize = 5;
+use super::module::{Id, Instruction, Module};
+use super::op::{Class, Op};
 
 /// Hashes a module with one entry point. Words that are not valid SPIR-V are hashed as they are.
 pub fn behavior_hash(words: &[u32]) -> u64 {
@@ -21,106 +18,67 @@ pub fn behavior_hash(words: &[u32]) -> u64 {
     })
 }
 
-/// The instructions of a module by what they define.
-#[derive(Default)]
-struct Module<'a> {
-    /// Capabilities, memory model, entry point, execution modes.
-    head: Vec<&'a [u32]>,
-    /// Types, constants and variables by id.
-    globals: HashMap<u32, &'a [u32]>,
-    /// `OpDecorate` and `OpMemberDecorate` by target, in the order of the module.
-    decorations: HashMap<u32, Vec<&'a [u32]>>,
-    functions: HashMap<u32, Vec<&'a [u32]>>,
-    /// The first type or constant that is equal to one, by id, if it is another. glslang declares arrays once per block.
-    first: HashMap<u32, u32>,
-}
-
-impl<'a> Module<'a> {
-    fn parse(words: &'a [u32]) -> Option<Self> {
-        let mut module = Self::default();
-        let mut rest = words.get(HEADER..)?;
-        let mut function = None;
-        // Types and constants, in the order of the module
-        let mut values = Vec::new();
-        while let Some(first) = rest.first() {
-            let length = (first >> 16) as usize;
-            let i = rest.get(..length).filter(|i| !i.is_empty())?;
-            rest = &rest[length..];
-            let code = i[0] & 0xffff;
-            if code == op::FUNCTION {
-                function = Some(*i.get(2)?);
-            }
-            if let Some(id) = function {
-                module.functions.entry(id).or_default().push(i);
-                if code == op::FUNCTION_END {
-                    function = None;
-                }
-                continue;
-            }
-            match code {
-                // OpSource, its extensions, strings, names and lines say nothing to a driver.
-                2..=8 | 317 | 330 => {}
-                op::DECORATE | op::MEMBER_DECORATE => module.decorations.entry(*i.get(1)?).or_default().push(i),
-                // OpExtInstImport, and types: the result is the first operand.
-                11 | op::TYPE_FORWARD_POINTER => _ = module.globals.insert(*i.get(1)?, i),
-                op::VARIABLE => _ = module.globals.insert(*i.get(2)?, i),
-                1 | 19..=33 | 41..=52 => {
-                    let place = if code < op::TYPE_FORWARD_POINTER && code != op::UNDEF { 1 } else { 2 };
-                    module.globals.insert(*i.get(place)?, i);
-                    values.push((i[place], place, i));
-                }
-                _ => module.head.push(i),
-            }
-        }
-        module.find_equal(&values);
-        Some(module)
-    }
-
-    /// Fills `first` from types and constants: id, its place in the instruction, the instruction. All operands of an instruction
-    /// precede it, but for the target of a pointer that is declared before, whose number then tells two pointers apart.
-    fn find_equal(&mut self, values: &[(u32, usize, &[u32])]) {
-        let mut seen: HashMap<Vec<u32>, u32> = HashMap::with_capacity(values.len());
-        for (id, place, i) in values {
-            let operand = |at: usize| match is_id(i, at) {
-                Some(true) => self.first.get(&i[at]).copied().unwrap_or(i[at]),
-                _ => i[at],
-            };
-            let mut key = vec![i[0]];
-            key.extend((1..i.len()).filter(|at| at != place).map(operand));
-            for decoration in self.decorations.get(id).into_iter().flatten() {
-                key.push(decoration[0]);
-                key.extend_from_slice(&decoration[2..]);
-            }
-            let first = *seen.entry(key).or_insert(*id);
-            if first != *id {
-                self.first.insert(*id, first);
-            }
-        }
-    }
-}
-
 /// Hashes a module from its entry point on. Ids are numbered in the order in which they are met.
 struct Hasher<'a> {
-    module: &'a Module<'a>,
-    numbers: HashMap<u32, u32>,
+    module: &'a Module,
+    /// Decorations by target, in the order of the module.
+    decorations: HashMap<Id, Vec<Instruction>>,
+    /// The first type or constant that is equal to one, by id. glslang declares arrays once per block.
+    first: HashMap<Id, Id>,
+    numbers: HashMap<Id, u32>,
     /// Functions that were met and are still to be hashed.
-    open: Vec<u32>,
+    open: Vec<Id>,
     hasher: Xxh3,
 }
 
 impl<'a> Hasher<'a> {
-    fn new(module: &'a Module<'a>) -> Self {
-        Self { module, numbers: HashMap::new(), open: Vec::new(), hasher: Xxh3::new() }
+    fn new(module: &'a Module) -> Self {
+        let decorations = module.by_target(&module.decorations);
+        let (numbers, open, hasher) = (HashMap::new(), Vec::new(), Xxh3::new());
+        let mut hasher = Self { module, decorations, first: HashMap::new(), numbers, open, hasher };
+        hasher.find_equal();
+        hasher
+    }
+
+    /// Fills `first`. All operands of a declaration precede it, but for the target of a pointer that is declared before, whose number
+    /// then tells two pointers apart.
+    fn find_equal(&mut self) {
+        let is_value = |i: &&Instruction| matches!(i.op.class(), Class::Type | Class::Constant);
+        let mut seen: HashMap<Vec<u32>, Id> = HashMap::with_capacity(self.module.globals.len());
+        for i in self.module.globals.iter().filter(is_value) {
+            let (words, Some(place)) = (&self.module[*i], i.op.result()) else { continue };
+            let id = words[place];
+            let mut key = vec![words[0]];
+            for at in (1..words.len()).filter(|at| *at != place) {
+                let first = self.first.get(&words[at]).filter(|_| i.op.is_id(words, at));
+                key.push(first.copied().unwrap_or(words[at]));
+            }
+            for decoration in self.decorations.get(&id).into_iter().flatten().map(|i| &self.module[*i]) {
+                key.push(decoration[0]);
+                key.extend_from_slice(&decoration[2..]);
+            }
+            let first = *seen.entry(key).or_insert(id);
+            if first != id {
+                self.first.insert(id, first);
+            }
+        }
     }
 
     fn run(mut self) -> u64 {
-        for i in &self.module.head {
-            self.instruction(i);
-        }
+        let module = self.module;
+        let head = module.head.iter().filter(|i| i.op != Op::ExtInstImport);
+        let unknown = module.globals.iter().chain(&module.decorations).filter(|i| !i.op.is_known());
+        head.chain(unknown).for_each(|i| self.instruction(*i));
+        let functions: HashMap<Id, usize> = module.functions.iter().enumerate().map(|(at, f)| (f.id, at)).collect();
         while let Some(id) = self.open.pop() {
-            for i in self.module.functions.get(&id).into_iter().flatten() {
-                self.instruction(i);
+            let function = &module.functions[functions[&id]];
+            function.head.iter().for_each(|i| self.instruction(*i));
+            for block in &function.blocks {
+                self.word(Op::Label as u32);
+                self.id(block.label);
+                block.body.iter().for_each(|i| self.instruction(*i));
             }
+            self.word(Op::FunctionEnd as u32);
         }
         self.hasher.digest()
     }
@@ -129,14 +87,15 @@ impl<'a> Hasher<'a> {
         self.hasher.update(&word.to_le_bytes());
     }
 
-    fn instruction(&mut self, i: &[u32]) {
-        self.word(i[0] & 0xffff);
+    fn instruction(&mut self, i: Instruction) {
+        let words = &self.module[i];
+        self.word(words[0] & 0xffff);
         // The entry point also lists the variables of functions that nothing calls.
-        let operands = if i[0] & 0xffff == op::ENTRY_POINT { i.len().min(3) } else { i.len() };
-        for (at, word) in i.iter().enumerate().take(operands).skip(1) {
+        let count = if i.op == Op::EntryPoint { 3 } else { words.len() };
+        for (at, word) in words.iter().enumerate().take(count).skip(1) {
             // The literals of an unknown instruction cannot be told from its ids. As literals, they make hashes differ too
             // often, never too rarely.
-            match is_id(i, at).unwrap_or(false) {
+            match i.op.is_id(words, at) {
                 true => self.id(*word),
                 false => self.word(*word),
             }
@@ -144,22 +103,23 @@ impl<'a> Hasher<'a> {
     }
 
     /// Hashes the number of an id, and at its first occurrence what defines it.
-    fn id(&mut self, id: u32) {
-        let id = self.module.first.get(&id).copied().unwrap_or(id);
+    fn id(&mut self, id: Id) {
+        let id = self.first.get(&id).copied().unwrap_or(id);
         let next = self.numbers.len() as u32;
         let number = *self.numbers.entry(id).or_insert(next);
         self.word(number);
         if number != next {
             return;
         }
-        for decoration in self.module.decorations.get(&id).into_iter().flatten() {
+        for i in self.decorations.get(&id).cloned().unwrap_or_default() {
+            let decoration = &self.module[i];
             self.word(decoration[0]);
             decoration[2..].iter().for_each(|word| self.word(*word));
         }
-        if let Some(global) = self.module.globals.get(&id) {
-            self.instruction(global);
-        } else if self.module.functions.contains_key(&id) {
-            self.open.push(id);
+        match self.module.definition(id) {
+            Some(i) if i.op == Op::Function => self.open.push(id),
+            Some(i) if self.module.is_global(i) => self.instruction(i),
+            _ => {}
         }
     }
 }

@@ -3,11 +3,10 @@
 //! The features of a hook's extensions count for every lit material (`PipelineRequest::hook_features`). If
 //! `user_vertex` moves vertices, a mode that traces tells the user (`PipelineRequest::limit`).
 
-use foldhash::{HashMap, HashSet, HashSetExt};
+use foldhash::{HashMap, HashSet};
 
-use super::opcode as op;
-use super::operands::text;
-use super::specialize::{Id, first_function, instructions, opcode};
+use super::module::{Function, Id, Module};
+use super::op::{Op, text};
 use crate::interface::{
     FEATURE_ANISOTROPY, FEATURE_CLEARCOAT, FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR, FEATURE_DIFFUSE_TRANSMISSION,
     FEATURE_DISPERSION, FEATURE_IRIDESCENCE, FEATURE_SHEEN, FEATURE_TRANSMISSION, FEATURE_VOLUME,
@@ -33,10 +32,6 @@ const FEATURES: [(&str, u32); 11] = [
     ("diffuse_transmission", FEATURE_DIFFUSE_TRANSMISSION),
 ];
 
-/// OpFunctionParameter, OpFMul, OpVectorTimesScalar
-const PARAMETER: u32 = 55;
-const PRODUCTS: [u32; 2] = [133, 142];
-
 /// Effects of the hooks of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hooks {
@@ -49,83 +44,59 @@ pub struct Hooks {
 impl Hooks {
     /// Reads an unoptimized module. Code that a constant switches off counts too.
     pub fn of(spirv: &[u32]) -> Self {
-        let surface = stores(spirv, SURFACE_HOOK, "Surface");
+        let Some(module) = Module::parse(spirv) else { return Self::default() };
+        let surface = stores(&module, SURFACE_HOOK, "Surface\0");
         let set = surface.iter().filter(|(_, keeps_zero)| !keeps_zero);
         Self {
             features: set.fold(0, |all, (member, _)| {
                 all | FEATURES.iter().filter(|(name, _)| name == member).fold(0, |bits, (_, bit)| bits | bit)
             }),
-            moves_vertices: !stores(spirv, VERTEX_HOOK, "Vertex").is_empty(),
+            moves_vertices: !stores(&module, VERTEX_HOOK, "Vertex\0").is_empty(),
         }
     }
 }
 
 /// The members of a struct that a function, or one that it calls, stores to, and whether a store leaves 0 at 0: of a product with the old
 /// value, or of the number 0. A member with stores of both kinds is there twice.
-fn stores(spirv: &[u32], function: &str, structure: &str) -> Vec<(String, bool)> {
-    found(spirv, function, structure).unwrap_or_default()
+fn stores(module: &Module, function: &str, structure: &str) -> Vec<(String, bool)> {
+    let hook = module.named(function).next();
+    let functions = hook.and_then(|hook| module.callees_first(hook)).unwrap_or_default();
+    let types: HashSet<Id> = module.named(structure).filter(|id| is_struct(module, *id)).collect();
+    let members: HashSet<(u32, bool)> =
+        functions.into_iter().flat_map(|place| stored_in(module, &module.functions[place], &types)).collect();
+    let names = module.debug.iter().filter(|i| i.op == Op::MemberName).map(|i| &module[*i]);
+    let both = names.filter(|words| types.contains(&words[1])).flat_map(|words| [(words, false), (words, true)]);
+    let stored = both.filter(|(words, keeps_zero)| members.contains(&(words[2], *keeps_zero)));
+    stored.map(|(words, keeps_zero)| (text(&words[3..]), keeps_zero)).collect()
 }
 
-fn found(spirv: &[u32], function: &str, structure: &str) -> Option<Vec<(String, bool)>> {
-    let all = instructions(spirv)?;
-    let (globals, code) = all.split_at(first_function(&all));
-    let names = || globals.iter().filter(|i| opcode(i) == op::NAME);
-    let hook = names().find(|i| text(&i[2..]).starts_with(function))?[1];
-    let named: HashSet<Id> = names().filter(|i| text(&i[2..]) == structure).map(|i| i[1]).collect();
-    let types: HashSet<Id> =
-        globals.iter().filter(|i| opcode(i) == op::TYPE_STRUCT && named.contains(&i[1])).map(|i| i[1]).collect();
-    let pointers: HashSet<Id> =
-        globals.iter().filter(|i| opcode(i) == op::TYPE_POINTER && types.contains(&i[3])).map(|i| i[1]).collect();
-    let constants: HashMap<Id, u32> =
-        globals.iter().filter(|i| opcode(i) == op::CONSTANT).map(|i| (i[2], i[3])).collect();
-    let bodies: HashMap<Id, &[&[u32]]> = code
-        .split_inclusive(|i| opcode(i) == op::FUNCTION_END)
-        .filter_map(|body| Some((*body.first()?.get(2)?, body)))
-        .collect();
-
-    let mut members: HashSet<(u32, bool)> = HashSet::new();
-    let (mut seen, mut open) = (HashSet::from_iter([hook]), vec![hook]);
-    while let Some(id) = open.pop() {
-        let body = bodies.get(&id).copied().unwrap_or_default();
-        let called = body.iter().filter(|i| opcode(i) == op::FUNCTION_CALL).filter_map(|i| i.get(3).copied());
-        open.extend(called.filter(|id| seen.insert(*id)).collect::<Vec<_>>());
-        members.extend(stored_in(body, &pointers, &constants));
-    }
-    let names = globals.iter().filter(|i| opcode(i) == op::MEMBER_NAME && types.contains(&i[1]));
-    let is_stored = |(i, keeps_zero): &(&&[u32], bool)| members.contains(&(i[2], *keeps_zero));
-    let both = names.flat_map(|i| [(i, false), (i, true)]);
-    Some(both.filter(is_stored).map(|(i, keeps_zero)| (text(&i[3..]), keeps_zero)).collect())
+fn is_struct(module: &Module, id: Id) -> bool {
+    module.defined(Op::TypeStruct, id).is_some()
 }
 
-/// The numbers of the members that the body of a function stores to, and whether the store leaves 0 at 0.
-fn stored_in(body: &[&[u32]], pointers: &HashSet<Id>, constants: &HashMap<Id, u32>) -> HashSet<(u32, bool)> {
-    let mut structures: HashSet<Id> = HashSet::new();
+/// The numbers of the members of structs with these types that a function stores to, and whether the store leaves 0 at 0.
+fn stored_in(module: &Module, function: &Function, types: &HashSet<Id>) -> HashSet<(u32, bool)> {
+    let is_structure = |id: Id| {
+        let i = module.definition(id).filter(|i| matches!(i.op, Op::FunctionParameter | Op::Variable));
+        i.and_then(|i| module.pointer(module[i][1])).is_some_and(|(_, to)| types.contains(&to))
+    };
     // Pointers to members, loaded members, and products of them, by their ids.
     let (mut places, mut values): (HashMap<Id, u32>, HashMap<Id, u32>) = (HashMap::default(), HashMap::default());
-    let mut stored = HashSet::new();
-    for i in body.iter().filter(|i| i.len() > 2) {
-        match opcode(i) {
-            PARAMETER | op::VARIABLE if pointers.contains(&i[1]) => {
-                structures.insert(i[2]);
+    let mut stored = HashSet::default();
+    for i in function.body() {
+        match (i.op, &module[i]) {
+            (Op::AccessChain | Op::InBoundsAccessChain, [_, _, id, base, index, ..]) if is_structure(*base) => {
+                places.extend(module.number(*index).map(|member| (*id, member)));
             }
-            op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN if structures.contains(&i[3]) => {
-                if let Some(member) = i.get(4).and_then(|index| constants.get(index)) {
-                    places.insert(i[2], *member);
-                }
+            (Op::Load, [_, _, id, from, ..]) => values.extend(places.get(from).map(|member| (*id, *member))),
+            (Op::FMul | Op::VectorTimesScalar, [_, _, id, factors @ ..]) => {
+                let factor = factors.iter().find_map(|id| values.get(id)).copied();
+                values.extend(factor.map(|member| (*id, member)));
             }
-            op::LOAD => {
-                if let Some(member) = places.get(&i[3]) {
-                    values.insert(i[2], *member);
-                }
-            }
-            product if PRODUCTS.contains(&product) => {
-                let factor = i[3..].iter().find_map(|id| values.get(id)).copied();
-                values.extend(factor.map(|member| (i[2], member)));
-            }
-            op::STORE => {
-                let Some(member) = places.get(&i[1]) else { continue };
-                let is_zero = constants.get(&i[2]) == Some(&0);
-                stored.insert((*member, is_zero || values.get(&i[2]) == Some(member)));
+            (Op::Store, [_, to, value, ..]) => {
+                let Some(member) = places.get(to) else { continue };
+                let keeps_zero = module.number(*value) == Some(0) || values.get(value) == Some(member);
+                stored.insert((*member, keeps_zero));
             }
             _ => {}
         }

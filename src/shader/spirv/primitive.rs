@@ -3,6 +3,8 @@
 
 use serde::Serialize;
 
+use super::enums::model::{CONTROL, EVALUATION, GEOMETRY, MESH};
+
 /// A kind of primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -28,12 +30,6 @@ impl Primitive {
         }
     }
 }
-
-/// Execution models.
-const CONTROL: u32 = 1;
-const EVALUATION: u32 = 2;
-const GEOMETRY: u32 = 3;
-const MESH: u32 = 5365;
 
 /// The primitives that a geometry stage takes.
 pub(super) fn taken(model: u32, modes: &[u32]) -> Option<Primitive> {

@@ -1,13 +1,11 @@
 //! Finds the resources that the entry point of a module reaches through its functions, and the source line of a use.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use super::bindings::{BINDING, DESCRIPTOR_SET};
-use super::opcode as op;
-use super::operands::{is_id, text};
-use super::specialize::instructions;
-
-const PUSH_CONSTANT: u32 = 9;
+use super::enums::decoration::{BINDING, DESCRIPTOR_SET};
+use super::enums::storage::PUSH_CONSTANT;
+use super::module::{Function, Id, Instruction, Module};
+use super::op::{Op, text};
 
 /// A resource that a module uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,108 +16,77 @@ pub enum Used {
     PushConstants,
 }
 
-/// The descriptors and push constants that functions of the module use, as far as an entry point calls them. What a module only
-/// declares does not count.
-pub fn reached(words: &[u32]) -> BTreeSet<Used> {
-    let module = Module::of(words);
-    let uses = module.reachable().into_iter().flat_map(|function| &module.functions[&function].uses);
-    uses.filter_map(|id| module.resources.get(id)).copied().collect()
+impl Used {
+    /// The bindings in `set` among resources.
+    pub fn bindings(used: &BTreeSet<Self>, set: u32) -> BTreeSet<u32> {
+        let binding = |used: &Self| match used {
+            Self::Descriptor(of, binding) if *of == set => Some(*binding),
+            _ => None,
+        };
+        used.iter().filter_map(binding).collect()
+    }
 }
 
-/// The functions that an entry point calls, directly or not, and the entry points.
-pub fn reachable_functions(words: &[u32]) -> BTreeSet<u32> {
-    Module::of(words).reachable()
+/// The descriptors and push constants that functions of the module use, as far as the entry point calls them. What a module only
+/// declares does not count.
+pub fn reached(module: &Module) -> BTreeSet<Used> {
+    let resources = resources(module);
+    let code = reachable(module).into_iter().flat_map(Function::body);
+    code.flat_map(|i| uses(module, i)).filter_map(|id| *resources.get(id as usize)?).collect()
 }
 
 /// The file and line of the first use of a resource in a module with debug information.
 pub fn line_of(words: &[u32], used: Used) -> Option<(String, u32)> {
-    let module = Module::of(words);
-    let reachable = module.reachable();
-    let wanted: BTreeSet<u32> = module.resources.iter().filter(|(_, of)| **of == used).map(|(id, _)| *id).collect();
-    let (mut at_line, mut function) = (None, 0);
-    let all = instructions(words)?;
-    let mut is_use = |i: &&[u32]| {
-        match i[0] & 0xffff {
-            op::LINE => at_line = i.get(1).copied().zip(i.get(2).copied()),
-            op::FUNCTION => function = i.get(2).copied().unwrap_or_default(),
-            _ => return reachable.contains(&function) && ids(i).any(|id| wanted.contains(&id)),
+    let module = Module::parse(words)?;
+    let resources = resources(&module);
+    let is_use = |id: Id| resources.get(id as usize) == Some(&Some(used));
+    let mut at_line = None;
+    for i in reachable(&module).into_iter().flat_map(Function::body) {
+        match i.op {
+            Op::Line => at_line = Some(i),
+            _ if uses(&module, i).any(is_use) => break,
+            _ => {}
         }
-        false
-    };
-    all.iter().find(|i| is_use(i))?;
-    let (file, line) = at_line?;
-    let name = all.iter().find(|i| i[0] & 0xffff == op::STRING && i.get(1) == Some(&file))?;
-    Some((text(name.get(2..)?), line))
-}
-
-#[derive(Default)]
-struct Function {
-    calls: Vec<u32>,
-    /// Ids of the resources that it names.
-    uses: BTreeSet<u32>,
-}
-
-/// The call graph of a module.
-#[derive(Default)]
-struct Module {
-    entries: Vec<u32>,
-    /// The variables that are resources.
-    resources: BTreeMap<u32, Used>,
-    functions: BTreeMap<u32, Function>,
-}
-
-impl Module {
-    fn of(words: &[u32]) -> Self {
-        let mut module = Self::default();
-        let (mut sets, mut bindings) = (BTreeMap::new(), BTreeMap::new());
-        let mut current = None;
-        for i in instructions(words).unwrap_or_default() {
-            match (i[0] & 0xffff, &i[1..]) {
-                (op::ENTRY_POINT, [_, function, ..]) => module.entries.push(*function),
-                (op::DECORATE, [id, DESCRIPTOR_SET, set]) => {
-                    sets.insert(*id, *set);
-                }
-                (op::DECORATE, [id, BINDING, binding]) => {
-                    bindings.insert(*id, *binding);
-                }
-                (op::VARIABLE, [_, id, class, ..]) if current.is_none() => {
-                    let place = sets.get(id).zip(bindings.get(id)).map(|(set, at)| Used::Descriptor(*set, *at));
-                    let push = (*class == PUSH_CONSTANT).then_some(Used::PushConstants);
-                    module.resources.extend(push.or(place).map(|used| (*id, used)));
-                }
-                (op::FUNCTION, [_, id, ..]) => {
-                    current = Some(*id);
-                    module.functions.insert(*id, Function::default());
-                }
-                _ => {
-                    let Some(function) = current.and_then(|id| module.functions.get_mut(&id)) else { continue };
-                    if i[0] & 0xffff == op::FUNCTION_CALL {
-                        function.calls.extend(i.get(3));
-                    }
-                    function.uses.extend(ids(i).filter(|id| module.resources.contains_key(id)));
-                }
-            }
-        }
-        module
     }
-
-    /// The functions that an entry point calls, directly or not, and the entry points.
-    fn reachable(&self) -> BTreeSet<u32> {
-        let mut open = self.entries.clone();
-        let mut found = BTreeSet::new();
-        while let Some(id) = open.pop() {
-            if let Some(function) = self.functions.get(&id).filter(|_| found.insert(id)) {
-                open.extend(&function.calls);
-            }
-        }
-        found
-    }
+    let line = at_line.filter(|_| reached(&module).contains(&used)).map(|i| &module[i])?;
+    file_of(&module, line)
 }
 
-/// The ids among the operands of an instruction within a function. Of an unknown instruction every word counts.
-pub(super) fn ids(i: &[u32]) -> impl Iterator<Item = u32> + '_ {
-    let counts = |at: usize| !matches!(i[0] & 0xffff, op::LINE | op::NO_LINE) && is_id(i, at).unwrap_or(true);
-    (1..i.len()).filter(move |at| counts(*at)).map(|at| i[at])
+/// The file and line that an `OpLine` names.
+pub fn file_of(module: &Module, line: &[u32]) -> Option<(String, u32)> {
+    Some((text(&module.defined(Op::String, line[1])?[2..]), line[2]))
+}
+
+/// The variables that are resources, by id.
+fn resources(module: &Module) -> Vec<Option<Used>> {
+    let (mut sets, mut bindings) = (vec![None; module.bound() as usize], vec![None; module.bound() as usize]);
+    for i in module.decorations.iter().filter(|i| i.op == Op::Decorate) {
+        match module[*i] {
+            [_, id, DESCRIPTOR_SET, set] if id < module.bound() => sets[id as usize] = Some(set),
+            [_, id, BINDING, binding] if id < module.bound() => bindings[id as usize] = Some(binding),
+            _ => {}
+        }
+    }
+    let mut resources = vec![None; module.bound() as usize];
+    for i in module.globals.iter().filter(|i| i.op == Op::Variable) {
+        let (id, class) = (module[*i][2] as usize, module[*i][3]);
+        let place = sets[id].zip(bindings[id]).map(|(set, binding)| Used::Descriptor(set, binding));
+        resources[id] = if class == PUSH_CONSTANT { Some(Used::PushConstants) } else { place };
+    }
+    resources
+}
+
+/// The functions that the entry point calls, directly or not, and itself, in the order of the module.
+pub(super) fn reachable(module: &Module) -> Vec<&Function> {
+    let mut places = module.entry_function().and_then(|entry| module.callees_first(entry)).unwrap_or_default();
+    places.sort_unstable();
+    places.into_iter().map(|place| &module.functions[place]).collect()
+}
+
+/// The ids that an instruction uses. Of an unknown one every word counts.
+pub(super) fn uses(module: &Module, i: Instruction) -> impl Iterator<Item = Id> {
+    let words = &module[i];
+    (1..words.len()).filter(move |at| !i.op.is_known() || i.op.is_id(words, *at)).map(|at| words[at])
 }
 
 #[cfg(test)]
@@ -143,7 +110,10 @@ mod tests {
 
     #[test]
     fn what_main_reaches_counts() {
-        let used = |functions: &str| reached(&compile(functions).0).into_iter().collect::<Vec<_>>();
+        let used = |functions: &str| {
+            let module = Module::parse(&compile(functions).0).expect("a module");
+            reached(&module).into_iter().collect::<Vec<_>>()
+        };
         assert_eq!(used("void main() { color = vec4(1.0); }"), []);
         assert_eq!(used("void main() { color = a; }"), [Used::Descriptor(0, 4)]);
         let nested = "vec4 f(sampler2D s) { return texture(s, p.xy); }\nvec4 g() { return block.b; }\n";
@@ -165,7 +135,6 @@ mod tests {
     #[test]
     fn garbage_is_no_panic() {
         for words in [vec![], vec![0; 40], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_003b, 1]] {
-            assert!(reached(&words).is_empty());
             assert!(line_of(&words, Used::PushConstants).is_none());
         }
     }

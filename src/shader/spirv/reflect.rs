@@ -1,17 +1,14 @@
 //! Reflects a SPIR-V module for the contract check and the annotations: descriptors, blocks, constants, locations.
 //!
-//! Expects modules compiled by glslang at -O0, with names and with every declared global, used or not. Skips malformed
-//! words instead of panicking; the contract check then reports what is missing.
+//! Expects modules compiled by glslang at -O0, with names and with every declared global, used or not.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::interface::{self, BindingKind};
+use crate::interface::BindingKind;
 
-use super::declared::Module;
 use super::primitive::Primitive;
-use super::reach::{Used, reached};
-use super::uses::used_bytes;
+use super::reach::Used;
 
 /// One member of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -135,17 +132,6 @@ pub struct Reflection {
 }
 
 impl Reflection {
-    /// Reflects a module.
-    pub fn of(spirv: &[u32]) -> Self {
-        let reached = reached(spirv);
-        let reads_params = reached.contains(&Used::Descriptor(interface::SET_FRAME, interface::BINDING_PARAMS));
-        let params_read = match reads_params {
-            true => used_bytes(spirv, interface::SET_FRAME, interface::BINDING_PARAMS),
-            false => Vec::new(),
-        };
-        Self { reached, params_read, ..Module::parse(spirv).reflect() }
-    }
-
     /// The descriptor with this set and binding.
     pub fn descriptor(&self, set: u32, binding: u32) -> Option<&Descriptor> {
         self.descriptors.iter().find(|found| (found.set, found.binding) == (set, binding))

@@ -1,144 +1,68 @@
-//! Finds the descriptors that the functions of a module use, and the parts of a block that they read.
+//! Finds the parts of a block that the functions of a module read.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER, instruction};
-use super::opcode as op;
-use super::reach::{ids, reachable_functions};
+use super::enums::decoration::{ARRAY_STRIDE, BINDING, DESCRIPTOR_SET, OFFSET};
+use super::module::{Function, Id, Module, Type};
+use super::op::Op;
+use super::reach::{reachable, uses};
 
-const OFFSET: u32 = 35;
-const ARRAY_STRIDE: u32 = 6;
-
-/// The bindings in `set` that functions of the module use.
-pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
-    let (mut in_set, mut bindings) = (BTreeSet::new(), HashMap::new());
-    let mut at = HEADER;
-    while let Some((opcode, length)) = instruction(words, at) {
-        match (opcode, &words[at + 1..at + length]) {
-            (op::DECORATE, [id, DESCRIPTOR_SET, number]) if *number == set => {
-                in_set.insert(*id);
-            }
-            (op::DECORATE, [id, BINDING, binding]) => {
-                bindings.insert(*id, *binding);
-            }
-            _ => {}
-        }
-        at += length;
-    }
-    bindings.retain(|id, _| in_set.contains(id));
-    // A word of a function that is no id may look like one. That costs a descriptor that nobody reads.
-    let words: HashSet<u32> = if bindings.is_empty() { HashSet::new() } else { words[at..].iter().copied().collect() };
-    bindings.into_iter().filter(|(id, _)| words.contains(id)).map(|(_, binding)| binding).collect()
-}
-
-/// The bytes that functions of the module may read of the block at this set and binding, as far as an entry point calls them. Members
+/// The bytes that functions of the module may read of the block at this set and binding, as far as the entry point calls them. Members
 /// that they do not name are left out. The last member ends at `usize::MAX`, unless it is an array: trees may leave out what follows
 /// it in the contract.
-pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
-    let (mut in_set, mut at_binding) = (HashSet::new(), HashSet::new());
-    let (mut layouts, mut pointers, mut blocks) = (Layouts::default(), HashMap::new(), Vec::new());
-    let mut at = HEADER;
-    while let Some((opcode, length)) = instruction(words, at) {
-        match (opcode, &words[at + 1..at + length]) {
-            (op::DECORATE, [id, DESCRIPTOR_SET, number]) if *number == set => {
-                in_set.insert(*id);
-            }
-            (op::DECORATE, [id, BINDING, number]) if *number == binding => {
-                at_binding.insert(*id);
-            }
-            (op::MEMBER_DECORATE, [id, member, OFFSET, bytes]) => {
-                layouts.offsets.entry(*id).or_default().insert(*member, *bytes as usize);
-            }
-            (op::DECORATE, [id, ARRAY_STRIDE, bytes]) => {
-                layouts.strides.insert(*id, *bytes as usize);
-            }
-            (op::TYPE_STRUCT, [id, types @ ..]) => {
-                layouts.members.insert(*id, types);
-            }
-            (op::TYPE_ARRAY, [id, _, length]) => {
-                layouts.lengths.insert(*id, *length);
-            }
-            (op::CONSTANT, [_, id, value]) => {
-                layouts.constants.insert(*id, *value);
-            }
-            (op::TYPE_POINTER, [id, _, to]) => {
-                pointers.insert(*id, *to);
-            }
-            // Two variables may share a binding: a linked module can hold that of before as well.
-            (op::VARIABLE, [pointer, id, ..]) if in_set.contains(id) && at_binding.contains(id) => {
-                blocks.push((*id, pointers.get(pointer).copied()));
-            }
-            _ => {}
-        }
-        at += length;
-    }
-    let reachable = if blocks.is_empty() { BTreeSet::new() } else { reachable_functions(words) };
+pub fn used_bytes(module: &Module, set: u32, binding: u32) -> Vec<Range<usize>> {
+    let reachable = reachable(module);
     let everything = Range { start: 0, end: usize::MAX };
-    let of_block = |(id, of): (u32, Option<u32>)| {
-        let members = members_read(&words[at..], id, &layouts.constants, &reachable);
-        members
-            .zip(of)
-            .and_then(|(members, of)| layouts.ranges(of, &members))
-            .unwrap_or_else(|| vec![everything.clone()])
+    // Two variables may share a binding: a linked module can hold that of before as well.
+    let is_block = |id: &Id| {
+        let has = |kind: u32, value: u32| module.decoration(*id, kind) == Some(value);
+        has(BINDING, binding) && has(DESCRIPTOR_SET, set)
     };
-    let mut ranges: Vec<Range<usize>> = blocks.into_iter().flat_map(of_block).collect();
+    let of_block = |id: Id| {
+        let members = members_read(module, id, &reachable);
+        members.and_then(|members| ranges(module, id, &members)).unwrap_or_else(|| vec![everything.clone()])
+    };
+    let blocks = module.decorated(BINDING).filter(is_block);
+    let mut ranges: Vec<Range<usize>> = blocks.flat_map(of_block).collect();
     ranges.sort_unstable_by_key(|range| (range.start, range.end));
     ranges.dedup();
     ranges
 }
 
-/// The layouts of structs, as far as [`used_bytes`] needs them.
-#[derive(Default)]
-struct Layouts<'a> {
-    /// Offsets of members, by struct.
-    offsets: HashMap<u32, BTreeMap<u32, usize>>,
-    /// Types of members, by struct.
-    members: HashMap<u32, &'a [u32]>,
-    /// Constants with the lengths of arrays, by their types.
-    lengths: HashMap<u32, u32>,
-    /// Distances of their elements.
-    strides: HashMap<u32, usize>,
-    constants: HashMap<u32, u32>,
+/// The bytes of these members of a block. `None` if its layout is not known.
+fn ranges(module: &Module, block: Id, members: &BTreeSet<u32>) -> Option<Vec<Range<usize>>> {
+    let (_, of) = module.pointer(module.type_of(block))?;
+    let offset = |words: &[u32]| match words {
+        [_, target, member, OFFSET, bytes] if *target == of => Some((*member, *bytes as usize)),
+        _ => None,
+    };
+    let all = module.decorations.iter().filter(|i| i.op == Op::MemberDecorate);
+    let offsets: BTreeMap<u32, usize> = all.filter_map(|i| offset(&module[*i])).collect();
+    let last_end = || {
+        let Type::Struct { members } = module.get_type(of)? else { return None };
+        let array = *members.last()?;
+        let Type::Array { length, .. } = module.get_type(array)? else { return None };
+        let bytes = module.number(length)? * module.decoration(array, ARRAY_STRIDE)?;
+        Some(offsets.values().max()? + bytes as usize)
+    };
+    let last_end = last_end().unwrap_or(usize::MAX);
+    let end_of = |start: usize| offsets.values().copied().filter(|other| *other > start).min().unwrap_or(last_end);
+    members.iter().map(|member| offsets.get(member).map(|start| *start..end_of(*start))).collect()
 }
 
-impl Layouts<'_> {
-    /// The bytes of these members of a struct. `None` if its layout is not known.
-    fn ranges(&self, of: u32, members: &BTreeSet<u32>) -> Option<Vec<Range<usize>>> {
-        let offsets = self.offsets.get(&of)?;
-        let last_end = self.members.get(&of).and_then(|types| types.last()).and_then(|array| {
-            let length = *self.constants.get(self.lengths.get(array)?)? as usize;
-            Some(offsets.values().max()? + length * self.strides.get(array)?)
-        });
-        let end_of = |start: usize| {
-            offsets.values().copied().filter(|other| *other > start).min().or(last_end).unwrap_or(usize::MAX)
-        };
-        members.iter().map(|member| offsets.get(member).map(|start| *start..end_of(*start))).collect()
-    }
-}
-
-/// The members of the block `block` that the reachable functions in `code` read. `None` if they may read all of it.
-fn members_read(
-    code: &[u32],
-    block: u32,
-    constants: &HashMap<u32, u32>,
-    reachable: &BTreeSet<u32>,
-) -> Option<BTreeSet<u32>> {
-    let (mut members, mut is_reachable, mut at) = (BTreeSet::new(), false, 0);
-    while let Some(first) = code.get(at) {
-        let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
-        let instruction = code.get(at..at + length).filter(|_| length > 0)?;
-        match (opcode, &instruction[1..]) {
-            (op::FUNCTION, [_, function, ..]) => is_reachable = reachable.contains(function),
-            _ if !is_reachable => {}
-            (op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN, [_, _, base, member, ..]) if *base == block => {
-                members.insert(*constants.get(member)?);
+/// The members of a block that functions read. `None` if they may read all of it.
+fn members_read(module: &Module, block: Id, functions: &[&Function]) -> Option<BTreeSet<u32>> {
+    let mut members = BTreeSet::new();
+    for i in functions.iter().flat_map(|function| function.body()) {
+        match (i.op, &module[i]) {
+            (Op::AccessChain | Op::InBoundsAccessChain, [_, _, _, base, member, ..]) if *base == block => {
+                members.insert(module.number(*member)?);
             }
             // The whole block.
-            _ if ids(instruction).any(|id| id == block) => return None,
+            _ if uses(module, i).any(|id| id == block) => return None,
             _ => {}
         }
-        at += length;
     }
     Some(members)
 }
@@ -163,8 +87,8 @@ mod tests {
         );
         let source = Source::memory([("m.frag", text.as_str())]);
         let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap();
-        let before = used_bytes(&words, 0, 0);
-        let after = used_bytes(&optimize(words), 0, 0);
+        let bytes = |words: &[u32]| used_bytes(&Module::parse(words).expect("a module"), 0, 0);
+        let (before, after) = (bytes(&words), bytes(&optimize(words)));
         assert_eq!(before, after, "the optimizer reads no more");
         after.into_iter().map(|bytes| (bytes.start, bytes.end)).collect()
     }
@@ -178,11 +102,5 @@ mod tests {
             used("float f() { return block.d[n].y; } void main() { color = vec4(block.b, f()); }"),
             [(64, 76), (80, 96)]
         );
-    }
-
-    #[test]
-    fn bytes_of_no_block_are_none() {
-        assert!(used_bytes(&[], 0, 0).is_empty());
-        assert!(used_bytes(&[0; 40], 0, 0).is_empty());
     }
 }

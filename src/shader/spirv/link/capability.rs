@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::specialize::opcode;
+use crate::shader::spirv::enums::built_in::{PRIMITIVE_ID, SAMPLE_ID, SAMPLE_POSITION};
+use crate::shader::spirv::enums::decoration::BUILT_IN;
+use crate::shader::spirv::enums::{extended, model};
+use crate::shader::spirv::module::{Instruction, Module};
+use crate::shader::spirv::op::{Class, Op};
 
 const GEOMETRY: u32 = 2;
-const GEOMETRY_MODEL: u32 = 3;
-const FRAGMENT_MODEL: u32 = 4;
 const SAMPLE_RATE_SHADING: u32 = 35;
 const IMAGE_QUERY: u32 = 50;
 const DERIVATIVE_CONTROL: u32 = 51;
@@ -15,44 +16,40 @@ const INTERPOLATION_FUNCTION: u32 = 52;
 /// The capabilities that depend on the code of functions, and that [`needed`] finds in the linked module.
 const KNOWN: [u32; 5] = [GEOMETRY, SAMPLE_RATE_SHADING, IMAGE_QUERY, DERIVATIVE_CONTROL, INTERPOLATION_FUNCTION];
 
-/// The decoration of built-in variables, and its values.
-const BUILT_IN: u32 = 11;
-const PRIMITIVE_ID: u32 = 7;
-const SAMPLE_ID: u32 = 18;
-const SAMPLE_POSITION: u32 = 19;
-
 /// The capability of [`KNOWN`] that an instruction needs.
-fn needed(i: &[u32]) -> Option<u32> {
-    match (opcode(i), i) {
-        (op::DECORATE, [_, _, BUILT_IN, PRIMITIVE_ID]) => Some(GEOMETRY),
-        (op::DECORATE, [_, _, BUILT_IN, SAMPLE_ID | SAMPLE_POSITION]) => Some(SAMPLE_RATE_SHADING),
-        // Sizes, levels and samples of images
-        (103..=107, _) => Some(IMAGE_QUERY),
+fn needed(module: &Module, i: Instruction) -> Option<u32> {
+    match (i.op, &module[i]) {
+        (Op::Decorate, [_, _, BUILT_IN, PRIMITIVE_ID]) => Some(GEOMETRY),
+        (Op::Decorate, [_, _, BUILT_IN, SAMPLE_ID | SAMPLE_POSITION]) => Some(SAMPLE_RATE_SHADING),
+        (op, _) if op.class() == Class::Query && op != Op::Image => Some(IMAGE_QUERY),
         // Fine and coarse derivatives
-        (210..=215, _) => Some(DERIVATIVE_CONTROL),
-        // InterpolateAtCentroid, InterpolateAtSample, InterpolateAtOffset
-        (op::EXT_INST, [_, _, _, _, 76..=78, ..]) => Some(INTERPOLATION_FUNCTION),
+        (op, _) if (Op::DPdxFine..=Op::FwidthCoarse).contains(&op) => Some(DERIVATIVE_CONTROL),
+        (Op::ExtInst, [_, _, _, _, extended::INTERPOLATE_AT_CENTROID..=extended::INTERPOLATE_AT_OFFSET, ..]) => {
+            Some(INTERPOLATION_FUNCTION)
+        }
         _ => None,
     }
 }
 
-/// The capabilities of a linked module. `model`: its execution model. `a`, `b`: the capabilities of its two sources.
-/// `instructions`: its decorations and functions. `None` if only glslang can tell.
-pub fn capabilities<'a>(
-    model: u32,
-    a: &[u32],
-    b: &[u32],
-    instructions: impl Iterator<Item = &'a [u32]>,
-) -> Option<Vec<u32>> {
-    let others = |list: &[u32]| list.iter().copied().filter(|c| !KNOWN.contains(c)).collect::<BTreeSet<u32>>();
-    let mut all = others(a);
-    if all != others(b) {
+fn declared(module: &Module) -> impl Iterator<Item = u32> {
+    module.head.iter().filter(|i| i.op == Op::Capability).map(|i| module[*i][1])
+}
+
+/// Declares the capabilities of a linked module, whose parts come from it and from `base`. `None` if only glslang can tell.
+pub fn declare(module: &mut Module, base: &Module) -> Option<()> {
+    let others = |module: &Module| declared(module).filter(|c| !KNOWN.contains(c)).collect::<BTreeSet<u32>>();
+    let mut all = others(base);
+    if all != others(module) {
         return None;
     }
+    let code = module.decorations.iter().copied().chain(module.code());
     // Other stages than the fragment stage have gl_PrimitiveID anyway.
-    let is_needed = |capability: &u32| *capability != GEOMETRY || model == FRAGMENT_MODEL;
-    all.extend(instructions.filter_map(needed).filter(is_needed));
-    all.extend((model == GEOMETRY_MODEL).then_some(GEOMETRY));
+    let is_needed = |capability: &u32| *capability != GEOMETRY || module.model() == Some(model::FRAGMENT);
+    all.extend(code.filter_map(|i| needed(module, i)).filter(is_needed));
+    all.extend((module.model() == Some(model::GEOMETRY)).then_some(GEOMETRY));
     // glslang orders them by number, too.
-    Some(all.into_iter().collect())
+    let capabilities: Vec<Instruction> = all.into_iter().map(|c| module.make(Op::Capability, &[c])).collect();
+    module.head.retain(|i| i.op != Op::Capability);
+    module.head.splice(0..0, capabilities);
+    Some(())
 }

@@ -2,9 +2,9 @@
 
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::operands::text;
-use crate::shader::spirv::specialize::{Id, instructions, opcode};
+use crate::shader::spirv::module::{Id, Module};
+use crate::shader::spirv::op::Op;
+use crate::shader::spirv::reach::file_of;
 
 /// The first two of the three words that a bounded module writes to its buffer; both are 0 at first. The third is 1 at
 /// first, and 0 once an invocation has used up its budget. (Mesa's lavapipe reads 0 for helper invocations, and would
@@ -31,23 +31,16 @@ impl Place {
     /// Finds the loop in a module before specialization. `None` if the overrun is of another module.
     pub fn find(overrun: Overrun, words: &[u32]) -> Option<Self> {
         let seed = seed(words);
-        let all = instructions(words)?;
-        let (mut label, mut function, mut number) = (0, 0, 0);
-        for i in &all {
-            match opcode(i) {
-                op::FUNCTION => (function, number) = (*i.get(2)?, 0),
-                op::LABEL => label = *i.get(1)?,
-                op::LOOP_MERGE => {
-                    if overrun.one == name(seed, label) {
-                        return Some(Self { number: Some(number), function: name_of(&all, function) });
-                    }
-                    number += 1;
-                }
-                _ => {}
-            }
+        if overrun.one == 0 {
+            let is_module = overrun.together == name(seed, 0);
+            return is_module.then(|| Self { number: None, function: String::new() });
         }
-        let is_module = overrun.one == 0 && overrun.together == name(seed, 0);
-        is_module.then(|| Self { number: None, function: String::new() })
+        let module = Module::parse(words)?;
+        module.functions.iter().find_map(|function| {
+            let mut headers = function.blocks.iter().filter(|block| block.structure(&module).1.is_some());
+            let number = headers.position(|block| overrun.one == name(seed, block.label))?;
+            Some(Self { number: Some(number), function: module.name(function.id).unwrap_or_default() })
+        })
     }
 
     /// The function's name in GLSL.
@@ -58,21 +51,14 @@ impl Place {
     /// File and line of the loop, in a module of the same text that was compiled with debug information. An edit may
     /// have moved functions, so the loop is found by its function.
     pub fn line(&self, words: &[u32]) -> Option<(String, u32)> {
-        let all = instructions(words)?;
-        let is_function = |i: &&[u32]| opcode(i) == op::FUNCTION && i.len() > 2 && name_of(&all, i[2]) == self.function;
-        let start = all.iter().position(is_function)?;
-        let body = all[start..].iter().take_while(|i| opcode(i) != op::FUNCTION_END).enumerate();
-        let at = start + body.filter(|(_, i)| opcode(i) == op::LOOP_MERGE).nth(self.number?)?.0;
-        let line = all[..at].iter().rev().find(|i| opcode(i) == op::LINE)?;
-        let file = all.iter().find(|i| opcode(i) == op::STRING && i.get(1) == line.get(1))?;
-        Some((text(&file[2..]), *line.get(2)?))
+        let module = Module::parse(words)?;
+        let function = module.functions.iter().find(|f| module.name(f.id).unwrap_or_default() == self.function)?;
+        let all: Vec<_> = function.instructions().collect();
+        let mut merges = all.iter().enumerate().filter(|(_, i)| i.op == Op::LoopMerge);
+        let (at, _) = merges.nth(self.number?)?;
+        let line = all[..at].iter().rev().find(|i| i.op == Op::Line)?;
+        file_of(&module, &module[*line])
     }
-}
-
-/// glslang's name of a function.
-fn name_of(all: &[&[u32]], function: Id) -> String {
-    let name = all.iter().find(|i| opcode(i) == op::NAME && i.get(1) == Some(&function));
-    name.map(|i| text(&i[2..])).unwrap_or_default()
 }
 
 /// Identifies a module before specialization.

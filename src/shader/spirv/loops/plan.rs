@@ -4,10 +4,9 @@ use std::cell::RefCell;
 
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
-use super::rewrite::Module;
 use super::rounds::{Loop, MOST};
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::specialize::opcode;
+use crate::shader::spirv::module::{Id, Module};
+use crate::shader::spirv::op::Op;
 
 /// A counted loop inside a bounded one counts its own rounds too, if it takes more than this many.
 const MOST_INSIDE: u64 = 64;
@@ -28,6 +27,7 @@ pub(super) struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     pub(super) fn new(module: &'a Module, loops: &'a [Vec<Loop>]) -> Self {
+        let places: HashMap<Id, usize> = module.functions.iter().enumerate().map(|(at, f)| (f.id, at)).collect();
         let mut calls = Vec::new();
         let mut calls_outside = Vec::new();
         for (function, loops) in module.functions.iter().zip(loops) {
@@ -35,8 +35,8 @@ impl<'a> Plan<'a> {
             for (index, block) in function.blocks.iter().enumerate() {
                 let around = (0..loops.len()).filter(|at| loops[*at].members.contains(&index));
                 let innermost = around.min_by_key(|at| loops[*at].members.len());
-                let called = block.body.iter().filter(|i| opcode(i) == op::FUNCTION_CALL && i.len() > 3);
-                let called = called.filter_map(|i| module.at.get(&i[3]).copied());
+                let called = block.body.iter().filter(|i| i.op == Op::FunctionCall);
+                let called = called.filter_map(|i| places.get(&module[*i][3]).copied());
                 innermost.map_or(&mut outside, |at| &mut own[at]).extend(called);
             }
             calls.push(own);
@@ -93,7 +93,7 @@ impl<'a> Plan<'a> {
     /// Whether the loop's header has the form that glslang gives it.
     fn can_count(&self, function: usize, at: usize) -> bool {
         let blocks = &self.module.functions[function].blocks;
-        blocks[self.loops[function][at].header].body.last().is_some_and(|i| opcode(i) == op::BRANCH)
+        blocks[self.loops[function][at].header].ends_with(Op::Branch)
     }
 
     /// The rounds of a loop with those of the counted loops inside it, however deep.

@@ -5,15 +5,15 @@
 
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
-use super::super::opcode as op;
-use super::super::specialize::control_flow::Function;
-use super::super::specialize::{Id, Instruction, evaluate, opcode};
+use crate::shader::spirv::enums::{extended, storage};
+use crate::shader::spirv::evaluate::evaluate;
+use crate::shader::spirv::module::{Function, Id, Module};
+use crate::shader::spirv::op::Op;
 
 /// A loop that may take more rounds than this counts as one whose end is unknown.
 pub(super) const MOST: u64 = 32_768;
 /// How many instructions deep the computation of a value is followed.
 const DEPTH: u32 = 16;
-const FUNCTION_STORAGE: u32 = 7;
 
 /// A loop of a function. Blocks are given by their index.
 #[derive(Debug)]
@@ -30,17 +30,17 @@ pub(super) struct Loop {
     pub(super) rounds: Option<u64>,
 }
 
-/// Finds the loops of a function. `constants` are the values of 32-bit constants, `extended` the id of GLSL.std.450.
-pub(super) fn find(function: &Function, constants: &HashMap<Id, u32>, extended: Option<Id>) -> Vec<Loop> {
+/// Finds the loops of a function of a module.
+pub(super) fn find(module: &Module, function: &Function) -> Vec<Loop> {
     let blocks = &function.blocks;
-    if blocks.iter().all(|block| block.structure().1.is_none()) {
+    if blocks.iter().all(|block| block.structure(module).1.is_none()) {
         return Vec::new();
     }
     let at: HashMap<Id, usize> = blocks.iter().enumerate().map(|(index, block)| (block.label, index)).collect();
-    let next = |index: usize| blocks[index].targets().into_iter().filter_map(|id| at.get(&id).copied());
+    let next = |index: usize| blocks[index].targets(module).filter_map(|id| at.get(&id).copied());
     let mut loops = Vec::new();
     for (header, block) in blocks.iter().enumerate() {
-        let (Some(merge), Some(continues)) = block.structure() else { continue };
+        let (Some(merge), Some(continues)) = block.structure(module) else { continue };
         let (Some(merge), Some(continues)) = (at.get(&merge).copied(), at.get(&continues).copied()) else { continue };
         let (mut members, mut open) = (HashSet::from_iter([header]), vec![header]);
         while let Some(index) = open.pop() {
@@ -56,7 +56,7 @@ pub(super) fn find(function: &Function, constants: &HashMap<Id, u32>, extended: 
         let around = (0..loops.len()).filter(|other| *other != index && loops[*other].0.members.contains(&header));
         loops[index].0.parent = around.min_by_key(|other| loops[*other].0.members.len());
     }
-    let values = Values::new(function, constants, extended);
+    let values = Values::new(module, function);
     let rounds: Vec<Option<u64>> = loops
         .iter()
         .map(|(of, continues)| {
@@ -104,43 +104,39 @@ struct Store {
 
 /// The instructions of a function by result, and the stores to its variables.
 struct Values<'a> {
+    module: &'a Module,
     function: &'a Function,
-    constants: &'a HashMap<Id, u32>,
-    extended: Option<Id>,
-    made_by: HashMap<Id, (usize, &'a Instruction)>,
+    /// The operation and the words of each result, and the block.
+    made_by: HashMap<Id, (usize, Op, &'a [u32])>,
     /// Variables that are only loaded and stored whole.
     stores: HashMap<Id, Vec<Store>>,
 }
 
 impl<'a> Values<'a> {
-    fn new(function: &'a Function, constants: &'a HashMap<Id, u32>, extended: Option<Id>) -> Self {
+    fn new(module: &'a Module, function: &'a Function) -> Self {
         let all = || {
-            let of = |(block, b): (usize, &'a super::super::specialize::control_flow::Block)| {
-                b.body.iter().enumerate().map(move |(at, i)| (block, at, i))
-            };
-            function.blocks.iter().enumerate().flat_map(of)
+            let blocks = function.blocks.iter().enumerate();
+            blocks.flat_map(|(block, b)| b.body.iter().enumerate().map(move |(at, i)| (block, at, i.op, &module[*i])))
         };
-        let mut stores: HashMap<Id, Vec<Store>> = all()
-            .filter(|(.., i)| opcode(i) == op::VARIABLE && i.get(3) == Some(&FUNCTION_STORAGE) && i.len() == 4)
-            .map(|(.., i)| (i[2], Vec::new()))
-            .collect();
+        let is_local = |(.., op, i): &(usize, usize, Op, &[u32])| *op == Op::Variable && i[3..] == [storage::FUNCTION];
+        let mut stores: HashMap<Id, Vec<Store>> = all().filter(is_local).map(|(.., i)| (i[2], Vec::new())).collect();
         let mut made_by = HashMap::new();
-        for (block, at, i) in all() {
-            match opcode(i) {
-                op::STORE if i.len() >= 3 => {
+        for (block, at, op, i) in all() {
+            match op {
+                Op::Store => {
                     if let Some(to) = stores.get_mut(&i[1]) {
                         to.push(Store { block, at, value: i[2] });
                     }
                 }
-                op::VARIABLE | op::LOAD => {}
+                Op::Variable | Op::Load => {}
                 // Any other use may write the variable. A literal that equals its id only costs precision.
                 _ => i[1..].iter().for_each(|word| drop(stores.remove(word))),
             }
-            if !op::WITHOUT_RESULT.contains(&opcode(i)) && i.len() > 2 {
-                made_by.insert(i[2], (block, i));
+            if op.has_type() && i.len() > 2 {
+                made_by.insert(i[2], (block, op, i));
             }
         }
-        Self { function, constants, extended, made_by, stores }
+        Self { module, function, made_by, stores }
     }
 
     /// The largest number of rounds of a loop.
@@ -149,14 +145,14 @@ impl<'a> Values<'a> {
         // The loop goes on only if the condition in the block behind the header holds.
         let mut test = (rounds.next)(of.header).next()?;
         // `a && b` is a selection around b.
-        while let (Some(end), None) = self.function.blocks[test].structure() {
+        while let (Some(end), None) = self.function.blocks[test].structure(self.module) {
             test = (0..self.function.blocks.len()).find(|at| self.function.blocks[*at].label == end)?;
         }
-        let last = self.function.blocks[test].body.last().filter(|i| opcode(i) == op::BRANCH_CONDITIONAL)?;
-        let merge = self.function.blocks[of.merge].label;
-        let (condition, on) = match (last.get(1)?, last.get(2)? == &merge, last.get(3)? == &merge) {
-            (condition, false, true) => (*condition, true),
-            (condition, true, false) => (*condition, false),
+        let last = self.function.blocks[test].end().filter(|i| i.op == Op::BranchConditional)?;
+        let (last, merge) = (&self.module[last], self.function.blocks[of.merge].label);
+        let (condition, on) = match (last[1], last[2] == merge, last[3] == merge) {
+            (condition, false, true) => (condition, true),
+            (condition, true, false) => (condition, false),
             _ => return None,
         };
         let mut conditions = vec![condition];
@@ -173,17 +169,18 @@ impl<'a> Values<'a> {
 
     /// Adds the conditions that hold if `condition` does: each part of `a && b`.
     fn parts(&self, condition: Id, depth: u32, out: &mut Vec<Id>) {
-        let Some((block, i)) = self.made_by.get(&condition).filter(|_| depth > 0) else { return };
+        let Some((block, op, i)) = self.made_by.get(&condition).filter(|_| depth > 0) else { return };
         let here = self.function.blocks[*block].label;
         // A branch leads from the block of `a` to here only if `a` is false.
         let is_false = |pair: &[u32]| {
             let from = self.function.blocks.iter().find(|block| pair.get(1) == Some(&block.label));
-            let last = from.and_then(|block| block.body.last()).filter(|i| opcode(i) == op::BRANCH_CONDITIONAL);
-            last.is_some_and(|i| i.get(1) == pair.first() && i.get(3) == Some(&here) && i.get(2) != Some(&here))
+            let last = from.and_then(|block| block.end()).filter(|i| i.op == Op::BranchConditional);
+            let last = last.map(|i| &self.module[i]);
+            last.is_some_and(|i| Some(&i[1]) == pair.first() && i[3] == here && i[2] != here)
         };
-        let parts: Vec<Id> = match opcode(i) {
-            op::LOGICAL_AND => i[3..].to_vec(),
-            op::PHI if i.len() == 7 && i[3..].chunks(2).any(is_false) => vec![i[3], i[5]],
+        let parts: Vec<Id> = match op {
+            Op::LogicalAnd => i[3..].to_vec(),
+            Op::Phi if i.len() == 7 && i[3..].chunks(2).any(is_false) => vec![i[3], i[5]],
             _ => return,
         };
         for part in parts {
@@ -194,8 +191,8 @@ impl<'a> Values<'a> {
 
     /// Collects the variables that a value is computed of within the loop.
     fn variables(&self, id: Id, of: &Loop, depth: u32, out: &mut HashSet<Id>) {
-        let Some((block, i)) = self.made_by.get(&id).filter(|_| depth > 0) else { return };
-        if opcode(i) == op::LOAD {
+        let Some((block, op, i)) = self.made_by.get(&id).filter(|_| depth > 0) else { return };
+        if *op == Op::Load {
             out.extend(i.get(3).filter(|v| of.members.contains(block) && self.stores.contains_key(*v)));
         } else {
             i[3..].iter().for_each(|operand| self.variables(*operand, of, depth - 1, out));
@@ -219,7 +216,7 @@ impl<'a> Values<'a> {
         }
         let first = of.before.and_then(|before| {
             let last = stores.iter().filter(|store| store.block == before).max_by_key(|store| store.at)?;
-            self.constants.get(&last.value).copied()
+            self.module.number(last.value)
         });
         let limited = self.limited(first, variable, condition, step.value, of).filter(|_| on);
         limited.or_else(|| self.run(first?, variable, condition, on, step.value, of))
@@ -239,36 +236,36 @@ impl<'a> Values<'a> {
 
     /// The bits of a value, given that of the loop's variable.
     fn value(&self, id: Id, variable: Id, is: u32, of: &Loop, depth: u32) -> Option<u32> {
-        if let Some(known) = self.constants.get(&id) {
-            return Some(*known);
+        if let Some(known) = self.number(id) {
+            return Some(known);
         }
-        let (block, i) = self.made_by.get(&id).filter(|_| depth > 0)?;
-        if opcode(i) == op::LOAD {
+        let (block, op, i) = self.made_by.get(&id).filter(|_| depth > 0)?;
+        if *op == Op::Load {
             return (i.get(3) == Some(&variable) && of.members.contains(block)).then_some(is);
         }
         let operand = |at: usize| self.value(*i.get(at)?, variable, is, of, depth - 1);
         let float = |at: usize| operand(at).map(f32::from_bits);
         let int = |at: usize| operand(at).map(u32::cast_signed);
-        Some(match opcode(i) {
-            129 => (float(3)? + float(4)?).to_bits(),
-            131 => (float(3)? - float(4)?).to_bits(),
-            133 => (float(3)? * float(4)?).to_bits(),
-            136 => (float(3)? / float(4)?).to_bits(),
-            134 => operand(3)?.checked_div(operand(4)?)?,
-            135 => int(3)?.checked_div(int(4)?)?.cast_unsigned(),
-            194 => operand(3)?.checked_shr(operand(4)?)?,
-            195 => int(3)?.checked_shr(operand(4)?)?.cast_unsigned(),
-            196 => operand(3)?.checked_shl(operand(4)?)?,
-            182 => u32::from(float(3)? != float(4)?),
-            184 => u32::from(float(3)? < float(4)?),
-            186 => u32::from(float(3)? > float(4)?),
-            188 => u32::from(float(3)? <= float(4)?),
-            190 => u32::from(float(3)? >= float(4)?),
-            // All operands of these are ids, and a copy or a conversion keeps the bits.
-            124 | 83 => operand(3)?,
-            operation => {
+        Some(match op {
+            Op::FAdd => (float(3)? + float(4)?).to_bits(),
+            Op::FSub => (float(3)? - float(4)?).to_bits(),
+            Op::FMul => (float(3)? * float(4)?).to_bits(),
+            Op::FDiv => (float(3)? / float(4)?).to_bits(),
+            Op::UDiv => operand(3)?.checked_div(operand(4)?)?,
+            Op::SDiv => int(3)?.checked_div(int(4)?)?.cast_unsigned(),
+            Op::ShiftRightLogical => operand(3)?.checked_shr(operand(4)?)?,
+            Op::ShiftRightArithmetic => int(3)?.checked_shr(operand(4)?)?.cast_unsigned(),
+            Op::ShiftLeftLogical => operand(3)?.checked_shl(operand(4)?)?,
+            Op::FOrdNotEqual => u32::from(float(3)? != float(4)?),
+            Op::FOrdLessThan => u32::from(float(3)? < float(4)?),
+            Op::FOrdGreaterThan => u32::from(float(3)? > float(4)?),
+            Op::FOrdLessThanEqual => u32::from(float(3)? <= float(4)?),
+            Op::FOrdGreaterThanEqual => u32::from(float(3)? >= float(4)?),
+            // A copy or a conversion keeps the bits.
+            Op::Bitcast | Op::CopyObject => operand(3)?,
+            op => {
                 let lookup = |id: Id| self.value(id, variable, is, of, depth - 1);
-                evaluate(operation, &i[3..], &lookup)?
+                evaluate(*op, &i[3..], &lookup)?
             }
         })
     }
@@ -278,26 +275,26 @@ impl<'a> Values<'a> {
     fn limited(&self, first: Option<u32>, variable: Id, condition: Id, step: Id, of: &Loop) -> Option<u64> {
         let is_variable = |id: &Id| {
             let made = self.made_by.get(id);
-            made.is_some_and(|(b, i)| opcode(i) == op::LOAD && i.get(3) == Some(&variable) && of.members.contains(b))
+            made.is_some_and(|(b, op, i)| *op == Op::Load && i[3] == variable && of.members.contains(b))
         };
-        let (_, i) = self.made_by.get(&condition)?;
+        let (_, op, i) = self.made_by.get(&condition)?;
         let (left, right) = (i.get(3)?, i.get(4)?);
         // Less and less or equal; greater with the operands exchanged.
-        let (limit, signed, equal) = match opcode(i) {
-            176 if is_variable(left) => (right, false, 0),
-            177 if is_variable(left) => (right, true, 0),
-            178 if is_variable(left) => (right, false, 1),
-            179 if is_variable(left) => (right, true, 1),
-            172 if is_variable(right) => (left, false, 0),
-            173 if is_variable(right) => (left, true, 0),
-            174 if is_variable(right) => (left, false, 1),
-            175 if is_variable(right) => (left, true, 1),
+        let (limit, signed, equal) = match op {
+            Op::ULessThan if is_variable(left) => (right, false, 0),
+            Op::SLessThan if is_variable(left) => (right, true, 0),
+            Op::ULessThanEqual if is_variable(left) => (right, false, 1),
+            Op::SLessThanEqual if is_variable(left) => (right, true, 1),
+            Op::UGreaterThan if is_variable(right) => (left, false, 0),
+            Op::SGreaterThan if is_variable(right) => (left, true, 0),
+            Op::UGreaterThanEqual if is_variable(right) => (left, false, 1),
+            Op::SGreaterThanEqual if is_variable(right) => (left, true, 1),
             _ => return None,
         };
-        let (_, add) = self.made_by.get(&step).filter(|(_, i)| opcode(i) == op::IADD)?;
-        let by = match (add.get(3)?, add.get(4)?) {
-            (load, by) if is_variable(load) => self.constants.get(by)?,
-            (by, load) if is_variable(load) => self.constants.get(by)?,
+        let (.., add) = self.made_by.get(&step).filter(|(_, op, _)| *op == Op::IAdd)?;
+        let by = match (&add[3], &add[4]) {
+            (load, by) if is_variable(load) => self.number(*by)?,
+            (by, load) if is_variable(load) => self.number(*by)?,
             _ => return None,
         };
         let limit = u64::from(self.most(*limit, signed, DEPTH).filter(|most| *most <= 1 << 30)?);
@@ -308,35 +305,37 @@ impl<'a> Values<'a> {
         };
         let span = (limit.cast_signed() + equal - first).max(0).cast_unsigned();
         // The header runs once more than the body.
-        (1..=1 << 20).contains(by).then(|| span.div_ceil(u64::from(*by)) + 1)
+        (1..=1 << 20).contains(&by).then(|| span.div_ceil(u64::from(by)) + 1)
     }
 
     /// The largest value of an integer, if it has a limit that is 0 or above.
     fn most(&self, id: Id, signed: bool, depth: u32) -> Option<u32> {
-        if let Some(known) = self.constants.get(&id) {
-            return Some(if signed { known.cast_signed().max(0).cast_unsigned() } else { *known });
+        if let Some(known) = self.number(id) {
+            return Some(if signed { known.cast_signed().max(0).cast_unsigned() } else { known });
         }
-        let (_, i) = self.made_by.get(&id).filter(|_| depth > 0)?;
+        let (_, op, i) = self.made_by.get(&id).filter(|_| depth > 0)?;
         let most = |at: usize| self.most(*i.get(at)?, signed, depth - 1);
         let smaller = |a: Option<u32>, b: Option<u32>| a.into_iter().chain(b).min();
-        match opcode(i) {
-            op::EXT_INST if i.get(3).copied() == self.extended => match (i.get(4)?, signed) {
-                // UMin, SMin; UClamp, SClamp.
-                (38, false) | (39, true) => smaller(most(5), most(6)),
-                (44, false) | (45, true) => most(7),
+        match op {
+            Op::ExtInst => match (i[4], signed) {
+                (extended::UMIN, false) | (extended::SMIN, true) => smaller(most(5), most(6)),
+                (extended::UCLAMP, false) | (extended::SCLAMP, true) => most(7),
                 _ => None,
             },
-            // UMod.
-            137 if !signed => most(4)?.checked_sub(1),
-            // BitwiseAnd.
-            199 if !signed => smaller(most(3), most(4)),
-            op::SELECT => Some(most(4)?.max(most(5)?)),
-            op::LOAD => {
+            Op::UMod if !signed => most(4)?.checked_sub(1),
+            Op::BitwiseAnd if !signed => smaller(most(3), most(4)),
+            Op::Select => Some(most(4)?.max(most(5)?)),
+            Op::Load => {
                 let stores = self.stores.get(i.get(3)?).filter(|stores| !stores.is_empty())?;
                 let all: Option<Vec<u32>> = stores.iter().map(|s| self.most(s.value, signed, depth / 2)).collect();
                 all?.into_iter().max()
             }
             _ => None,
         }
+    }
+
+    /// The bits of a constant number.
+    fn number(&self, id: Id) -> Option<u32> {
+        self.module.defined(Op::Constant, id).filter(|words| words.len() == 4).map(|words| words[3])
     }
 }

@@ -2,45 +2,38 @@
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::module::{Module, typed_result};
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::operands::is_id;
-use crate::shader::spirv::specialize::control_flow::Function;
-use crate::shader::spirv::specialize::{Id, opcode};
+use super::optimizer::Optimizer;
+use crate::shader::spirv::enums::extended::{FREXP, MODF};
+use crate::shader::spirv::module::{Function, Id, Instruction, Module};
+use crate::shader::spirv::op::{Class, Op};
 
 /// Whether an instruction does something besides giving a value.
-fn has_effect(i: &[u32]) -> bool {
-    match opcode(i) {
-        op::FUNCTION_CALL | 229..=242 => true,
-        // Modf and Frexp write through a pointer.
-        op::EXT_INST => matches!(i[4], 35 | 51),
-        _ => false,
+fn has_effect(module: &Module, i: Instruction) -> bool {
+    match i.op {
+        Op::FunctionCall => true,
+        // They write through a pointer.
+        Op::ExtInst => matches!(module[i][4], MODF | FREXP),
+        op => !op.has_type() || (op.class() == Class::Synchronization && op != Op::AtomicLoad),
     }
 }
 
-pub(super) fn drop_unused(module: &mut Module, function: &mut Function) {
+pub(super) fn drop_unused(optimizer: &mut Optimizer, function: &mut Function) {
     let mut defined: HashMap<Id, (usize, usize)> = HashMap::new();
     let mut open: Vec<(usize, usize)> = Vec::new();
-    for (block, within) in function.blocks.iter_mut().enumerate() {
-        for (place, i) in within.body.iter_mut().enumerate() {
-            module.resolve_operands(i);
-            match typed_result(i) {
-                Some((_, id)) => {
-                    defined.insert(id, (block, place));
-                    if has_effect(i) {
-                        open.push((block, place));
-                    }
-                }
-                None => open.push((block, place)),
+    for (block, within) in function.blocks.iter().enumerate() {
+        for (place, &i) in within.body.iter().enumerate() {
+            optimizer.resolve_operands(i);
+            if has_effect(&optimizer.module, i) {
+                open.push((block, place));
             }
+            defined.extend(optimizer.module.result(i).map(|id| (id, (block, place))));
         }
     }
     let mut is_used: Vec<Vec<bool>> = function.blocks.iter().map(|block| vec![false; block.body.len()]).collect();
     open.iter().for_each(|(block, place)| is_used[*block][*place] = true);
     while let Some((block, place)) = open.pop() {
-        let i = &function.blocks[block].body[place];
-        for at in (1..i.len()).filter(|at| is_id(i, *at) == Some(true)) {
-            if let Some(&(block, place)) = defined.get(&i[at])
+        for id in optimizer.module.ids_of(function.blocks[block].body[place]) {
+            if let Some(&(block, place)) = defined.get(&id)
                 && !std::mem::replace(&mut is_used[block][place], true)
             {
                 open.push((block, place));

@@ -2,8 +2,8 @@
 
 use foldhash::HashMap;
 
-use crate::shader::spirv::specialize::Id;
-use crate::shader::spirv::specialize::control_flow::Block;
+use crate::shader::spirv::fold::places;
+use crate::shader::spirv::module::{Block, Id, Module};
 
 const NONE: usize = usize::MAX;
 
@@ -20,9 +20,9 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    pub(super) fn new(blocks: &[Block]) -> Self {
-        let at: HashMap<Id, usize> = blocks.iter().enumerate().map(|(index, block)| (block.label, index)).collect();
-        let targets = |block: &Block| block.targets().iter().filter_map(|id| at.get(id).copied()).collect::<Vec<_>>();
+    pub(super) fn new(module: &Module, blocks: &[Block]) -> Self {
+        let at = places(blocks);
+        let targets = |block: &Block| block.targets(module).filter_map(|id| at.get(&id).copied()).collect::<Vec<_>>();
         let after: Vec<Vec<usize>> = blocks.iter().map(targets).collect();
         let order = reverse_postorder(&after);
         let mut before = vec![Vec::new(); blocks.len()];

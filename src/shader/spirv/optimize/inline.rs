@@ -1,15 +1,16 @@
 //! Puts the bodies of functions in place of their calls.
 
-use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
+use foldhash::{HashMap, HashMapExt, HashSet};
 use std::rc::Rc;
 
-use super::MOST_INSTRUCTIONS;
 use super::graph::Graph;
-use super::module::{Module, typed_result};
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::operands::is_id;
-use crate::shader::spirv::specialize::control_flow::{Block, Function};
-use crate::shader::spirv::specialize::{Id, Instruction, instruction, opcode};
+use super::optimizer::Optimizer;
+use crate::shader::spirv::enums::storage;
+use crate::shader::spirv::module::{Block, Function, Id, Instruction, Module};
+use crate::shader::spirv::op::Op;
+
+/// The instructions that inlining may make of a module: more would take longer than they save.
+const MOST_INSTRUCTIONS: usize = 150_000;
 
 /// How a function returns, which decides how it can be inlined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,49 +31,37 @@ struct Callee {
 
 /// Inlines all calls that can be inlined, callees first, and drops functions that nothing calls anymore. `None` if functions
 /// call themselves, or the module would grow too much.
-pub(super) fn inline_calls(module: &mut Module) -> Option<()> {
-    let mut waiting: HashMap<Id, Function> =
-        module.functions.drain(..).map(|function| (function.id, function)).collect();
-    let calls = |function: &Function| function.calls().collect::<Vec<_>>();
-    // Callees before callers.
-    let (mut order, mut open, mut seen) = (Vec::new(), vec![(module.entry, false)], HashSet::new());
-    while let Some((id, is_done)) = open.pop() {
-        if is_done {
-            order.push(id);
-        } else if seen.insert(id) {
-            open.push((id, true));
-            open.extend(calls(waiting.get(&id)?).into_iter().map(|callee| (callee, false)));
-        }
-    }
-    let mut inliner = Inliner { module, callees: HashMap::new(), ids: Vec::new(), made: 0 };
-    for id in order {
-        let function = inliner.inline_into(waiting.remove(&id)?)?;
-        let returns = returns(&function);
-        inliner.callees.insert(id, Rc::new(Callee { function, returns }));
+pub(super) fn inline_calls(optimizer: &mut Optimizer) -> Option<()> {
+    let entry = optimizer.module.entry_function()?;
+    let order = optimizer.module.callees_first(entry)?;
+    let mut waiting: Vec<Option<Function>> = optimizer.module.functions.drain(..).map(Some).collect();
+    let mut inliner = Inliner { optimizer, callees: HashMap::new(), ids: Vec::new(), made: 0 };
+    for place in order {
+        let function = inliner.inline_into(waiting[place].take()?)?;
+        let returns = returns(&inliner.optimizer.module, &function);
+        inliner.callees.insert(function.id, Rc::new(Callee { function, returns }));
     }
     let mut callees = inliner.callees;
-    let (mut kept, mut open) = (HashSet::from_iter([module.entry]), vec![module.entry]);
+    let (mut kept, mut open) = (HashSet::from_iter([entry]), vec![entry]);
     while let Some(id) = open.pop() {
         let function = Rc::into_inner(callees.remove(&id)?)?.function;
-        open.extend(function.calls().filter(|id| kept.insert(*id)));
-        module.functions.push(function);
+        open.extend(function.calls(&optimizer.module).filter(|id| kept.insert(*id)));
+        optimizer.module.functions.push(function);
     }
     Some(())
 }
 
-fn returns(function: &Function) -> Returns {
-    let graph = Graph::new(&function.blocks);
-    let is_return =
-        |block: &Block| block.body.last().is_some_and(|i| matches!(opcode(i), op::RETURN | op::RETURN_VALUE));
+fn returns(module: &Module, function: &Function) -> Returns {
+    let graph = Graph::new(module, &function.blocks);
+    let is_return = |block: &Block| block.ends_with(Op::Return) || block.ends_with(Op::ReturnValue);
     let ends: Vec<usize> = graph.order.iter().copied().filter(|block| is_return(&function.blocks[*block])).collect();
     let mut is_early = ends.len() > 1;
     for (header, block) in function.blocks.iter().enumerate() {
-        let (Some(merge), next) = block.structure() else { continue };
+        let (Some(merge), next) = block.structure(module) else { continue };
         if !ends.iter().any(|end| graph.is_within(header, merge, *end)) {
             continue;
         }
-        let is_switch = block.body.last().is_some_and(|i| opcode(i) == op::SWITCH);
-        if next.is_some() || is_switch {
+        if next.is_some() || block.ends_with(Op::Switch) {
             return Returns::Never;
         }
         is_early = true;
@@ -85,7 +74,7 @@ fn returns(function: &Function) -> Returns {
 }
 
 struct Inliner<'a> {
-    module: &'a mut Module,
+    optimizer: &'a mut Optimizer,
     /// Functions in which calls have been inlined.
     callees: HashMap<Id, Rc<Callee>>,
     /// The ids of the current callee in its caller; 0 for those of the module. Those of other callees may be left.
@@ -113,38 +102,39 @@ impl Caller {
 
 impl Inliner<'_> {
     fn inline_into(&mut self, function: Function) -> Option<Function> {
-        if function.calls().next().is_none() {
+        let module = &self.optimizer.module;
+        if function.calls(module).next().is_none() {
             return Some(function);
         }
-        let graph = Graph::new(&function.blocks);
-        let continues: Vec<(usize, Id)> = {
-            let loops = function.blocks.iter().filter_map(|block| match block.structure() {
-                (Some(merge), Some(next)) => Some((*graph.at.get(&next)?, merge)),
-                _ => None,
-            });
-            loops.collect()
+        let graph = Graph::new(module, &function.blocks);
+        let loops = function.blocks.iter().filter_map(|block| match block.structure(module) {
+            (Some(merge), Some(next)) => Some((*graph.at.get(&next)?, merge)),
+            _ => None,
+        });
+        let continues: Vec<(usize, Id)> = loops.collect();
+        // A loop's header must hold its merge instruction, and a continue construct must stay a simple chain.
+        let is_whole = |place: usize, block: &Block| {
+            block.structure(module).1.is_some()
+                || continues.iter().any(|(next, merge)| *next == place || graph.is_within(*next, *merge, place))
         };
+        let is_whole: Vec<bool> = function.blocks.iter().enumerate().map(|(at, block)| is_whole(at, block)).collect();
+        let own_phis: HashSet<Id> = function.body().filter(|i| i.op == Op::Phi).map(|i| module[i][2]).collect();
         let Function { id, head, blocks } = function;
         let first = blocks.first()?.label;
         let current = Block { label: first, body: Vec::new() };
         let mut caller = Caller { blocks: Vec::new(), current, variables: Vec::new() };
         // Labels of blocks that were split, and of their last parts, which the caller's own phis follow.
         let mut split: HashMap<Id, Id> = HashMap::new();
-        let own = |block: &Block| block.body.iter().filter(|i| opcode(i) == op::PHI).map(|i| i[2]).collect::<Vec<_>>();
-        let own_phis: HashSet<Id> = blocks.iter().flat_map(own).collect();
-        for (place, block) in blocks.into_iter().enumerate() {
+        for ((place, block), is_whole) in blocks.into_iter().enumerate().zip(is_whole) {
             if place > 0 {
                 caller.next(block.label);
             }
-            // A loop's header must hold its merge instruction, and a continue construct must stay a simple chain.
-            let is_whole = block.structure().1.is_some()
-                || continues.iter().any(|(next, merge)| *next == place || graph.is_within(*next, *merge, place));
             for i in block.body {
-                match self.callees.get(i.get(3).unwrap_or(&0)) {
-                    Some(callee) if opcode(&i) == op::FUNCTION_CALL && callee.can_be_in(is_whole) => {
-                        self.inline(&i, &mut caller)?;
-                    }
-                    _ => caller.current.body.push(i),
+                let called =
+                    (i.op == Op::FunctionCall).then(|| self.callees.get(&self.optimizer.module[i][3])).flatten();
+                match called.filter(|callee| callee.can_be_in(is_whole)).cloned() {
+                    Some(callee) => self.inline(&callee, i, &mut caller)?,
+                    None => caller.current.body.push(i),
                 }
             }
             if caller.current.label != block.label {
@@ -153,10 +143,11 @@ impl Inliner<'_> {
         }
         let Caller { mut blocks, current, variables } = caller;
         blocks.push(current);
-        for i in blocks.iter_mut().flat_map(|block| &mut block.body) {
-            self.module.resolve_operands(i);
-            if opcode(i) == op::PHI && own_phis.contains(&i[2]) {
-                for from in i[3..].iter_mut().skip(1).step_by(2) {
+        for &i in blocks.iter().flat_map(|block| &block.body) {
+            self.optimizer.resolve_operands(i);
+            let words = &mut self.optimizer.module[i];
+            if i.op == Op::Phi && own_phis.contains(&words[2]) {
+                for from in words[3..].iter_mut().skip(1).step_by(2) {
                     *from = split.get(from).copied().unwrap_or(*from);
                 }
             }
@@ -166,52 +157,59 @@ impl Inliner<'_> {
     }
 
     /// Puts the function that `call` calls at the end of the current block.
-    fn inline(&mut self, call: &[u32], caller: &mut Caller) -> Option<()> {
-        let callee = self.callees.get(&call[3])?.clone();
-        let Callee { function, returns } = &*callee;
-        let results = function.blocks.iter().flat_map(|block| &block.body);
-        self.made += results.clone().count();
+    fn inline(&mut self, Callee { function, returns }: &Callee, call: Instruction, caller: &mut Caller) -> Option<()> {
+        self.made += function.body().count();
         if self.made > MOST_INSTRUCTIONS {
             return None;
         }
-        self.ids.resize(self.module.next_id() as usize, 0);
-        for (parameter, argument) in function.head.iter().skip(1).zip(&call[4..]) {
-            self.ids[parameter[2] as usize] = *argument;
+        self.ids.resize(self.optimizer.module.bound() as usize, 0);
+        let module = &self.optimizer.module;
+        for (parameter, argument) in function.head.iter().skip(1).zip(&module[call][4..]) {
+            self.ids[module[*parameter][2] as usize] = *argument;
         }
         for block in &function.blocks {
-            self.ids[block.label as usize] = self.module.fresh(0);
-            for (_, id) in block.body.iter().filter_map(|i| typed_result(i)) {
-                self.ids[id as usize] = self.module.copy_of(id);
+            self.ids[block.label as usize] = self.optimizer.module.fresh(0);
+            for i in &block.body {
+                if let Some(id) = self.optimizer.module.result(*i) {
+                    self.ids[id as usize] = self.optimizer.copy_of(id);
+                }
             }
         }
         let is_simple = function.blocks.len() == 1;
-        let end = self.module.fresh(0);
+        let end = self.optimizer.module.fresh(0);
+        let entry = function.blocks.first()?.label as usize;
         if *returns == Returns::Early {
-            let selector = self.module.any_integer()?;
-            let first = self.ids[function.blocks.first()?.label as usize];
-            caller.current.body.push(instruction(op::SELECTION_MERGE, &[end, 0]));
-            caller.current.body.push(instruction(op::SWITCH, &[selector, first]));
+            let selector = self.optimizer.any_integer()?;
+            let (module, first) = (&mut self.optimizer.module, self.ids[entry]);
+            caller.current.body.push(module.make(Op::SelectionMerge, &[end, 0]));
+            caller.current.body.push(module.make(Op::Switch, &[selector, first]));
             caller.next(first);
         } else {
-            self.ids[function.blocks.first()?.label as usize] = caller.current.label;
+            self.ids[entry] = caller.current.label;
         }
         let mut values = Vec::new();
         for (place, block) in function.blocks.iter().enumerate() {
             if place > 0 {
                 caller.next(self.ids[block.label as usize]);
             }
-            for i in &block.body {
-                let i = self.moved(i);
-                match opcode(&i) {
-                    op::VARIABLE => {
+            for &i in &block.body {
+                let module = &mut self.optimizer.module;
+                // The instruction with the ids of the caller. Ids of the module stay.
+                let i = module.copy(i, |id| match self.ids[id as usize] {
+                    0 => id,
+                    new => new,
+                });
+                match (i.op, &module[i]) {
+                    (Op::Variable, &[_, kind, id, _, ref initial @ ..]) => {
                         // Its initial value is stored whenever the function is called.
-                        caller.variables.push(instruction(op::VARIABLE, &i[1..4]));
-                        caller.current.body.extend(i.get(4).map(|value| instruction(op::STORE, &[i[2], *value])));
+                        let initial = initial.first().copied();
+                        caller.variables.push(module.make(Op::Variable, &[kind, id, storage::FUNCTION]));
+                        caller.current.body.extend(initial.map(|value| module.make(Op::Store, &[id, value])));
                     }
-                    op::RETURN | op::RETURN_VALUE => {
-                        values.extend(i.get(1).map(|value| [*value, caller.current.label]));
+                    (Op::Return | Op::ReturnValue, words) => {
+                        values.extend(words.get(1).map(|value| [*value, caller.current.label]));
                         if !is_simple {
-                            caller.current.body.push(instruction(op::BRANCH, &[end]));
+                            caller.current.body.push(module.make(Op::Branch, &[end]));
                         }
                     }
                     _ => caller.current.body.push(i),
@@ -221,24 +219,16 @@ impl Inliner<'_> {
         if !is_simple {
             caller.next(end);
         }
+        let result = self.optimizer.module[call][2];
         match *values {
             [] => {}
-            [[value, _]] => self.module.replace(call[2], value),
-            _ => caller.current.body.push(instruction(op::PHI, &[&call[1..3], values.as_flattened()].concat())),
-        }
-        Some(())
-    }
-
-    /// An instruction of the current callee with the ids of the caller.
-    fn moved(&mut self, i: &[u32]) -> Instruction {
-        let mut moved = i.to_vec();
-        for at in 1..i.len() {
-            if is_id(i, at) == Some(true) {
-                let id = self.ids[i[at] as usize];
-                moved[at] = if id == 0 { i[at] } else { id };
+            [[value, _]] => self.optimizer.replace(result, value),
+            _ => {
+                let operands = [&self.optimizer.module[call][1..3], values.as_flattened()].concat();
+                caller.current.body.push(self.optimizer.module.make(Op::Phi, &operands));
             }
         }
-        moved
+        Some(())
     }
 }
 

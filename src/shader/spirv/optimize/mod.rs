@@ -11,14 +11,14 @@
 //! becomes a switch with one case, which each return leaves by a break; one that returns from a loop stays a function.
 //! A variable stays in memory if an unknown index reaches into it.
 //!
-//! The optimizer knows the instructions that glslang emits for Vulkan (`operands.rs`). A module with any other
+//! The optimizer knows the instructions that glslang emits for Vulkan (`op.rs`). A module with any other
 //! instruction goes to the driver unchanged (those of task and mesh stages do), as does one with separate samplers or a
 //! `debugPrintfEXT`.
 
 mod dead;
 mod graph;
 mod inline;
-mod module;
+mod optimizer;
 mod promote;
 mod simplify;
 mod tidy;
@@ -26,47 +26,47 @@ mod variables;
 mod write;
 
 use foldhash::{HashSet, HashSetExt};
-use module::Module;
 
-use super::specialize::control_flow::Function;
-
-/// The instructions that inlining may make of a module: more would take longer than they save.
-const MOST_INSTRUCTIONS: usize = 150_000;
+use super::fold::drop_unreached;
+use super::module::{Function, Module};
+use optimizer::Optimizer;
 
 /// Optimizes a module with one entry point. Returns words with instructions that are unknown here as they are.
 pub fn optimize(words: Vec<u32>) -> Vec<u32> {
-    optimized(&words).unwrap_or(words)
+    Module::parse(&words).and_then(optimized).map_or(words, |module| module.write())
 }
 
 /// `None` if the module has unknown instructions, or grows too much.
-fn optimized(words: &[u32]) -> Option<Vec<u32>> {
-    let mut module = Module::parse(words)?;
-    for function in &mut module.functions {
+pub(super) fn optimized(module: Module) -> Option<Module> {
+    let mut optimizer = Optimizer::new(module)?;
+    let mut functions = std::mem::take(&mut optimizer.module.functions);
+    for function in &mut functions {
         // Unreachable blocks still lead to others, whose phis would lack them.
-        function.drop_unreached(&mut HashSet::new());
+        drop_unreached(&mut optimizer.module, function, &mut HashSet::new());
         // A switch that a constant decided would keep a function from being inlined.
-        tidy::tidy(function);
+        tidy::tidy(&mut optimizer.module, function);
     }
-    inline::inline_calls(&mut module)?;
-    let mut functions = std::mem::take(&mut module.functions);
+    optimizer.module.functions = functions;
+    inline::inline_calls(&mut optimizer)?;
+    let mut functions = std::mem::take(&mut optimizer.module.functions);
     let is_whole = functions.len() == 1;
     for function in &mut functions {
-        reduce(&mut module, function, is_whole);
+        reduce(&mut optimizer, function, is_whole);
     }
-    module.functions = functions;
-    Some(module.write())
+    optimizer.module.functions = functions;
+    Some(optimizer.finish())
 }
 
 /// Reduces a function to what it computes, with `with_private` also the private variables of the module.
-fn reduce(module: &mut Module, function: &mut Function, with_private: bool) {
-    tidy::tidy(function);
-    promote::promote(module, function, with_private);
-    simplify::simplify(module, function);
+fn reduce(optimizer: &mut Optimizer, function: &mut Function, with_private: bool) {
+    tidy::tidy(&mut optimizer.module, function);
+    promote::promote(optimizer, function, with_private);
+    simplify::simplify(optimizer, function);
     // Values of parameters decide branches.
-    tidy::fold(module, function);
-    tidy::drop_single_phis(module, function);
-    dead::drop_unused(module, function);
-    tidy::tidy(function);
+    tidy::fold(optimizer, function);
+    tidy::drop_single_phis(optimizer, function);
+    dead::drop_unused(optimizer, function);
+    tidy::tidy(&mut optimizer.module, function);
 }
 
 #[cfg(test)]

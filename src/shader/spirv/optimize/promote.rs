@@ -2,11 +2,10 @@
 //! Form". A struct or an array becomes its leaves: scalars, vectors and matrices that are values of their own.
 
 use super::graph::Graph;
-use super::module::Module;
-use super::variables::{Variables, parts};
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::specialize::control_flow::Function;
-use crate::shader::spirv::specialize::{Id, Instruction, instruction, opcode};
+use super::optimizer::Optimizer;
+use super::variables::Variables;
+use crate::shader::spirv::module::{Function, Id, Instruction};
+use crate::shader::spirv::op::Op;
 
 /// Leaves times blocks, for the table of values: 64 MiB.
 const MOST_VALUES: usize = 1 << 24;
@@ -15,19 +14,19 @@ const MOST_BLOCKS: usize = 2000;
 
 /// Makes values of the variables of a function whose pointers only serve loads and stores, with `with_private` also of the private
 /// variables of the module.
-pub(super) fn promote(module: &mut Module, function: &mut Function, with_private: bool) {
-    let variables = Variables::find(module, function, with_private);
+pub(super) fn promote(optimizer: &mut Optimizer, function: &mut Function, with_private: bool) {
+    let variables = Variables::find(optimizer, function, with_private);
     let blocks = function.blocks.len();
     if variables.leaves.is_empty() || blocks > MOST_BLOCKS || variables.leaves.len() * blocks > MOST_VALUES {
         return;
     }
-    let graph = Graph::new(&function.blocks);
+    let graph = Graph::new(&optimizer.module, &function.blocks);
     let mut promotion = Promotion {
         values: vec![0; variables.leaves.len() * function.blocks.len()],
         is_done: vec![false; function.blocks.len()],
         phis: vec![Vec::new(); function.blocks.len()],
         open: Vec::new(),
-        module,
+        optimizer,
         graph: &graph,
         variables: &variables,
     };
@@ -51,7 +50,7 @@ pub(super) fn promote(module: &mut Module, function: &mut Function, with_private
 type Operands = Vec<(Id, usize)>;
 
 struct Promotion<'a> {
-    module: &'a mut Module,
+    optimizer: &'a mut Optimizer,
     graph: &'a Graph,
     variables: &'a Variables,
     /// The value of each leaf at the end of what is done of each block; 0 if it is not known yet.
@@ -72,25 +71,25 @@ impl Promotion<'_> {
     fn read(&mut self, block: usize, leaf: usize) -> Id {
         let known = *self.value(block, leaf);
         if known != 0 {
-            return self.module.resolve(known);
+            return self.optimizer.resolve(known);
         }
         let graph = self.graph;
         let kind = self.variables.leaves[leaf].kind;
         let value = match *graph.before[block] {
             [] => {
                 let initial = self.variables.leaves[leaf].initial;
-                initial.unwrap_or_else(|| self.module.undefined(kind))
+                initial.unwrap_or_else(|| self.optimizer.undefined(kind))
             }
             [from] => self.read(from, leaf),
             ref all => {
-                let phi = self.module.fresh(kind);
+                let phi = self.optimizer.module.fresh(kind);
                 *self.value(block, leaf) = phi;
                 if all.iter().all(|from| self.is_done[*from]) {
                     self.fill(block, leaf, phi);
                 } else {
                     self.open.push((block, leaf, phi));
                 }
-                self.module.resolve(phi)
+                self.optimizer.resolve(phi)
             }
         };
         *self.value(block, leaf) = value;
@@ -104,49 +103,47 @@ impl Promotion<'_> {
         let mut others = operands.iter().map(|(value, _)| *value).filter(|value| *value != phi);
         let first = others.next();
         match first {
-            Some(value) if others.all(|other| other == value) => self.module.replace(phi, value),
+            Some(value) if others.all(|other| other == value) => self.optimizer.replace(phi, value),
             _ => self.phis[block].push((phi, operands)),
         }
     }
 
-    fn instruction(&mut self, block: usize, mut i: Instruction, out: &mut Vec<Instruction>) {
-        let pointer = match opcode(&i) {
-            op::LOAD => i[3],
-            op::STORE => i[1],
-            op::VARIABLE | op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN => i[2],
-            _ => 0,
+    fn instruction(&mut self, block: usize, i: Instruction, out: &mut Vec<Instruction>) {
+        let words = &self.optimizer.module[i];
+        let (pointer, last) = match i.op {
+            Op::Load => (words[3], words[2]),
+            Op::Store => (words[1], words[2]),
+            Op::Variable | Op::AccessChain | Op::InBoundsAccessChain => (words[2], 0),
+            _ => (0, 0),
         };
         let variables = self.variables;
         let Some(place) = variables.pointers.get(&pointer) else {
-            self.module.resolve_operands(&mut i);
-            self.module.learn(&i);
+            self.optimizer.resolve_operands(i);
             out.push(i);
             return;
         };
-        let (leaf, kind, rest) = variables.locate(self.module, place);
-        match opcode(&i) {
-            op::LOAD => {
+        let (leaf, kind, rest) = variables.locate(self.optimizer, place);
+        match i.op {
+            Op::Load => {
                 let value = match rest {
                     [] => self.load(block, leaf, kind, out),
                     rest => {
                         let whole = self.read(block, leaf);
-                        self.module.extract(whole, rest, out)
+                        self.optimizer.extract(whole, rest, out)
                     }
                 };
-                self.module.replace(i[2], value);
+                self.optimizer.replace(last, value);
             }
-            op::STORE => {
-                let value = self.module.resolve(i[2]);
+            Op::Store => {
+                let value = self.optimizer.resolve(last);
                 match rest {
                     [] => self.store(block, leaf, kind, value, out),
                     rest => {
                         let whole = self.read(block, leaf);
+                        let operands = [&[value, whole], rest].concat();
                         let kind = variables.leaves[leaf].kind;
-                        let id = self.module.fresh(kind);
-                        let inserted = instruction(op::COMPOSITE_INSERT, &[&[kind, id, value, whole], rest].concat());
-                        self.module.learn(&inserted);
-                        out.push(inserted);
-                        *self.value(block, leaf) = id;
+                        *self.value(block, leaf) =
+                            self.optimizer.module.emit(out, Op::CompositeInsert, kind, &operands);
                     }
                 }
             }
@@ -157,29 +154,25 @@ impl Promotion<'_> {
 
     /// The value of all leaves of a type, from the given one on.
     fn load(&mut self, block: usize, leaf: usize, kind: Id, out: &mut Vec<Instruction>) -> Id {
-        let Some(parts) = parts(self.module, kind) else { return self.read(block, leaf) };
+        let Some(parts) = self.optimizer.parts(kind) else { return self.read(block, leaf) };
         let (mut members, mut leaf) = (Vec::new(), leaf);
         for part in parts {
             members.push(self.load(block, leaf, part, out));
-            leaf += self.variables.counts.get(&part).copied().unwrap_or(1);
+            leaf += self.variables.count_of(part);
         }
-        let id = self.module.fresh(kind);
-        let made = instruction(op::COMPOSITE_CONSTRUCT, &[&[kind, id], &*members].concat());
-        self.module.learn(&made);
-        out.push(made);
-        id
+        self.optimizer.module.emit(out, Op::CompositeConstruct, kind, &members)
     }
 
     fn store(&mut self, block: usize, leaf: usize, kind: Id, value: Id, out: &mut Vec<Instruction>) {
-        let Some(parts) = parts(self.module, kind) else {
+        let Some(parts) = self.optimizer.parts(kind) else {
             *self.value(block, leaf) = value;
             return;
         };
         let mut leaf = leaf;
-        for (index, part) in parts.into_iter().enumerate() {
-            let member = self.module.extract(value, &[index as u32], out);
+        for (index, part) in (0..).zip(parts) {
+            let member = self.optimizer.extract(value, &[index], out);
             self.store(block, leaf, part, member, out);
-            leaf += self.variables.counts.get(&part).copied().unwrap_or(1);
+            leaf += self.variables.count_of(part);
         }
     }
 
@@ -193,15 +186,15 @@ impl Promotion<'_> {
         while is_changed {
             is_changed = false;
             for phis in &mut self.phis {
-                let module = &mut *self.module;
+                let optimizer = &mut *self.optimizer;
                 phis.retain_mut(|(phi, operands)| {
                     let mut others =
-                        operands.iter().map(|(value, _)| module.resolve(*value)).filter(|value| value != phi);
+                        operands.iter().map(|(value, _)| optimizer.resolve(*value)).filter(|value| value != phi);
                     let first = others.next();
                     match first {
                         Some(value) if others.all(|other| other == value) => {
                             drop(others);
-                            module.replace(*phi, value);
+                            optimizer.replace(*phi, value);
                             is_changed = true;
                             false
                         }
@@ -210,11 +203,12 @@ impl Promotion<'_> {
                 });
             }
         }
-        let module = self.module;
+        let optimizer = self.optimizer;
         let mut write = |(phi, operands): (Id, Operands)| {
-            let pairs = operands.into_iter().flat_map(|(value, from)| [module.resolve(value), labels[from]]);
+            let pairs = operands.into_iter().flat_map(|(value, from)| [optimizer.resolve(value), labels[from]]);
             let pairs: Vec<u32> = pairs.collect();
-            instruction(op::PHI, &[&[module.type_of(phi), phi], &*pairs].concat())
+            let head = [optimizer.module.type_of(phi), phi];
+            optimizer.module.make(Op::Phi, &[&head, &*pairs].concat())
         };
         self.phis.into_iter().map(|phis| phis.into_iter().map(&mut write).collect()).collect()
     }

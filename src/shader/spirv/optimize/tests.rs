@@ -2,8 +2,9 @@ use super::*;
 use crate::shader::compile::Compiler;
 use crate::shader::source::Source;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::spirv::opcode as op;
-use crate::shader::spirv::specialize::{instructions, opcode};
+use crate::shader::spirv::enums::storage;
+use crate::shader::spirv::module::{Function, Instruction};
+use crate::shader::spirv::op::Op;
 
 /// A fragment stage with these functions, optimized.
 #[track_caller]
@@ -14,18 +15,22 @@ fn optimized_stage(functions: &str) -> Vec<u32> {
     );
     let source = Source::memory([("m.frag", text.as_str())]);
     let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap();
-    optimized(&words).expect("all instructions are known")
+    optimized(Module::parse(&words).unwrap()).expect("all instructions are known").write()
 }
 
-fn count(words: &[u32], code: u32) -> usize {
-    instructions(words).expect("whole instructions").into_iter().filter(|i| opcode(i) == code).count()
+/// The instructions of all functions with an operation.
+fn all(module: &Module, op: Op) -> Vec<Instruction> {
+    module.functions.iter().flat_map(Function::instructions).filter(|i| i.op == op).collect()
+}
+
+fn count(words: &[u32], op: Op) -> usize {
+    all(&Module::parse(words).expect("a module"), op).len()
 }
 
 /// Variables of functions.
 fn locals(words: &[u32]) -> usize {
-    const FUNCTION: u32 = 7;
-    let all = instructions(words).expect("whole instructions");
-    all.into_iter().filter(|i| opcode(i) == op::VARIABLE && i[3] == FUNCTION).count()
+    let module = Module::parse(words).expect("a module");
+    all(&module, Op::Variable).into_iter().filter(|i| module[*i][3] == storage::FUNCTION).count()
 }
 
 #[test]
@@ -45,7 +50,7 @@ fn calls_and_variables_become_values() {
         "float state = 1.0; void f() { state += x.x; } void main() { f(); f(); color = vec4(state); }",
     ] {
         let words = optimized_stage(body);
-        assert_eq!((count(&words, op::FUNCTION_CALL), locals(&words)), (0, 0), "{body}");
+        assert_eq!((count(&words, Op::FunctionCall), locals(&words)), (0, 0), "{body}");
     }
 }
 
@@ -58,7 +63,7 @@ fn what_stays_is_called_and_stored() {
         "float f(float a) { for (int i = 0; i < n.x; ++i) { if (a > 2.0) return a; a += x.x; } return 0.0; }
          void main() { color = vec4(f(x.x)); }",
     );
-    assert_eq!(count(&words, op::FUNCTION_CALL), 1);
+    assert_eq!(count(&words, Op::FunctionCall), 1);
 }
 
 #[test]
@@ -68,14 +73,14 @@ fn what_is_computed_twice_or_not_used_goes() {
         "float f(float a) { return sin(a); }
          void main() { float unused = cos(x.y); Part p; p.a = vec3(x.x, x.yz); p.b[0] = f(p.a.x); color = vec4(f(x.x), p.b[0], 0.0, 1.0); }",
     );
-    let all = instructions(&words).expect("whole instructions");
-    let functions: Vec<u32> = all.iter().filter(|i| opcode(i) == op::EXT_INST).map(|i| i[4]).collect();
+    let module = Module::parse(&words).expect("a module");
+    let functions: Vec<u32> = all(&module, Op::ExtInst).into_iter().map(|i| module[i][4]).collect();
     assert_eq!(functions, [SIN]);
     // A parameter decides a branch.
     let words = optimized_stage(
         "float f(bool is_sine) { if (is_sine) return sin(x.x); return cos(x.x); } void main() { color = vec4(f(true)); }",
     );
-    assert_eq!((count(&words, op::EXT_INST), count(&words, op::BRANCH_CONDITIONAL)), (1, 0));
+    assert_eq!((count(&words, Op::ExtInst), count(&words, Op::BranchConditional)), (1, 0));
 }
 
 /// An index that a constant sets beyond the end means nothing, but must not end the program.
@@ -88,11 +93,9 @@ fn an_index_beyond_the_end_stays_in_memory() {
         "void main() { vec2 v = x.zy; color = vec4(v[K]); }",
     ] {
         let words = optimized_stage(&format!("layout(constant_id = 0) const int K = 7;\n{body}"));
-        let all = instructions(&words).expect("whole instructions");
-        assert!(
-            all.iter().all(|i| opcode(i) != op::COMPOSITE_EXTRACT || i[4..].iter().all(|index| *index < 4)),
-            "{body}"
-        );
+        let module = Module::parse(&words).expect("a module");
+        let mut extracts = all(&module, Op::CompositeExtract).into_iter();
+        assert!(extracts.all(|i| module[i][4..].iter().all(|index| *index < 4)), "{body}");
     }
 }
 
@@ -115,7 +118,7 @@ fn modules_with_what_is_not_known_come_back() {
         "layout(set = 0, binding = 0) volatile buffer Flags { uint flag; }; layout(location = 0) out vec4 color;
         void main() { uint before = flag; uint after = flag; color = vec4(before, after, 0.0, 1.0); }";
     let words = optimize(stage(&format!("#version 460\n{volatile}")));
-    assert_eq!(count(&words, op::LOAD), 2);
+    assert_eq!(count(&words, Op::Load), 2);
 }
 
 #[test]
@@ -143,7 +146,7 @@ fn what_nothing_has_changed_is_equal_to_what_it_was() {
     };
     let of = |hook: &str| {
         let words = optimized_stage(&functions(hook));
-        (count(&words, op::EXT_INST), count(&words, op::BRANCH_CONDITIONAL))
+        (count(&words, Op::ExtInst), count(&words, Op::BranchConditional))
     };
     assert_eq!(of(""), (0, 0));
     assert_eq!(of("w.part.b[1] = 2.0;"), (0, 0));

@@ -14,16 +14,13 @@
 
 use foldhash::{HashMap, HashMapExt, HashSet};
 
-use super::super::operands::is_id;
-use super::control_flow::{Block, Function};
-use super::{HEADER, Id, Instruction, Known, SPEC_ID, first_function, fold, instruction, instructions, op, opcode};
+use super::single::{constants, set_constants, take_branches};
+use crate::shader::spirv::enums::decoration::{LOCATION, SPEC_ID};
+use crate::shader::spirv::enums::{model, storage};
+use crate::shader::spirv::fold::{drop_results, drop_unreached};
+use crate::shader::spirv::module::{Block, Function, Id, Instruction, Module};
+use crate::shader::spirv::op::Op;
 
-const SPEC_CONSTANT_COMPOSITE: u32 = 51;
-const FRAGMENT: u32 = 4;
-const LOCATION: u32 = 30;
-const STORAGE_OUTPUT: u32 = 3;
-const STORAGE_PRIVATE: u32 = 6;
-const STORAGE_FUNCTION: u32 = 7;
 /// The first version of SPIR-V whose entry points name private variables.
 const NAMES_PRIVATE: u32 = 0x0001_0400;
 
@@ -31,26 +28,29 @@ const NAMES_PRIVATE: u32 = 0x0001_0400;
 /// constant `open`, at locations 0 and up. `None` if the stage does not depend on the constant in a form that this rewrite knows, or
 /// if it has more than one output.
 pub fn specialize_several(words: &[u32], values: &[(u32, u32)], open: u32, several: &[u32]) -> Option<Vec<u32>> {
-    let all = instructions(words)?;
-    let (globals, code) = all.split_at(first_function(&all));
-    let mut module = Module::new(words, globals, values, open, several)?;
-    let mut functions: Vec<Function> =
-        code.split_inclusive(|i| opcode(i) == op::FUNCTION_END).map(Function::parse).collect::<Option<_>>()?;
+    let module = Module::parse(words)?;
+    // An instruction that is not known may use the constant.
+    let is_known = module.code().all(|i| i.op.is_known());
+    if module.model() != Some(model::FRAGMENT) || !is_known {
+        return None;
+    }
+    let mut opened = Opened::new(module, values, open, several)?;
+    let mut functions = std::mem::take(&mut opened.module.functions);
     let mut removed = HashSet::default();
-    functions.iter_mut().for_each(|function| module.drop_cases(function, several, &mut removed));
-    fold(&mut functions, &mut module.known, &mut module.globals, removed)?;
-    functions.iter_mut().try_for_each(|function| module.load_in(function))?;
-    let main = module.main(&functions, several)?;
-    let mut out = words[..HEADER].to_vec();
-    out[3] = module.bound;
-    out.extend(module.globals.iter().flatten());
-    functions.iter().for_each(|f| f.write(&mut out));
-    out.extend(main.iter().flatten());
-    Some(out)
+    functions.iter_mut().for_each(|function| opened.drop_cases(function, several, &mut removed));
+    opened.module.functions = functions;
+    take_branches(&mut opened.module, removed)?;
+    let mut functions = std::mem::take(&mut opened.module.functions);
+    functions.iter_mut().for_each(|function| opened.load_in(function));
+    opened.module.functions = functions;
+    let main = opened.main(several)?;
+    opened.module.functions.push(main);
+    Some(opened.module.write())
 }
 
 /// A constant that depends on the open one.
 struct Dependent {
+    id: Id,
     kind: Id,
     /// The private variable that holds its value.
     variable: Id,
@@ -59,311 +59,222 @@ struct Dependent {
 }
 
 /// A module whose open constant is becoming a variable.
-struct Module {
-    globals: Vec<Instruction>,
-    known: Known,
-    bound: u32,
+struct Opened {
+    module: Module,
     /// The open constant.
     open: Id,
-    /// The open constant and its dependents, by their ids as constants.
-    dependents: HashMap<Id, Dependent>,
-    /// The same ids, in the order of their declarations.
-    order: Vec<Id>,
+    /// The open constant and its dependents, in the order of their declarations.
+    dependents: Vec<Dependent>,
 }
 
-impl Module {
-    fn new(words: &[u32], all: &[&[u32]], values: &[(u32, u32)], open: u32, several: &[u32]) -> Option<Self> {
-        let is_open = |i: &&&[u32]| opcode(i) == op::DECORATE && i.get(2) == Some(&SPEC_ID) && i.get(3) == Some(&open);
-        let open_id = *all.iter().find(is_open)?.get(1)?;
-        let with = |value: u32| -> Option<(Known, Vec<Instruction>)> {
+impl Opened {
+    fn new(mut module: Module, values: &[(u32, u32)], open: u32, several: &[u32]) -> Option<Self> {
+        let open_id = module.decorated(SPEC_ID).find(|id| module.decoration(*id, SPEC_ID) == Some(open))?;
+        let with = |value: u32| {
             let others = values.iter().filter(|(id, _)| *id != open).copied();
-            let values: Vec<(u32, u32)> = others.chain([(open, value)]).collect();
-            let mut known = Known::default();
-            let globals = known.globals(all, &values)?;
-            Some((known, globals))
+            constants(&module, &others.chain([(open, value)]).collect::<Vec<_>>())
         };
-        let (mut known, globals) = with(*several.first()?)?;
-        let others = several[1..].iter().map(|value| Some(with(*value)?.0)).collect::<Option<Vec<Known>>>()?;
-        let differs = |id: &Id| others.iter().any(|other| other.values.get(id) != known.values.get(id));
-        let order: Vec<Id> =
-            all.iter().filter(|i| is_specialized(i)).filter_map(|i| i.get(2).copied()).filter(differs).collect();
+        let mut known = with(*several.first()?);
+        let others: Vec<HashMap<Id, u32>> = several[1..].iter().map(|value| with(*value)).collect();
+        let differs = |id: &Id| others.iter().any(|other| other.get(id) != known.get(id));
+        let is_specialized = |i: &&Instruction| matches!(i.op, Op::SpecConstant | Op::SpecConstantOp);
+        let specialized = module.globals.iter().filter(is_specialized).map(|i| module[*i][2]);
+        let order: Vec<Id> = specialized.filter(differs).collect();
         // Without a value in the first place, an operation is one that is not evaluated.
-        let is_evaluated = order.iter().all(|id| known.values.contains_key(id));
+        let is_evaluated = order.iter().all(|id| known.contains_key(id));
         if !is_evaluated || !order.contains(&open_id) {
             return None;
         }
-        known.values.retain(|id, _| !order.contains(id));
-        let mut module =
-            Self { globals, known, bound: *words.get(3)?, open: open_id, dependents: HashMap::new(), order };
-        module.declare(all)?;
-        module.add_interface(words, all)?;
-        Some(module)
+        known.retain(|id, _| !order.contains(id));
+        set_constants(&mut module, &known);
+        let mut opened = Self { module, open: open_id, dependents: Vec::new() };
+        opened.declare(&order)?;
+        Some(opened)
     }
 
-    fn id(&mut self) -> Id {
-        self.bound += 1;
-        self.bound - 1
-    }
-
-    fn add(&mut self, opcode: u32, operands: &[u32]) {
-        self.globals.push(instruction(opcode, operands));
-    }
-
-    /// Replaces the constants that depend on the open one by private variables.
-    fn declare(&mut self, all: &[&[u32]]) -> Option<()> {
-        let is_dependent = |id: Option<&Id>| id.is_some_and(|id| self.order.contains(id));
-        let declares = |i: &[u32]| matches!(opcode(i), op::CONSTANT | op::CONSTANT_TRUE | op::CONSTANT_FALSE);
-        let is_kept = |i: &Instruction| !(declares(i) && is_dependent(i.get(2)));
-        let mut globals = std::mem::take(&mut self.globals);
-        globals.retain(|i| match opcode(i) {
-            op::NAME | op::DECORATE => !is_dependent(i.get(1)),
-            _ => is_kept(i),
-        });
-        if globals.iter().any(|i| opcode(i) == op::VARIABLE && is_dependent(i.get(4))) {
+    /// Replaces the constants that depend on the open one by private variables. `None` if another declaration needs one.
+    fn declare(&mut self, order: &[Id]) -> Option<()> {
+        let module = &mut self.module;
+        let mut globals = std::mem::take(&mut module.globals);
+        let is_dependent = |i: &mut Instruction| module.result(*i).is_some_and(|id| order.contains(&id));
+        let replaced: Vec<Instruction> = globals.extract_if(.., is_dependent).collect();
+        let is_used = |i: &Instruction| module.ids_of(*i).any(|id| order.contains(&id));
+        if globals.iter().any(is_used) {
             return None;
         }
-        // This may also match a literal; the rewrite is then refused without need.
-        let composes = |i: &Instruction| {
-            matches!(
-                opcode(i),
-                op::CONSTANT_COMPOSITE | op::TYPE_ARRAY | op::SPEC_CONSTANT_OP | SPEC_CONSTANT_COMPOSITE
-            )
-        };
-        if globals.iter().any(|i| composes(i) && i[2..].iter().any(|id| self.order.contains(id))) {
-            return None;
+        module.globals = globals;
+        drop_results(module, &order.iter().copied().collect());
+        for i in replaced {
+            let (kind, id) = (module[i][1], module[i][2]);
+            let operation = if id == self.open { Vec::new() } else { module[i][3..].to_vec() };
+            let pointer = module.declare(Op::TypePointer, &[storage::PRIVATE, kind]);
+            let variable = module.variable(pointer, storage::PRIVATE);
+            self.dependents.push(Dependent { id, kind, variable, operation });
         }
-        self.globals = globals;
-        for id in self.order.clone() {
-            let declared = all.iter().find(|i| is_specialized(i) && i.get(2) == Some(&id))?;
-            let kind = declared[1];
-            let (pointer, variable) = (self.id(), self.id());
-            self.add(op::TYPE_POINTER, &[pointer, STORAGE_PRIVATE, kind]);
-            self.add(op::VARIABLE, &[pointer, variable, STORAGE_PRIVATE]);
-            let operation = if id == self.open { Vec::new() } else { declared.get(3..)?.to_vec() };
-            self.dependents.insert(id, Dependent { kind, variable, operation });
+        if module.version() >= NAMES_PRIVATE {
+            let variables: Vec<Id> = self.dependents.iter().map(|dependent| dependent.variable).collect();
+            module.join_interface(&variables);
         }
         Some(())
-    }
-
-    /// Adds the private variables to the interface of the entry point, from SPIR-V 1.4 on.
-    fn add_interface(&mut self, words: &[u32], all: &[&[u32]]) -> Option<()> {
-        let entry = all.iter().find(|i| opcode(i) == op::ENTRY_POINT)?;
-        if entry.get(1) != Some(&FRAGMENT) {
-            return None;
-        }
-        if *words.get(1)? >= NAMES_PRIVATE {
-            let variables: Vec<Id> = self.order.iter().map(|id| self.dependents[id].variable).collect();
-            self.extend_entry(&variables);
-        }
-        Some(())
-    }
-
-    fn extend_entry(&mut self, variables: &[Id]) {
-        for i in self.globals.iter_mut().filter(|i| opcode(i) == op::ENTRY_POINT) {
-            *i = instruction(op::ENTRY_POINT, &[&i[1..], variables].concat());
-        }
     }
 
     /// Drops the cases of switches on the open constant that it never takes.
-    fn drop_cases(&self, function: &mut Function, several: &[u32], removed: &mut HashSet<Id>) {
+    fn drop_cases(&mut self, function: &mut Function, several: &[u32], removed: &mut HashSet<Id>) {
         for last in function.blocks.iter_mut().filter_map(|block| block.body.last_mut()) {
-            if opcode(last) == op::SWITCH && last[1] == self.open {
-                let cases = last[3..].chunks_exact(2).filter(|case| several.contains(&case[0])).flatten();
-                let operands: Vec<u32> = last[1..3].iter().chain(cases).copied().collect();
-                *last = instruction(op::SWITCH, &operands);
+            let words = &self.module[*last];
+            if last.op == Op::Switch && words[1] == self.open {
+                let cases = words[3..].chunks_exact(2).filter(|case| several.contains(&case[0])).flatten();
+                let operands: Vec<u32> = words[1..3].iter().chain(cases).copied().collect();
+                *last = self.module.make(Op::Switch, &operands);
             }
         }
-        function.drop_unreached(removed);
+        drop_unreached(&mut self.module, function, removed);
     }
 
     /// Loads the variables that a function uses at its beginning, and uses the loaded values.
-    fn load_in(&mut self, function: &mut Function) -> Option<()> {
+    fn load_in(&mut self, function: &mut Function) {
         let mut loads = Vec::new();
-        for constant in self.order.clone() {
-            let loaded = self.bound;
-            let mut is_used = false;
-            for i in function.blocks.iter_mut().flat_map(|block| &mut block.body) {
-                is_used |= replace(i, constant, loaded)?;
+        for Dependent { id: constant, kind, variable, .. } in &self.dependents {
+            let mut loaded = None;
+            for i in function.body() {
+                for at in 1..self.module[i].len() {
+                    if self.module[i][at] == *constant && i.op.is_id(&self.module[i], at) {
+                        let loaded = *loaded.get_or_insert_with(|| self.module.fresh(*kind));
+                        self.module[i][at] = loaded;
+                    }
+                }
             }
-            if is_used {
-                self.bound += 1;
-                let Dependent { kind, variable, .. } = &self.dependents[&constant];
-                loads.push(instruction(op::LOAD, &[*kind, loaded, *variable]));
-            }
+            loads.extend(loaded.map(|loaded| self.module.make(Op::Load, &[*kind, loaded, *variable])));
         }
-        let entry = function.blocks.first_mut()?;
-        let at = entry.body.iter().rposition(|i| opcode(i) == op::VARIABLE).map_or(0, |last| last + 1);
-        entry.body.splice(at..at, loads);
-        Some(())
+        if let Some(entry) = function.blocks.first_mut() {
+            let at = entry.body.iter().rposition(|i| i.op == Op::Variable).map_or(0, |last| last + 1);
+            entry.body.splice(at..at, loads);
+        }
     }
 
-    /// The new entry point. `functions` have the old one.
-    fn main(&mut self, functions: &[Function], several: &[u32]) -> Option<Vec<Instruction>> {
-        let entry = self.globals.iter().find(|i| opcode(i) == op::ENTRY_POINT)?.clone();
-        let old = functions.iter().find(|f| f.id == entry[2])?;
-        let head = old.head.first().filter(|i| i.len() == 5)?;
-        let (void, signature) = (head[1], head[4]);
+    /// The new entry point, which calls the old one.
+    fn main(&mut self, several: &[u32]) -> Option<Function> {
         let (output, pointer) = self.only_output()?;
-        let color = self.globals.iter().find(|i| opcode(i) == op::TYPE_POINTER && i[1] == pointer)?[3];
-        let boolean = *self.globals.iter().find(|i| opcode(i) == op::TYPE_BOOL)?.get(1)?;
-        let uint = self.dependents[&self.open].kind;
-        let outputs: Vec<Id> = std::iter::once(output).chain((1..several.len()).map(|_| self.id())).collect();
-        for (location, output) in outputs.iter().enumerate().skip(1) {
-            let decoration = instruction(op::DECORATE, &[*output, LOCATION, location as u32]);
-            let first = self.globals.iter().position(|i| opcode(i) == op::DECORATE)?;
-            self.globals.insert(first, decoration);
-            self.add(op::VARIABLE, &[pointer, *output, STORAGE_OUTPUT]);
+        let m = &mut self.module;
+        let called = m.entry_function()?;
+        let old = m.functions.iter().find(|function| function.id == called)?.head[0];
+        let (void, signature) = (m[old][1], m[old][4]);
+        let (_, color) = m.pointer(pointer)?;
+        let boolean = m.declare(Op::TypeBool, &[]);
+        let uint = self.dependents.iter().find(|dependent| dependent.id == self.open)?.kind;
+        let mut outputs = vec![output];
+        for location in 1..several.len() as u32 {
+            let output = m.variable(pointer, storage::OUTPUT);
+            m.decorate(&[output, LOCATION, location]);
+            outputs.push(output);
         }
-        self.extend_entry(&outputs[1..]);
-        let main = self.id();
-        for i in &mut self.globals {
-            match opcode(i) {
-                op::ENTRY_POINT => i[2] = main,
-                op::EXECUTION_MODE => i[1] = main,
+        m.join_interface(&outputs[1..]);
+        let [main, begin, header, test, round, next, end] = m.ids();
+        for i in m.head.clone() {
+            match i.op {
+                Op::EntryPoint => m[i][2] = main,
+                Op::ExecutionMode => m[i][1] = main,
                 _ => {}
             }
         }
-        let numbers: Vec<Id> = (0..=several.len() as u32).map(|number| self.constant(uint, number)).collect();
-        let choices: Vec<Id> = several.iter().map(|value| self.constant(uint, *value)).collect();
-        let [array, of_array, of_uint, of_color] = std::array::from_fn(|_| self.id());
-        self.add(op::TYPE_ARRAY, &[array, color, *numbers.last()?]);
-        self.add(op::TYPE_POINTER, &[of_array, STORAGE_FUNCTION, array]);
-        self.add(op::TYPE_POINTER, &[of_uint, STORAGE_FUNCTION, uint]);
-        self.add(op::TYPE_POINTER, &[of_color, STORAGE_FUNCTION, color]);
+        let numbers: Vec<Id> = (0..=several.len() as u32).map(|number| m.constant(uint, number)).collect();
+        let choices: Vec<Id> = several.iter().map(|value| m.constant(uint, *value)).collect();
+        let count = *numbers.last()?;
+        let array = m.declare(Op::TypeArray, &[color, count]);
+        let [of_array, of_uint, of_color] =
+            [array, uint, color].map(|kind| m.declare(Op::TypePointer, &[storage::FUNCTION, kind]));
 
-        let [index, colors, begin, header, test, body, next, end] = std::array::from_fn(|_| self.id());
-        let block = |label, body| Block { label, body };
-        let first = vec![
-            instruction(op::VARIABLE, &[of_uint, index, STORAGE_FUNCTION]),
-            instruction(op::VARIABLE, &[of_array, colors, STORAGE_FUNCTION]),
-            instruction(op::STORE, &[index, numbers[0]]),
-            instruction(op::BRANCH, &[header]),
-        ];
-        let looping = vec![instruction(op::LOOP_MERGE, &[end, next, 0]), instruction(op::BRANCH, &[test])];
-        let [tested, goes_on] = [self.id(), self.id()];
-        let testing = vec![
-            instruction(op::LOAD, &[uint, tested, index]),
-            instruction(op::ULESS_THAN, &[boolean, goes_on, tested, *numbers.last()?]),
-            instruction(op::BRANCH_CONDITIONAL, &[goes_on, body, end]),
-        ];
-        let [at, unused, shaded, kept] = std::array::from_fn(|_| self.id());
-        let mut round = vec![instruction(op::LOAD, &[uint, at, index])];
-        self.choose(&mut round, at, (boolean, uint), (&numbers, &choices))?;
-        self.reset(&mut round);
-        round.extend([
-            instruction(op::FUNCTION_CALL, &[void, unused, entry[2]]),
-            instruction(op::LOAD, &[color, shaded, output]),
-            instruction(op::ACCESS_CHAIN, &[of_color, kept, colors, at]),
-            instruction(op::STORE, &[kept, shaded]),
-            instruction(op::BRANCH, &[next]),
-        ]);
-        let [last, following] = [self.id(), self.id()];
-        let advancing = vec![
-            instruction(op::LOAD, &[uint, last, index]),
-            instruction(op::IADD, &[uint, following, last, numbers[1]]),
-            instruction(op::STORE, &[index, following]),
-            instruction(op::BRANCH, &[header]),
-        ];
-        let mut writing = Vec::new();
+        let mut body = Vec::new();
+        let index = m.emit(&mut body, Op::Variable, of_uint, &[storage::FUNCTION]);
+        let colors = m.emit(&mut body, Op::Variable, of_array, &[storage::FUNCTION]);
+        body.push(m.make(Op::Store, &[index, numbers[0]]));
+        body.push(m.make(Op::Branch, &[header]));
+        let mut blocks = vec![Block { label: begin, body }];
+
+        let body = vec![m.make(Op::LoopMerge, &[end, next, 0]), m.make(Op::Branch, &[test])];
+        blocks.push(Block { label: header, body });
+
+        let mut body = Vec::new();
+        let tested = m.emit(&mut body, Op::Load, uint, &[index]);
+        let goes_on = m.emit(&mut body, Op::ULessThan, boolean, &[tested, count]);
+        body.push(m.make(Op::BranchConditional, &[goes_on, round, end]));
+        blocks.push(Block { label: test, body });
+
+        let mut body = Vec::new();
+        let at = m.emit(&mut body, Op::Load, uint, &[index]);
+        choose(m, &mut body, at, &self.dependents, (boolean, uint), (&numbers, &choices))?;
+        reset(m, &mut body);
+        m.emit(&mut body, Op::FunctionCall, void, &[called]);
+        let shaded = m.emit(&mut body, Op::Load, color, &[output]);
+        let kept = m.emit(&mut body, Op::AccessChain, of_color, &[colors, at]);
+        body.push(m.make(Op::Store, &[kept, shaded]));
+        body.push(m.make(Op::Branch, &[next]));
+        blocks.push(Block { label: round, body });
+
+        let mut body = Vec::new();
+        let last = m.emit(&mut body, Op::Load, uint, &[index]);
+        let following = m.emit(&mut body, Op::IAdd, uint, &[last, numbers[1]]);
+        body.push(m.make(Op::Store, &[index, following]));
+        body.push(m.make(Op::Branch, &[header]));
+        blocks.push(Block { label: next, body });
+
+        let mut body = Vec::new();
         for (number, output) in numbers.iter().zip(&outputs) {
-            let [from, value] = [self.id(), self.id()];
-            writing.push(instruction(op::ACCESS_CHAIN, &[of_color, from, colors, *number]));
-            writing.push(instruction(op::LOAD, &[color, value, from]));
-            writing.push(instruction(op::STORE, &[*output, value]));
+            let from = m.emit(&mut body, Op::AccessChain, of_color, &[colors, *number]);
+            let value = m.emit(&mut body, Op::Load, color, &[from]);
+            body.push(m.make(Op::Store, &[*output, value]));
         }
-        writing.push(instruction(op::RETURN, &[]));
-        let blocks = vec![
-            block(begin, first),
-            block(header, looping),
-            block(test, testing),
-            block(body, round),
-            block(next, advancing),
-            block(end, writing),
-        ];
-        let function =
-            Function { id: main, head: vec![instruction(op::FUNCTION, &[void, main, 0, signature])], blocks };
-        let mut words = Vec::new();
-        function.write(&mut words);
-        Some(vec![words])
-    }
-
-    fn constant(&mut self, kind: Id, value: u32) -> Id {
-        let id = self.id();
-        self.add(op::CONSTANT, &[kind, id, value]);
-        id
+        body.push(m.make(Op::Return, &[]));
+        blocks.push(Block { label: end, body });
+        Some(Function { id: main, head: vec![m.make(Op::Function, &[void, main, 0, signature])], blocks })
     }
 
     /// The variable at location 0 and its type, if the stage has no other.
     fn only_output(&self) -> Option<(Id, Id)> {
-        let located: Vec<Id> = self
-            .globals
-            .iter()
-            .filter(|i| opcode(i) == op::DECORATE && i.get(2) == Some(&LOCATION))
-            .filter_map(|i| i.get(1).copied())
-            .collect();
-        let is_output =
-            |i: &&Instruction| opcode(i) == op::VARIABLE && i[3] == STORAGE_OUTPUT && located.contains(&i[2]);
-        let mut outputs = self.globals.iter().filter(is_output);
+        let module = &self.module;
+        let is_output = |i: &&[u32]| i[3] == storage::OUTPUT && module.decoration(i[2], LOCATION).is_some();
+        let variables = module.globals.iter().filter(|i| i.op == Op::Variable).map(|i| &module[*i]);
+        let mut outputs = variables.filter(is_output);
         let only = outputs.next()?;
         outputs.next().is_none().then(|| (only[2], only[1]))
     }
-
-    /// Stores the values of the open constant and its dependents in round `at`.
-    fn choose(
-        &mut self,
-        round: &mut Vec<Instruction>,
-        at: Id,
-        (boolean, uint): (Id, Id),
-        (numbers, choices): (&[Id], &[Id]),
-    ) -> Option<()> {
-        let mut chosen = *choices.last()?;
-        for (number, choice) in numbers.iter().zip(&choices[..choices.len() - 1]).rev() {
-            let [is_it, value] = [self.id(), self.id()];
-            round.push(instruction(op::IEQUAL, &[boolean, is_it, at, *number]));
-            round.push(instruction(op::SELECT, &[uint, value, is_it, *choice, chosen]));
-            chosen = value;
-        }
-        let mut values: HashMap<Id, Id> = HashMap::new();
-        for id in self.order.clone() {
-            let Dependent { kind, variable, operation } = &self.dependents[&id];
-            let (kind, variable, operation) = (*kind, *variable, operation.clone());
-            let value = match operation.split_first() {
-                None => chosen,
-                Some((operation, operands)) => {
-                    let operands = operands.iter().map(|id| values.get(id).copied().unwrap_or(*id));
-                    let result = self.id();
-                    let words: Vec<u32> = [kind, result].into_iter().chain(operands).collect();
-                    round.push(instruction(*operation, &words));
-                    result
-                }
-            };
-            values.insert(id, value);
-            round.push(instruction(op::STORE, &[variable, value]));
-        }
-        Some(())
-    }
-
-    /// Gives private variables with an initializer that value again: no round sees what another has written.
-    fn reset(&self, round: &mut Vec<Instruction>) {
-        let is_initialized = |i: &&Instruction| opcode(i) == op::VARIABLE && i[3] == STORAGE_PRIVATE && i.len() == 5;
-        let initialized = self.globals.iter().filter(is_initialized);
-        round.extend(initialized.map(|i| instruction(op::STORE, &[i[2], i[4]])));
-    }
 }
 
-/// Whether an instruction declares a number or boolean that depends on specialization constants.
-fn is_specialized(i: &[u32]) -> bool {
-    matches!(opcode(i), op::SPEC_CONSTANT | op::SPEC_CONSTANT_OP)
+/// Stores the values of the open constant and its dependents in round `at`.
+fn choose(
+    module: &mut Module,
+    round: &mut Vec<Instruction>,
+    at: Id,
+    dependents: &[Dependent],
+    (boolean, uint): (Id, Id),
+    (numbers, choices): (&[Id], &[Id]),
+) -> Option<()> {
+    let mut chosen = *choices.last()?;
+    for (number, choice) in numbers.iter().zip(&choices[..choices.len() - 1]).rev() {
+        let is_it = module.emit(round, Op::IEqual, boolean, &[at, *number]);
+        chosen = module.emit(round, Op::Select, uint, &[is_it, *choice, chosen]);
+    }
+    let mut values: HashMap<Id, Id> = HashMap::new();
+    for Dependent { id, kind, variable, operation } in dependents {
+        let value = match operation.split_first() {
+            None => chosen,
+            Some((operation, operands)) => {
+                let operands: Vec<u32> = operands.iter().map(|id| values.get(id).copied().unwrap_or(*id)).collect();
+                module.emit(round, Op::of(*operation), *kind, &operands)
+            }
+        };
+        values.insert(*id, value);
+        round.push(module.make(Op::Store, &[*variable, value]));
+    }
+    Some(())
 }
 
-/// Replaces an operand of an instruction in a function. Returns whether there was one; `None` if the instruction is unknown.
-fn replace(i: &mut Instruction, from: Id, to: Id) -> Option<bool> {
-    let mut any = false;
-    for at in (1..i.len()).filter(|at| i[*at] == from).collect::<Vec<_>>() {
-        if is_id(i, at)? {
-            i[at] = to;
-            any = true;
+/// Gives private variables with an initializer that value again: no round sees what another has written.
+fn reset(module: &mut Module, round: &mut Vec<Instruction>) {
+    for place in 0..module.globals.len() {
+        let i = module.globals[place];
+        if let (Op::Variable, &[_, _, variable, storage::PRIVATE, value]) = (i.op, &module[i]) {
+            round.push(module.make(Op::Store, &[variable, value]));
         }
     }
-    Some(any)
 }

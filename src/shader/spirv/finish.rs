@@ -1,0 +1,30 @@
+//! The last step before the driver: loops that end, copies for hits, optimization.
+
+use super::hits::separate_hits;
+use super::loops::{self, Bounds};
+use super::module::Module;
+use super::optimize::optimized;
+
+/// A module as the driver gets it.
+#[derive(Debug)]
+pub struct Finished {
+    /// The words of the module.
+    pub words: Vec<u32>,
+    /// How many words it had before it was optimized.
+    pub unoptimized: usize,
+    /// Whether it has loops that count their rounds.
+    pub is_bounded: bool,
+}
+
+/// Finishes a specialization of the module `original`. Words that are not SPIR-V stay as they are.
+pub fn finish(words: Vec<u32>, original: &[u32], bounds: &Bounds) -> Finished {
+    let Some(mut module) = Module::parse(&words) else {
+        return Finished { unoptimized: words.len(), words, is_bounded: false };
+    };
+    let is_bounded = loops::bound(&mut module, original, bounds);
+    separate_hits(&mut module);
+    let words = module.write();
+    let unoptimized = words.len();
+    let words = optimized(module).map_or(words, |module| module.write());
+    Finished { words, unoptimized, is_bounded }
+}
