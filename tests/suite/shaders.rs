@@ -6,6 +6,8 @@ mod hooks;
 mod interface;
 mod loops;
 mod modes;
+mod random_programs;
 mod reload;
+mod spirv;
 mod stages;
 mod thumbnails;
