@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
-use super::layout::Panel;
+use super::state::arrangement::Panel;
 use super::state::exercise::LearnCommand;
 use super::state::inspection::Page;
 use super::state::selection::Selected;

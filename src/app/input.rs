@@ -145,13 +145,13 @@ fn on_left_button(viewer: &mut Viewer, screen: &mut Screen, pressed: bool) -> bo
 
 /// Shows the mode of the grid under the mouse alone. Returns whether there is one.
 fn keep_mode_at(viewer: &mut Viewer, screen: &Screen) -> bool {
-    if !viewer.panels.grid.is_on() {
+    if !viewer.grid.is_on() {
         return false;
     }
     if let Some(mode) = screen.grid_mode_at(screen.mouse.at) {
         viewer.session.settings.mode = mode;
     }
-    viewer.panels.grid.end();
+    viewer.grid.end();
     true
 }
 

@@ -288,6 +288,7 @@ impl ApplicationHandler<Message> for App {
             // A frame would wait for the thumbnail that the device may be drawing.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => return self.go_on(event_loop),
             Message::Accessibility(event) => open.screen.on_accessibility(event.window_event),
+            Message::Pictures(pictures) => open.screen.panels.open_gallery.take(pictures),
             message => open.viewer.on_message(message),
         }
         open.window.request_redraw();

@@ -30,6 +30,7 @@ use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use super::input::Mouse;
+use super::panels::Panels;
 use super::state::grid::PictureRect;
 use super::state::timing::CpuTimes;
 use super::viewer::Viewer;
@@ -74,6 +75,7 @@ pub(super) struct Screen {
     swapchain: Option<Swapchain>,
     surface: Arc<Surface>,
     egui: egui::Context,
+    pub(super) panels: Panels,
     input: egui_winit::State,
     waiting: waiting::Waiting,
     /// Textures of egui to upload, and those to free because no later frame uses them.
@@ -167,6 +169,7 @@ impl Screen {
             swapchain: None,
             surface,
             egui,
+            panels: Panels::restored(),
             input,
             waiting: waiting::Waiting::default(),
             textures: egui::TexturesDelta::default(),
@@ -298,7 +301,7 @@ impl Screen {
         let frame = self.next_frame(viewer)?;
         self.prepare_reference(viewer, frame.as_ref())?;
         self.prepare_grid(viewer)?;
-        self.view.samples_range = viewer.panels.legend.shows_histogram && viewer.panels.visible;
+        self.view.samples_range = self.panels.legend.shows_histogram && self.panels.visible;
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);

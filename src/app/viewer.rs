@@ -22,16 +22,21 @@ use std::time::Instant;
 
 use super::control::Controlled;
 use super::dialog::Dialog;
-use super::panels::PanelState;
 use super::state::exercise::Learning;
+use super::state::grid::Grid;
+use super::state::hint::Hint;
 use super::state::history::History;
+use super::state::inspection::Inspection;
+use super::state::last_session::LastSessions;
 use super::state::notices::Notices;
 use super::state::playback::Playback;
+use super::state::recent::Recent;
 use super::state::selection::Selected;
 use super::state::shaders::stages::StageTable;
 use super::state::shaders::status::ShaderStatus;
 use super::state::timing::Timing;
 use super::state::watched_files::WatchedFiles;
+use super::state::workspace::Workspace;
 use super::{AppOptions, Early};
 use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
@@ -97,6 +102,8 @@ pub(super) struct ModelStatus {
     files: Arc<[PathBuf]>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
+    /// Whether the warnings of the model are shown over the picture.
+    pub(super) shows_warnings: bool,
     /// Whether the camera stays where it is when the model that loads is another.
     keeps_camera: bool,
 }
@@ -117,7 +124,7 @@ impl ModelStatus {
 /// The window's state apart from the screen.
 pub(super) struct Viewer {
     pub(super) session: Session,
-    pub(super) panels: PanelState,
+    pub(super) workspace: Workspace,
     pub(super) shader: ShaderStatus,
     pub(super) model: ModelStatus,
     pub(super) notices: Notices,
@@ -128,6 +135,14 @@ pub(super) struct Viewer {
     /// The time of animated shaders.
     pub(super) playback: Playback,
     pub(super) history: History,
+    /// The inspected pixel.
+    pub(super) inspection: Inspection,
+    /// The modes that the picture shows side by side.
+    pub(super) grid: Grid,
+    /// Files that were open, in this run and before.
+    pub(super) recent: Recent,
+    pub(super) last_sessions: LastSessions,
+    pub(super) hint: Hint,
     /// The exercise that is open.
     pub(super) learning: Learning,
     /// Selected item of the scene.
@@ -212,7 +227,7 @@ impl Viewer {
         let edits = Edits::new(&session.settings.expression);
         let mut viewer = Self {
             session,
-            panels: PanelState::restored(),
+            workspace: Workspace::default(),
             shader: ShaderStatus { compiling: true, ..Default::default() },
             model: ModelStatus { path: options.model.clone(), ..Default::default() },
             notices: Notices::default(),
@@ -221,6 +236,11 @@ impl Viewer {
             start: options.start,
             playback: Playback::default(),
             history: History::default(),
+            inspection: Inspection::default(),
+            grid: Grid::default(),
+            recent: Recent::restored(),
+            last_sessions: LastSessions::restored(),
+            hint: Hint::restored(),
             learning: Learning::restored(),
             selected: Selected::Nothing,
             selected_cache: None,

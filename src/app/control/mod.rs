@@ -102,7 +102,7 @@ impl Viewer {
             match until {
                 Until::Shown if settled => reply.done(Value::Null),
                 Until::Camera if settled => reply.done(self.camera_json()),
-                Until::Grid if settled => reply.done(json!({ "modes": self.panels.grid.modes() })),
+                Until::Grid if settled => reply.done(json!({ "modes": self.grid.modes() })),
                 Until::Compared if settled && self.compare.is_drawn() => reply.done(self.compare_json()),
                 Until::Picture(job) if settled => self.begin_capture(reply, job),
                 Until::Reloaded if settled || (self.has_errors() && !self.threads.worker.is_compiling()) => {

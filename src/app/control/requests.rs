@@ -196,7 +196,7 @@ impl Viewer {
         if let Some(first) = modes.first().filter(|_| !modes.contains(&selected)) {
             self.adopt(Settings { mode: first.clone(), ..self.session.settings.clone() })?;
         }
-        self.panels.grid.show(modes)?;
+        self.grid.show(modes)?;
         Ok(Next::Wait(Until::Grid))
     }
 
@@ -204,7 +204,7 @@ impl Viewer {
     fn pick(&mut self, at: Option<[u32; 2]>) -> Result<Value, String> {
         match at {
             None => {
-                self.panels.inspector.unpin();
+                self.inspection.unpin();
                 self.select(Selected::Nothing);
             }
             Some([x, y]) => {
@@ -213,7 +213,7 @@ impl Viewer {
                     return Err(format!("[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"));
                 }
                 // A second click on a place would take the first one back.
-                self.panels.inspector.unpin();
+                self.inspection.unpin();
                 self.selected = Selected::Nothing;
                 self.execute(Command::Pick([x, y]));
             }

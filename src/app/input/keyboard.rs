@@ -29,7 +29,7 @@ pub(super) fn on_keyboard(
         return true;
     }
     // A release always counts, so that nothing stays held.
-    if pressed && viewer.panels.defaults.is_open() {
+    if pressed && screen.panels.defaults.is_open() {
         return false;
     }
     // Escape closes an open list or menu, and nothing else.
@@ -44,7 +44,7 @@ pub(super) fn on_keyboard(
     // The search of the palette has the keys from the moment it opens, which may be before egui knows. The key that opens
     // it also closes it.
     let is_open_key = is_function_key(&event.logical_key) || opens_palette(&event.logical_key, screen.mouse.modifiers);
-    let taken = (taken || viewer.panels.palette.is_open()) && !is_open_key;
+    let taken = (taken || screen.panels.palette.is_open()) && !is_open_key;
     if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
         // A press that winit makes up when the window gets the focus is none for shaders.
         let counts = !pressed || !(taken || event.repeat || is_synthetic);
@@ -62,7 +62,7 @@ pub(super) fn on_keyboard(
         return true;
     }
     let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
-    !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
+    !taken && (steps || !event.repeat) && on_key(viewer, screen, &event.logical_key)
 }
 
 /// Flies with W A S D E Q while the right button is held. A key's release always counts, so that no key gets stuck.
@@ -137,26 +137,26 @@ fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
     true
 }
 
-fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
+fn on_key(viewer: &mut Viewer, screen: &mut Screen, key: &Key) -> bool {
     match key {
-        Key::Named(NamedKey::F1) => viewer.panels.show_keys ^= true,
+        Key::Named(NamedKey::F1) => screen.panels.show_keys ^= true,
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
-        Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
-        Key::Named(NamedKey::Escape) if viewer.panels.open_gallery.is_open => {
-            viewer.panels.open_gallery.is_open = false
+        Key::Named(NamedKey::Escape) if screen.panels.show_keys => screen.panels.show_keys = false,
+        Key::Named(NamedKey::Escape) if screen.panels.open_gallery.is_open => {
+            screen.panels.open_gallery.is_open = false
         }
         // A click pins a pixel and selects what it shows; Escape takes both back.
-        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing || viewer.panels.inspector.is_pinned() => {
-            viewer.panels.inspector.unpin();
+        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing || viewer.inspection.is_pinned() => {
+            viewer.inspection.unpin();
             viewer.execute(Command::Select(Selected::Nothing));
         }
-        Key::Named(NamedKey::Escape) if viewer.panels.grid.is_on() => viewer.panels.grid.end(),
+        Key::Named(NamedKey::Escape) if viewer.grid.is_on() => viewer.grid.end(),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {
             let Some(key) = text.chars().next() else { return false };
-            return on_character(viewer, key.to_ascii_lowercase(), modifiers);
+            return on_character(viewer, screen, key.to_ascii_lowercase());
         }
         _ => return false,
     }
@@ -164,12 +164,13 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
 }
 
 /// A key that types a character. While the picture reads keys, Ctrl is what tells it from the picture's.
-fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bool {
+fn on_character(viewer: &mut Viewer, screen: &mut Screen, key: char) -> bool {
+    let modifiers = screen.mouse.modifiers;
     let (control, shift) = (modifiers.control_key(), modifiers.shift_key());
     let is_ignored = control && !viewer.reads_keys();
     let session = &mut viewer.session;
     match key {
-        'p' if control => viewer.panels.palette.toggle(),
+        'p' if control => screen.panels.palette.toggle(),
         'k' if control => {
             let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
             viewer.execute(Command::Compare(with));
@@ -182,10 +183,10 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
         'y' if control => viewer.execute(Command::Redo),
         _ if is_ignored => return false,
         '/' => viewer.execute(Command::IsolateSelected),
-        '?' => viewer.panels.show_keys ^= true,
+        '?' => screen.panels.show_keys ^= true,
         '[' => step_mode(session, false),
         ']' => step_mode(session, true),
-        'h' => viewer.panels.visible = !viewer.panels.visible,
+        'h' => screen.panels.visible = !screen.panels.visible,
         'r' => viewer.execute(Command::FrameModel),
         'l' => {
             let lights = &mut session.settings.lights;

@@ -8,8 +8,19 @@ use egui_tiles::{
     Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, UiResponse,
 };
 
-use super::{Panel, SIMPLIFY};
+use crate::app::state::arrangement::Panel;
 use crate::app::widgets::theme::{ACCENT, EDGE, PANEL, QUIET};
+
+/// How tiles become simpler after a change. A tile with one tab keeps it.
+pub(super) const SIMPLIFY: SimplificationOptions = SimplificationOptions {
+    prune_empty_tabs: true,
+    prune_empty_containers: true,
+    prune_single_child_tabs: false,
+    prune_single_child_containers: true,
+    all_panes_must_have_tabs: false,
+    join_nested_linear_containers: true,
+    flatten_tabs_in_tabs: true,
+};
 
 /// Space between two tiles, in points.
 pub(super) const GAP: f32 = 2.0;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use egui::{Rect, Vec2};
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
-use super::Panel;
 use super::behavior::{GAP, TAB_BAR};
+use crate::app::state::arrangement::Panel;
 
 /// Width of the window in points below which the panels on one side of the picture are hidden.
 const NARROW: f32 = 760.0;

@@ -9,101 +9,12 @@ mod store;
 mod tests;
 
 use egui::{Rect, Ui, Vec2};
-use egui_tiles::{Container, LinearDir, SimplificationOptions, Tile, TileId, Tree};
-use serde::{Deserialize, Serialize};
+use egui_tiles::{Container, LinearDir, Tile, TileId, Tree};
 
-use behavior::{Dock, TabTitles};
+use super::state::arrangement::{Panel, Preset};
+use behavior::{Dock, SIMPLIFY, TabTitles};
 use fit::Fit;
-pub(super) use preset::Preset;
-use repair::repair;
-
-/// Width of a column of panels that has none to take it from.
-const COLUMN: f32 = 318.0;
-
-/// Panel that a tile shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Panel {
-    Viewport,
-    Modes,
-    Scene,
-    Texture,
-    Model,
-    Shaders,
-    Timeline,
-    Timing,
-    Expression,
-    Parameters,
-    Passes,
-    Inspector,
-    Environment,
-    Lights,
-    Output,
-    Camera,
-    Learn,
-    Capture,
-}
-
-impl Panel {
-    /// All panels that can be closed, in groups that share a tile at first.
-    pub(super) const GROUPS: [&[Self]; 4] = [
-        &[Self::Modes, Self::Scene, Self::Model, Self::Texture, Self::Learn],
-        &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
-        &[Self::Parameters, Self::Passes, Self::Inspector],
-        &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
-    ];
-
-    /// Whether a preset opens the panel. The others open when they are asked for.
-    pub(super) fn is_in_presets(self) -> bool {
-        self != Self::Texture
-    }
-
-    /// Words for what the panel does, by which it is found.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Self::Viewport => "picture",
-            Self::Modes => "debug gallery thumbnails side by side grid",
-            Self::Scene => "nodes meshes materials textures cameras lights",
-            Self::Texture => "channels mip levels UV",
-            Self::Model => "variant statistics transform rotation scale material override",
-            Self::Shaders => "files includes stages problems driver registers",
-            Self::Timeline => "versions history compare difference restore",
-            Self::Timing => "GPU ms frame time memory",
-            Self::Expression => "watch variable numbers of a line sliders",
-            Self::Parameters => "sliders values defaults",
-            Self::Passes => "clock time effects switch",
-            Self::Inspector => "pixel values texels BRDF lobe albedo furnace plot",
-            Self::Environment => "HDR map rotation background blur suns",
-            Self::Lights => "color orbit rectangle ambient",
-            Self::Output => "exposure tone map range channels colors samples",
-            Self::Camera => "field of view bookmarks",
-            Self::Learn => "exercises lessons",
-            Self::Capture => "contact sheet turntable video timeline GIF WebP MP4 EXR size",
-        }
-    }
-
-    pub(super) fn title(self) -> &'static str {
-        match self {
-            Self::Viewport => "Viewport",
-            Self::Modes => "Modes",
-            Self::Scene => "Scene",
-            Self::Texture => "Texture",
-            Self::Model => "Model",
-            Self::Shaders => "Shaders",
-            Self::Timeline => "Timeline",
-            Self::Timing => "Timing",
-            Self::Expression => "Expression",
-            Self::Parameters => "Parameters",
-            Self::Passes => "Passes",
-            Self::Inspector => "Inspector",
-            Self::Environment => "Environment",
-            Self::Lights => "Lights",
-            Self::Output => "Output",
-            Self::Camera => "Camera",
-            Self::Learn => "Learn",
-            Self::Capture => "Capture",
-        }
-    }
-}
+use repair::{COLUMN, repair};
 
 /// The arrangement of the panels.
 pub(super) struct Layout {
@@ -127,13 +38,6 @@ pub(super) struct Layout {
     preset: Preset,
     /// The arrangement before a temporary one, whether the user had made it, and the preset before.
     before: Option<(Tree<Panel>, bool, Preset)>,
-}
-
-impl Default for Layout {
-    /// No panels.
-    fn default() -> Self {
-        Self::of_tree(Tree::empty("layout"))
-    }
 }
 
 impl Layout {
@@ -363,17 +267,6 @@ impl Layout {
         }
     }
 }
-
-/// How tiles become simpler after a change. A tile with one tab keeps it.
-const SIMPLIFY: SimplificationOptions = SimplificationOptions {
-    prune_empty_tabs: true,
-    prune_empty_containers: true,
-    prune_single_child_tabs: false,
-    prune_single_child_containers: true,
-    all_panes_must_have_tabs: false,
-    join_nested_linear_containers: true,
-    flatten_tabs_in_tabs: true,
-};
 
 /// `area` without `picture`, filled.
 fn around(picture: Rect, area: Rect, color: egui::Color32) -> egui::Shape {

@@ -1,9 +1,8 @@
 //! The arrangements that Specula offers.
 
 use egui_tiles::{Linear, LinearDir, TileId, Tiles, Tree};
-use serde::{Deserialize, Serialize};
 
-use super::Panel;
+use crate::app::state::arrangement::{Panel, Preset};
 
 /// Widths of the columns beside the picture, in points.
 const LEFT: f32 = 236.0;
@@ -13,46 +12,8 @@ const LESSON: f32 = 400.0;
 /// Height of the timeline below the picture, in points.
 const BELOW: f32 = 190.0;
 
-/// An arrangement that Specula offers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(in crate::app) enum Preset {
-    /// All panels. The first one.
-    #[default]
-    Debug,
-    /// The panels of light, camera and parameters, and a larger picture.
-    Look,
-    /// The versions of the shaders below the picture.
-    Compare,
-    /// An exercise beside the picture.
-    Learn,
-    /// For a shader without a model, which opens it: clock, passes and shaders.
-    Toy,
-}
-
 impl Preset {
-    /// Those that the user chooses from.
-    pub(in crate::app) const ALL: [Self; 4] = [Self::Debug, Self::Look, Self::Compare, Self::Learn];
-
-    pub(in crate::app) fn title(self) -> &'static str {
-        match self {
-            Self::Debug => "Debug",
-            Self::Look => "Look",
-            Self::Compare => "Compare",
-            Self::Learn => "Learn",
-            Self::Toy => "Shader",
-        }
-    }
-
-    pub(in crate::app) fn doc(self) -> &'static str {
-        match self {
-            Self::Debug => "Modes and shaders on the left, all settings on the right",
-            Self::Look => "Light, output and parameters on the right, nothing on the left",
-            Self::Compare => "The timeline of your edits below the picture, parameters on the right",
-            Self::Toy => "Clock, passes and shaders beside the picture",
-            Self::Learn => "An exercise beside the picture: short lessons about shading, which Specula checks",
-        }
-    }
-
+    /// The tiles of the arrangement.
     pub(super) fn tree(self) -> Tree<Panel> {
         let tiles = &mut Tiles::default();
         let [modes, shaders, parameters, settings] = Panel::GROUPS;

@@ -4,7 +4,10 @@
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tree};
 
 use super::fit::path_to_picture;
-use super::{COLUMN, Panel};
+use crate::app::state::arrangement::Panel;
+
+/// Width of a column of panels that has none to take it from.
+pub(super) const COLUMN: f32 = 318.0;
 
 /// Repairs the tree.
 pub(super) fn repair(tree: &mut Tree<Panel>) {

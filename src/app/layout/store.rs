@@ -4,7 +4,7 @@
 use egui_tiles::{Tile, Tree};
 use serde::{Deserialize, Serialize};
 
-use super::{Panel, Preset};
+use crate::app::state::arrangement::{Panel, Preset};
 use crate::state;
 
 const FILE: &str = "layout.json";

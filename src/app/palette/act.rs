@@ -2,9 +2,10 @@
 
 use super::entries::Action;
 use crate::app::command::Command;
-use crate::app::layout::Panel;
 use crate::app::panels::expression::watch;
 use crate::app::panels::parameters::default_of;
+use crate::app::state::arrangement::Panel;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::viewer::Viewer;
 use crate::shader::values::number;
 
@@ -37,44 +38,27 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
         Action::Do(command) => commands.push(command),
         Action::Environment(name) => settings.environment.name = name,
         Action::Set(path, value) => settings.set_value(&path, &value),
-        Action::ToggleHistogram => viewer.panels.legend.shows_histogram ^= true,
+        Action::ToggleHistogram => viewer.workspace.request(PanelRequest::ToggleHistogram),
         Action::ToggleDifference => viewer.compare.shows_map ^= true,
         Action::Value(name, value) => drop(settings.shader.insert(name, value)),
         Action::Number(ask) => ask.set(settings),
         Action::Pass(name, on) => drop(settings.passes.insert(name, on)),
-        Action::Open(panel) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(panel);
-        }
-        Action::Arrange(preset) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.arrange(preset);
-        }
-        Action::ResetLayout => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.reset();
-        }
-        Action::ArrangeOwn => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.arrange_own();
-        }
+        Action::Open(panel) => viewer.workspace.request_in_sight(PanelRequest::Open(panel)),
+        Action::Arrange(preset) => viewer.workspace.request_in_sight(PanelRequest::Arrange(preset)),
+        Action::ResetLayout => viewer.workspace.request_in_sight(PanelRequest::ResetArrangement),
+        Action::ArrangeOwn => viewer.workspace.request_in_sight(PanelRequest::ArrangeOwn),
         Action::WriteVersion(number) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(Panel::Timeline);
-            viewer.panels.timeline.ask(number);
+            viewer.workspace.request_in_sight(PanelRequest::Open(Panel::Timeline));
+            viewer.workspace.request(PanelRequest::AskVersion(number));
         }
         Action::AskExpression => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(Panel::Expression);
-            viewer.panels.expression.focus();
+            viewer.workspace.request_in_sight(PanelRequest::Open(Panel::Expression));
+            viewer.workspace.request(PanelRequest::FocusExpression);
         }
         Action::Watch(at) => watch(settings, at),
-        Action::WriteDefaults => viewer.panels.defaults.ask(None),
-        Action::TogglePanels => viewer.panels.visible ^= true,
-        Action::ToggleTheme => {
-            let layout = &mut viewer.panels.layout;
-            layout.set_light(!layout.is_light());
-        }
-        Action::ShowKeys => viewer.panels.show_keys = true,
+        Action::WriteDefaults => viewer.workspace.request(PanelRequest::AskDefaults),
+        Action::TogglePanels => viewer.workspace.request(PanelRequest::Toggle),
+        Action::ToggleTheme => viewer.workspace.request(PanelRequest::ToggleTheme),
+        Action::ShowKeys => viewer.workspace.request(PanelRequest::ShowKeys),
     }
 }

@@ -7,10 +7,10 @@ use super::ask::{Ask, Target};
 use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
-use crate::app::layout::{Panel, Preset};
 use crate::app::numbers::{of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{is_of_pass, is_switch};
+use crate::app::state::arrangement::{Panel, Preset};
 use crate::app::state::exercise::LearnCommand;
 use crate::app::state::inspection::Page;
 use crate::app::state::recent::Kind;
@@ -108,7 +108,7 @@ fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
         let words = path.display().to_string();
         Entry { words, ..Entry::new(group, format!("{group}: {name}"), action) }
     };
-    let recent = &viewer.panels.recent;
+    let recent = &viewer.recent;
     let built_in = BUILT_IN.into_iter().chain(["none"]).map(PathBuf::from);
     let environment = move |path: PathBuf| entry("Environment", &path, Action::Environment(path.display().to_string()));
     let model = move |path: PathBuf| entry("Model", &path, Action::Do(Command::OpenModel(path.clone())));
@@ -171,7 +171,7 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
         Entry { key: key.to_owned(), ..entry }
     }));
     entries.extend(of_scene(viewer));
-    if viewer.panels.layout.has_own() {
+    if viewer.workspace.sight.has_own_arrangement {
         entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
     }
     entries

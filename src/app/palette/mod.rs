@@ -98,15 +98,19 @@ pub(super) fn run(viewer: &mut Viewer, title: &str, value: Option<f64>) -> Resul
 }
 
 /// Shows the open palette over `area`, and does what the user chooses.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, area: egui::Rect, commands: &mut Vec<Command>) {
-    if !viewer.panels.palette.is_open {
+pub(super) fn show(
+    egui: &egui::Context,
+    viewer: &mut Viewer,
+    palette: &mut Palette,
+    area: egui::Rect,
+    commands: &mut Vec<Command>,
+) {
+    if !palette.is_open {
         return;
     }
-    let mut palette = std::mem::take(&mut viewer.panels.palette);
     let mut entries = entries(viewer);
-    let chosen = window(egui, &mut palette, &mut entries, area);
+    let chosen = window(egui, palette, &mut entries, area);
     palette.is_open &= chosen.is_none();
-    viewer.panels.palette = palette;
     if let Some(action) = chosen {
         act(viewer, action, commands);
     }

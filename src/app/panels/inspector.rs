@@ -10,7 +10,7 @@ mod values;
 use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use crate::app::command::Command;
-use crate::app::state::inspection::{Inspector, Page, text};
+use crate::app::state::inspection::{Inspection, Page, text};
 use crate::app::viewer::Viewer;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{choose, elided};
@@ -20,10 +20,18 @@ use crate::app::widgets::theme::{ACCENT, QUIET};
 /// Radius of the marker of the pinned pixel, points.
 const MARKER: f32 = 5.0;
 
+/// State of the panel between frames.
+#[derive(Default)]
+pub(super) struct InspectorState {
+    search: String,
+    /// How far the user has turned the lobe in space, degrees.
+    turn_deg: f32,
+}
+
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, commands: &mut Vec<Command>) {
-    state.is_visible = true;
-    let shaders = viewer.session.shaders.clone().unwrap_or_default();
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, panel: &mut InspectorState, commands: &mut Vec<Command>) {
+    let Viewer { session, shader, inspection: state, .. } = viewer;
+    let shaders = session.shaders.clone().unwrap_or_default();
     header(ui, state, &shaders.modes);
     let Some(reading) = &state.reading else {
         let hint = match state.is_pinned() {
@@ -40,32 +48,32 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, comm
             let (name, doc) = page.words();
             ui.selectable_value(&mut state.page, page, name).on_hover_text(doc);
         }
-        light(ui, &mut viewer.session.settings.lights.chosen, reading.lights.len());
+        light(ui, &mut session.settings.lights.chosen, reading.lights.len());
     });
     match state.page {
         Page::Values => {
-            search::field(ui, &mut state.search, "values", 0.0);
-            let words = Words::new(&state.search);
-            let features = viewer.session.features();
+            search::field(ui, &mut panel.search, "values", 0.0);
+            let words = Words::new(&panel.search);
+            let features = session.features();
             if let Some(search) = &state.search_not_finite {
-                not_finite::show(ui, search, viewer.shader.location.is_some(), commands);
+                not_finite::show(ui, search, shader.location.is_some(), commands);
             }
             let with = |ui: &mut Ui| texels::show(ui, &reading.texels, &words, commands);
-            let mode = &mut viewer.session.settings.mode;
+            let mode = &mut session.settings.mode;
             values::show(ui, reading, &words, &shaders.modes, features, mode, with);
         }
         Page::Lobe => {
-            let chosen = viewer.session.settings.lights.chosen;
+            let chosen = session.settings.lights.chosen;
             // Its place is not that of the list of values.
             egui::ScrollArea::vertical().id_salt("BRDF").auto_shrink(false).show(ui, |ui| {
-                lobe::show(ui, reading, state.curves.as_ref(), state.asked.as_ref(), chosen, &mut state.turn_deg);
+                lobe::show(ui, reading, state.curves.as_ref(), state.asked.as_ref(), chosen, &mut panel.turn_deg);
             });
         }
     }
 }
 
 /// The pixel, what it shows, and what can be done with it.
-fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
+fn header(ui: &mut Ui, state: &mut Inspection, modes: &[crate::shader::Mode]) {
     ui.horizontal(|ui| {
         let at = state.pin.or(state.reading.as_ref().filter(|_| state.follows).map(|reading| reading.at));
         match at {
@@ -96,7 +104,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
 }
 
 /// The menu that copies all values.
-fn copy(ui: &mut Ui, state: &Inspector, modes: &[crate::shader::Mode]) {
+fn copy(ui: &mut Ui, state: &Inspection, modes: &[crate::shader::Mode]) {
     ui.add_enabled_ui(state.reading.is_some(), |ui| {
         let menu = ui.menu_button("Copy", |ui| {
             let Some(reading) = &state.reading else { return };
@@ -128,7 +136,7 @@ fn light(ui: &mut Ui, chosen: &mut u32, lights: usize) {
 }
 
 /// Marks the pinned pixel in the picture.
-pub(super) fn marker(egui: &egui::Context, state: &Inspector, picture: Rect) {
+pub(super) fn marker(egui: &egui::Context, state: &Inspection, picture: Rect) {
     let Some([x, y]) = state.pin.filter(|_| state.is_visible) else { return };
     let scale = egui.pixels_per_point();
     let at = picture.min + vec2(x as f32 + 0.5, y as f32 + 0.5) / scale;

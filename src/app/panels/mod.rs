@@ -33,15 +33,13 @@ use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
-use super::layout::{Layout, Panel};
+use super::layout::Layout;
 use super::palette::{self, Palette};
+use super::state::arrangement::{Panel, Preset};
+use super::state::recent::Kind;
+use super::state::workspace::{PanelRequest, Sight};
 use super::viewer::Viewer;
 use super::widgets::theme::{self, ACCENT, EDGE, ERROR, QUIET, WARNING};
-use crate::app::state::grid::Grid;
-use crate::app::state::hint::Hint;
-use crate::app::state::inspection::Inspector;
-use crate::app::state::last_session::LastSessions;
-use crate::app::state::recent::{Kind, Recent};
 use crate::frame::Limits;
 use crate::render::RangeSample;
 use crate::settings::Colormap;
@@ -50,80 +48,79 @@ use crate::shader::Mode;
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
 
-/// State of the panels between frames.
-pub(super) struct PanelState {
+/// The user interface between frames.
+pub(super) struct Panels {
     /// Whether the panels are shown (H).
     pub(super) visible: bool,
-    pub(super) layout: Layout,
+    layout: Layout,
+    pub(super) docked: Docked,
     pub(super) palette: Palette,
     /// Whether the list of keys is shown (F1).
     pub(super) show_keys: bool,
     key_list: keys::KeyList,
-    /// Files that were open, in this run and before.
-    pub(super) recent: Recent,
-    pub(super) last_sessions: LastSessions,
     pub(super) open_gallery: open_gallery::OpenGallery,
-    /// The search in the list of modes.
-    search: String,
-    /// Whether the warnings of the model are shown over the picture.
-    pub(super) show_model_warnings: bool,
-    /// Slug of the mode that the list was last scrolled to.
-    scrolled_to: String,
-    pub(super) gallery: GalleryState,
-    pub(super) inspector: Inspector,
-    timing: timing::TimingState,
-    shaders: shaders::ShadersState,
-    pub(super) scene: scene::SceneState,
-    pub(super) texture: texture::TextureState,
-    gizmo: overlay::Gizmo,
-    pub(super) timeline: timeline::TimelineState,
-    pub(super) expression: expression::ExpressionState,
     pub(super) defaults: parameters::defaults::Asked,
-    capture: capture::CaptureState,
+    gizmo: overlay::Gizmo,
     files: overlay::diagnostics::Files,
-    pub(super) hint: Hint,
     pub(super) legend: overlay::legend::LegendState,
     labels: overlay::Labels,
-    /// The modes that the picture shows side by side.
-    pub(super) grid: Grid,
 }
 
-impl PanelState {
-    /// Whether the times of frames are in sight.
-    pub(super) fn measures(&self) -> bool {
-        self.visible && self.timing.is_visible
-    }
+/// The states of the panels in tiles.
+#[derive(Default)]
+pub(super) struct Docked {
+    modes: modes::ModesState,
+    pub(super) gallery: GalleryState,
+    inspector: inspector::InspectorState,
+    timing: timing::TimingState,
+    shaders: shaders::ShadersState,
+    scene: scene::SceneState,
+    pub(super) texture: texture::TextureState,
+    timeline: timeline::TimelineState,
+    expression: expression::ExpressionState,
+    capture: capture::CaptureState,
+}
 
+impl Panels {
     /// The panels as they were arranged in the last run.
     pub(super) fn restored() -> Self {
         Self {
             visible: true,
             layout: Layout::restored(),
+            docked: Docked::default(),
             palette: Palette::default(),
             show_keys: false,
             key_list: keys::KeyList::default(),
-            recent: Recent::restored(),
-            last_sessions: LastSessions::restored(),
             open_gallery: open_gallery::OpenGallery::default(),
-            search: String::new(),
-            show_model_warnings: true,
-            scrolled_to: String::new(),
-            gallery: GalleryState::default(),
-            inspector: Inspector::default(),
-            timing: timing::TimingState::default(),
-            shaders: shaders::ShadersState::default(),
-            scene: scene::SceneState::default(),
-            texture: texture::TextureState::default(),
-            gizmo: overlay::Gizmo::default(),
-            timeline: timeline::TimelineState::default(),
-            expression: expression::ExpressionState::default(),
             defaults: parameters::defaults::Asked::default(),
-            capture: capture::CaptureState::default(),
+            gizmo: overlay::Gizmo::default(),
             files: overlay::diagnostics::Files::default(),
-            hint: Hint::restored(),
             legend: overlay::legend::LegendState::default(),
             labels: overlay::Labels::default(),
-            grid: Grid::default(),
+        }
+    }
+
+    /// Does what the rest of the window has asked for since the last frame.
+    fn carry_out(&mut self, request: PanelRequest) {
+        match request {
+            PanelRequest::Toggle => self.visible ^= true,
+            PanelRequest::Unhide => self.visible = true,
+            PanelRequest::Open(panel) => self.layout.open(panel),
+            PanelRequest::Arrange(preset) => self.layout.arrange(preset),
+            PanelRequest::ArrangeTemporarily(preset) => self.layout.arrange_temporarily(preset),
+            PanelRequest::ArrangeAsBefore => self.layout.arrange_as_before(),
+            PanelRequest::ArrangeOwn => self.layout.arrange_own(),
+            PanelRequest::ResetArrangement => self.layout.reset(),
+            PanelRequest::ShowExercise if self.layout.is_in_sight(Panel::Learn) => {}
+            PanelRequest::ShowExercise => self.layout.arrange_temporarily(Preset::Learn),
+            PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
+            PanelRequest::ToggleHistogram => self.legend.shows_histogram ^= true,
+            PanelRequest::ShowKeys => self.show_keys = true,
+            PanelRequest::ShowGallery => self.open_gallery.is_open = true,
+            PanelRequest::AskVersion(number) => self.docked.timeline.ask(number),
+            PanelRequest::AskDefaults => self.defaults.ask(None),
+            PanelRequest::FocusExpression => self.docked.expression.focus(),
+            PanelRequest::FollowSelection => self.docked.scene.follow(),
         }
     }
 }
@@ -173,34 +170,43 @@ pub(super) struct PictureArea {
 }
 
 /// Shows bars, panels and messages. Returns what is left for the picture.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
+pub(super) fn show(
+    ui: &mut Ui,
+    viewer: &mut Viewer,
+    panels: &mut Panels,
+    readings: &Readings,
+    commands: &mut Vec<Command>,
+) -> PictureArea {
+    viewer.workspace.take_requests().into_iter().for_each(|request| panels.carry_out(request));
     let whole = ui.max_rect();
-    theme::choose(ui.ctx(), viewer.panels.layout.is_light());
+    theme::choose(ui.ctx(), panels.layout.is_light());
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.update_stages();
-    viewer.panels.timeline.is_visible = false;
-    viewer.panels.inspector.is_visible = false;
-    viewer.panels.timing.is_visible = false;
-    viewer.panels.texture.request = None;
-    viewer.panels.gallery.begin_frame();
-    let picture = if viewer.panels.visible && has_room {
-        bars(ui, viewer, commands);
-        let mut layout = std::mem::take(&mut viewer.panels.layout);
-        let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, commands));
-        let free = layout.free_of_handles();
-        viewer.panels.layout = layout;
-        PictureArea { rect: picture, free }
+    let mut sight = Sight::default();
+    viewer.inspection.is_visible = false;
+    panels.docked.texture.request = None;
+    panels.docked.gallery.begin_frame();
+    let picture = if panels.visible && has_room {
+        bars(ui, viewer, panels, commands);
+        let Panels { layout, docked, legend, .. } = &mut *panels;
+        let shows_histogram = &mut legend.shows_histogram;
+        let picture = layout
+            .show(ui, &mut |ui, shown| panel(ui, shown, (&mut *viewer, &mut sight), docked, shows_histogram, commands));
+        PictureArea { rect: picture, free: layout.free_of_handles() }
     } else {
         PictureArea { rect: whole, free: whole }
     };
-    overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
-    let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
-    keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
-    open_gallery::show(ui.ctx(), viewer, commands);
-    palette::show(ui.ctx(), viewer, whole, commands);
-    parameters::defaults::show(ui.ctx(), viewer, commands);
-    viewer.panels.gallery.end_frame(ui.ctx());
-    viewer.panels.grid.follow(&viewer.session.settings.mode);
+    overlay::show(ui.ctx(), (&mut *viewer, &mut *panels), readings, picture.rect, commands);
+    keys::show(ui.ctx(), &mut panels.key_list, &mut panels.show_keys, !panels.palette.is_open());
+    open_gallery::show(ui.ctx(), viewer, &mut panels.open_gallery, commands);
+    palette::show(ui.ctx(), viewer, &mut panels.palette, whole, commands);
+    parameters::defaults::show(ui.ctx(), viewer, &mut panels.defaults, commands);
+    panels.docked.gallery.end_frame(ui.ctx());
+    viewer.grid.follow(&viewer.session.settings.mode);
+    sight.preview = panels.docked.gallery.preview().map(str::to_owned);
+    sight.learn = panels.layout.is_in_sight(Panel::Learn);
+    sight.has_own_arrangement = panels.layout.has_own();
+    viewer.workspace.sight = sight;
     picture
 }
 
@@ -208,8 +214,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
 const LONG: Duration = Duration::from_millis(250);
 
 /// The bars above and below the tiles.
-fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
-    top_bar::show(ui, &mut viewer.panels, commands);
+fn bars(ui: &mut Ui, viewer: &Viewer, panels: &mut Panels, commands: &mut Vec<Command>) {
+    top_bar::show(ui, panels, (&viewer.recent, &viewer.last_sessions), commands);
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
@@ -233,92 +239,74 @@ fn device(viewer: &Viewer) -> String {
     format!("{} · Vulkan {}", info.name, info.api)
 }
 
-/// Shows the panel in a tile.
-fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Command>) {
-    if panel == Panel::Timeline {
-        let mut state = std::mem::take(&mut viewer.panels.timeline);
-        timeline::show(ui, viewer, &mut state, commands);
-        viewer.panels.timeline = state;
-        return;
-    }
-    if panel == Panel::Learn {
-        return learn::show(ui, &viewer.learning, &viewer.session.diagnostics, commands);
-    }
-    if panel == Panel::Expression {
-        let mut state = std::mem::take(&mut viewer.panels.expression);
-        expression::show(ui, viewer, &mut state, commands);
-        viewer.panels.expression = state;
-        return;
-    }
-    if panel == Panel::Inspector {
-        let mut state = std::mem::take(&mut viewer.panels.inspector);
-        inspector::show(ui, viewer, &mut state, commands);
-        viewer.panels.inspector = state;
-        return;
-    }
-    if panel == Panel::Capture {
-        let size = viewer.shown().map_or((0, 0), |state| state.size);
-        let versions = viewer.versions.iter().count();
-        capture::show(ui, &mut viewer.panels.capture, &viewer.controlled.captures, (size, versions), commands);
-        return;
-    }
-    if panel == Panel::Shaders {
-        let mut state = std::mem::take(&mut viewer.panels.shaders);
-        shaders::show(ui, viewer, &mut state, commands);
-        viewer.panels.shaders = state;
-        return;
-    }
-    if panel == Panel::Timing {
-        let mut state = std::mem::take(&mut viewer.panels.timing);
-        timing::show(ui, viewer, &mut state, &device(viewer));
-        viewer.panels.timing = state;
-        return;
-    }
-    if panel == Panel::Scene {
-        let mut state = std::mem::take(&mut viewer.panels.scene);
-        scene::show(ui, viewer, &mut state, commands);
-        viewer.panels.scene = state;
-        return;
-    }
-    if panel == Panel::Texture {
-        let mut state = std::mem::take(&mut viewer.panels.texture);
-        texture::show(ui, viewer, &mut state);
-        viewer.panels.texture = state;
-        return;
-    }
+/// Shows the panel in a tile, and notes that it is in sight.
+fn panel(
+    ui: &mut Ui,
+    panel: Panel,
+    (viewer, sight): (&mut Viewer, &mut Sight),
+    docked: &mut Docked,
+    shows_histogram: &mut bool,
+    commands: &mut Vec<Command>,
+) {
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.placed_model().unwrap_or_default();
-    let is_animated = viewer.is_animated();
-    let features = viewer.session.features();
-    let view = viewer.shown().map(|state| state.camera);
-    let session = &mut viewer.session;
-    let settings = &mut session.settings;
-    let declared = shaders.clone().unwrap_or_default();
+    let settings = &mut viewer.session.settings;
     match panel {
-        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Shaders | Panel::Timing => {}
-        Panel::Expression | Panel::Inspector | Panel::Capture | Panel::Scene | Panel::Texture => {}
+        Panel::Viewport => {}
         Panel::Modes => {
-            if modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels) {
+            let features = viewer.session.features();
+            let (current, grid) = (&mut viewer.session.settings.mode, &mut viewer.grid);
+            let Docked { modes, gallery, .. } = docked;
+            if modes::show(ui, shaders.as_deref(), features, current, grid, (modes, gallery)) {
                 let text = "At most nine modes fit side by side. Modes of random paths can only be shown alone";
                 commands.push(Command::Say(text.into()));
             }
         }
+        Panel::Scene => scene::show(ui, viewer, &mut docked.scene, commands),
         Panel::Model => {
-            let recent = viewer.panels.recent.of(Kind::Model);
+            let recent = viewer.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);
         }
+        Panel::Texture => texture::show(ui, viewer, &mut docked.texture),
+        Panel::Learn => learn::show(ui, &viewer.learning, &viewer.session.diagnostics, commands),
+        Panel::Shaders => shaders::show(ui, viewer, &mut docked.shaders, commands),
+        Panel::Timeline => {
+            sight.timeline = true;
+            timeline::show(ui, viewer, &mut docked.timeline, commands);
+        }
+        Panel::Timing => {
+            sight.timing = true;
+            timing::show(ui, viewer, &mut docked.timing, &device(viewer));
+        }
+        Panel::Expression => expression::show(ui, viewer, &mut docked.expression, commands),
         Panel::Parameters => {
             let is_of_file = viewer.shader.is_single_file;
-            parameters::show(ui, &declared, &mut settings.shader, is_of_file);
+            parameters::show(ui, &shaders.unwrap_or_default(), &mut settings.shader, is_of_file);
         }
-        Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
+        Panel::Passes => {
+            let is_animated = viewer.is_animated();
+            let (settings, playback) = (&mut viewer.session.settings, &mut viewer.playback);
+            passes::show(ui, &shaders.unwrap_or_default(), settings, playback, is_animated);
+        }
+        Panel::Inspector => {
+            viewer.inspection.is_visible = true;
+            inspector::show(ui, viewer, &mut docked.inspector, commands);
+        }
         Panel::Environment => {
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
-            environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
+            environment::show(ui, settings, viewer.recent.of(Kind::Environment), progress, report);
         }
         Panel::Lights => lights::show(ui, settings, model.lights.len(), commands),
-        Panel::Output => output::show(ui, settings, &mut viewer.panels.legend.shows_histogram, commands),
-        Panel::Camera => camera::show(ui, settings, view.as_ref(), &model, commands),
+        Panel::Output => output::show(ui, settings, shows_histogram, commands),
+        Panel::Camera => {
+            let view = viewer.shown().map(|state| state.camera);
+            camera::show(ui, &mut viewer.session.settings, view.as_ref(), &model, commands);
+        }
+        Panel::Capture => {
+            let size = viewer.shown().map_or((0, 0), |state| state.size);
+            let versions = viewer.versions.iter().count();
+            capture::show(ui, &mut docked.capture, &viewer.controlled.captures, (size, versions), commands);
+        }
     }
 }
 

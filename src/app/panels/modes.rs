@@ -5,7 +5,7 @@ mod tile;
 
 use egui::{RichText, Ui, vec2};
 
-use super::{PanelState, QUIET};
+use super::QUIET;
 use crate::app::gallery::GalleryState;
 use crate::app::state::grid::Grid;
 use crate::app::widgets::search::{self, Words};
@@ -17,6 +17,14 @@ use crate::shader::annotation::{Mode, listed};
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;
 
+/// State of the panel between frames.
+#[derive(Default)]
+pub(super) struct ModesState {
+    search: String,
+    /// Slug of the mode that the list was last scrolled to.
+    scrolled_to: String,
+}
+
 /// Shows the modes. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data are
 /// folded away. Returns whether a mode that the user adds has no place beside the others.
 pub(super) fn show(
@@ -24,13 +32,14 @@ pub(super) fn show(
     shaders: Option<&ShaderSet>,
     features: Option<u32>,
     current: &mut String,
-    state: &mut PanelState,
+    grid: &mut Grid,
+    (state, gallery): (&mut ModesState, &mut GalleryState),
 ) -> bool {
     let Some(shaders) = shaders else {
         ui.label(RichText::new("Compiling shaders…").color(QUIET));
         return false;
     };
-    let PanelState { search, scrolled_to, gallery, grid, .. } = state;
+    let ModesState { search, scrolled_to } = state;
     search_bar(ui, search, gallery);
     if grid.is_on() {
         side_by_side(ui, grid);

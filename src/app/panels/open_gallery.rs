@@ -54,13 +54,12 @@ impl OpenGallery {
 }
 
 /// Shows the gallery while it is open.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec<Command>) {
-    let mut state = std::mem::take(&mut viewer.panels.open_gallery);
+pub(super) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery, commands: &mut Vec<Command>) {
     if state.is_open && egui.input(|input| input.key_pressed(Key::Escape)) {
         state.is_open = false;
     }
     if state.is_open {
-        provide(egui, viewer, &mut state);
+        provide(egui, viewer, state);
         let mut stays = true;
         let room = egui.content_rect();
         let size = WINDOW.min(room.size() - vec2(24.0, 94.0));
@@ -69,13 +68,12 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec
         let before = commands.len();
         window.show(egui, |ui| {
             ui.set_width(size.x);
-            contents(ui, viewer, &mut state, size.y, commands);
+            contents(ui, viewer, state, size.y, commands);
         });
         state.is_open = stays && commands.len() == before;
     } else {
         state.search.clear();
     }
-    viewer.panels.open_gallery = state;
 }
 
 /// Lets a thread decode the pictures, and uploads them.
@@ -95,7 +93,7 @@ fn provide(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery) {
     };
 }
 
-fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &mut OpenGallery, height: f32, commands: &mut Vec<Command>) {
+fn contents(ui: &mut Ui, viewer: &Viewer, state: &mut OpenGallery, height: f32, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         if ui.button("File…").on_hover_text("A model, environment, measured BRDF, look or shader (Ctrl+O)").clicked()
         {
@@ -190,7 +188,7 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
 fn recent(viewer: &Viewer, kind: Kind, words: &Words) -> Vec<PathBuf> {
     let is_built_in = |path: &Path| path.components().count() == 1 && !path.exists();
     let is_found = |path: &&PathBuf| !is_built_in(path) && words.are_in(&path.to_string_lossy());
-    viewer.panels.recent.of(kind).iter().filter(is_found).cloned().collect()
+    viewer.recent.of(kind).iter().filter(is_found).cloned().collect()
 }
 
 /// Shows files by their names, and opens the clicked one.

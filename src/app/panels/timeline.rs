@@ -31,8 +31,6 @@ pub(in crate::app) struct TimelineState {
     /// The version that the user is asked about before it is written to the files.
     asked: Option<u64>,
     search: String,
-    /// Whether the last frame has shown the panel.
-    pub(in crate::app) is_visible: bool,
 }
 
 /// Height of a strip that shows anything of its cards, points.
@@ -47,7 +45,6 @@ impl TimelineState {
 
 /// Shows the panel.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
-    state.is_visible = true;
     let area = ui.available_size();
     // A wide tile runs from left to right, with the newest version first as in a tall one.
     let is_strip = area.x > 2.0 * area.y && area.y > 40.0;

@@ -19,13 +19,10 @@ const UI_LIMIT_MS: f64 = 2.0;
 /// State of the panel between frames.
 #[derive(Default)]
 pub(in crate::app) struct TimingState {
-    /// Whether the panel is in sight.
-    pub(super) is_visible: bool,
     memory: MemoryClock,
 }
 
 pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device: &str) {
-    state.is_visible = true;
     ui.add(elided(RichText::new(device).small().color(QUIET))).on_hover_text(device);
     let timing = &viewer.timing;
     let names = table::names(timing);

@@ -2,11 +2,13 @@
 
 use egui::{Button, Checkbox, RichText, Ui, vec2};
 
-use super::PanelState;
+use super::Panels;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
-use crate::app::layout::{Layout, Panel, Preset};
-use crate::app::state::recent::Kind;
+use crate::app::layout::Layout;
+use crate::app::state::arrangement::{Panel, Preset};
+use crate::app::state::last_session::LastSessions;
+use crate::app::state::recent::{Kind, Recent};
 use crate::app::widgets::check_box;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme;
@@ -15,14 +17,19 @@ use crate::app::widgets::theme::{BAR, QUIET, icon, small_mono};
 /// Height in points.
 pub(super) const HEIGHT: f32 = 30.0;
 
-pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &mut Panels,
+    (recent, last): (&Recent, &LastSessions),
+    commands: &mut Vec<Command>,
+) {
     let frame = egui::Frame::new().fill(BAR.color()).inner_margin(egui::Margin::symmetric(8, 3));
     let bar = egui::Panel::top("bar").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Specula").strong().color(theme::ACCENT));
             ui.add_space(6.0);
-            open(ui, state, commands);
+            open(ui, recent, last, commands);
             panels(ui, &mut state.layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
@@ -66,8 +73,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
 }
 
 /// The menu that opens files: by a dialog, or those that were open.
-fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
-    let PanelState { recent, last_sessions, .. } = state;
+fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &mut Vec<Command>) {
     let menu = ui.menu_button(format!("{}  Open", icon::FOLDER_OPEN), |ui| {
         ui.set_min_width(180.0);
         let hint = "Built-in models and environments, with pictures";

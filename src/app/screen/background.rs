@@ -172,7 +172,12 @@ impl Screen {
             self.lacks_thumbnails = true;
         }
         let context = (&self.layouts, pixels_per_point);
-        let thumbnails = self.gallery.draw(&mut self.background, viewer, &mut self.ui, context)?;
+        let thumbnails = self.gallery.draw(
+            &mut self.background,
+            (&mut *viewer, &mut self.panels.docked.gallery),
+            &mut self.ui,
+            context,
+        )?;
         let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
         let values = self.inspector.draw(&mut self.background, viewer, &self.layouts, of_pixel)?;
         let pointed = self.pointed_number(viewer);

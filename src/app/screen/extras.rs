@@ -25,7 +25,7 @@ impl Screen {
         let grid = self.draw_grid(encoder, slot, image);
         if self.survive(grid)?.is_none() {
             self.cells.clear();
-            viewer.panels.grid.end();
+            viewer.grid.end();
         }
         Ok(())
     }

@@ -80,16 +80,16 @@ impl Gallery {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        viewer: &mut Viewer,
+        (viewer, state): (&mut Viewer, &mut GalleryState),
         ui: &mut UiRenderer,
         (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
     ) -> Result<Option<Duration>, GpuError> {
         self.collect(viewer);
-        if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_safe_mode() {
+        if state.visible.is_empty() || viewer.recorder.is_safe_mode() {
             return Ok(None);
         }
         let scale = scale(&viewer.gpu) * pixels_per_point;
-        let Some((shaders, shown)) = shown(viewer, pixels(&viewer.panels.gallery, scale)) else {
+        let Some((shaders, shown)) = shown(viewer, pixels(state, scale)) else {
             return Ok(None);
         };
         if self.shown.as_ref() != Some(&shown) {
@@ -100,11 +100,10 @@ impl Gallery {
         if self.failed {
             return Ok(None);
         }
-        let is_stale =
-            |mode: &&Mode| viewer.panels.gallery.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
+        let is_stale = |mode: &&Mode| state.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
         // All modes are split, not those in sight alone, so that scrolling needs no other pipelines.
         let features = viewer.session.features();
-        let is_seen = |mode: &&Mode| mode.has_data(features) || viewer.panels.gallery.visible.contains(&mode.slug);
+        let is_seen = |mode: &&Mode| mode.has_data(features) || state.visible.contains(&mode.slug);
         let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
@@ -116,7 +115,7 @@ impl Gallery {
         if let Some(left) = time_to_rest(viewer, self.since) {
             return Ok(Some(left));
         }
-        let drawn = self.draw_sets(background, viewer, ui, layouts, &shaders, stale);
+        let drawn = self.draw_sets(background, (viewer, state), ui, layouts, &shaders, stale);
         match drawn {
             Err(error) if error.is_shortage() => {
                 self.failed = true;
@@ -138,7 +137,7 @@ impl Gallery {
     fn draw_sets(
         &mut self,
         background: &mut Background,
-        viewer: &mut Viewer,
+        (viewer, state): (&mut Viewer, &mut GalleryState),
         ui: &mut UiRenderer,
         layouts: &Arc<SetLayouts>,
         shaders: &Arc<ShaderSet>,
@@ -176,16 +175,15 @@ impl Gallery {
             if result.is_err() {
                 break;
             }
-            let gallery = &mut viewer.panels.gallery;
             for (mode, (x, y)) in set.iter().zip(corners) {
                 let (width, height) = (atlas.desc().width as f32, atlas.desc().height as f32);
                 let at = egui::pos2(x as f32 / width, y as f32 / height);
                 let place = egui::Rect::from_min_size(at, egui::vec2(size.0 as f32 / width, size.1 as f32 / height));
-                gallery.places.insert(mode.slug.clone(), place);
+                state.places.insert(mode.slug.clone(), place);
                 self.fresh.insert(mode.slug.clone());
             }
             self.drawn += set.len();
-            gallery.texture = Some(image.texture);
+            state.texture = Some(image.texture);
         }
         // The user interface samples the texture from the next frame on.
         encoder.transition(&atlas, Use::CopyTo, Use::Sampled);

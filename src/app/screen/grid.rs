@@ -23,9 +23,9 @@ pub(super) struct Cell {
 impl Screen {
     /// Divides the picture's part of the window among the modes of the grid. The selected mode is drawn as ever, in its own place.
     pub(super) fn arrange_grid(&mut self, viewer: &Viewer) {
-        let modes = viewer.panels.grid.modes();
+        let modes = viewer.grid.modes();
         let selected = &viewer.session.settings.mode;
-        let is_on = viewer.panels.grid.is_on() && !viewer.compare.is_on();
+        let is_on = viewer.grid.is_on() && !viewer.compare.is_on();
         let place = modes.iter().position(|mode| mode == selected).filter(|_| is_on);
         let Some(place) = place else {
             self.rect = self.whole;
@@ -50,7 +50,7 @@ impl Screen {
         let prepared = wanted.into_iter().try_for_each(|(mode, rect)| self.prepare_cell(viewer, mode, rect));
         if self.survive(prepared)?.is_none() {
             self.cells.clear();
-            viewer.panels.grid.end();
+            viewer.grid.end();
         }
         Ok(())
     }

@@ -91,7 +91,7 @@ impl PixelReader {
         layouts: &Arc<SetLayouts>,
         (size, mouse): ((u32, u32), Option<(u32, u32)>),
     ) -> Result<Option<Duration>, GpuError> {
-        let inspector = &viewer.panels.inspector;
+        let inspector = &viewer.inspection;
         if !inspector.is_visible || viewer.recorder.is_safe_mode() {
             // The device memory is free for other things while the panel is closed.
             (self.renderer, self.shown) = (None, None);

@@ -37,7 +37,7 @@ impl Screen {
     fn end_others(&mut self, viewer: &mut Viewer) {
         self.end_background(viewer);
         self.cells.clear();
-        viewer.panels.grid.end();
+        viewer.grid.end();
         viewer.end_comparison();
         self.view.forget();
         self.checks = FRAMES_IN_FLIGHT;

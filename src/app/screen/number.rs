@@ -143,7 +143,7 @@ impl NumberReader {
         let drawn = shown.bind(viewer, &shaders, vec![set], &mut self.asked).and_then(|bound| {
             let BoundSets { ready, missing, is_new } = bound;
             // The open inspector asks for it, too.
-            let is_asked = viewer.panels.inspector.is_visible && viewer.panels.inspector.reading.is_some();
+            let is_asked = viewer.inspection.is_visible && viewer.inspection.reading.is_some();
             if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new && !is_asked) {
                 viewer.threads.worker.build_inspected(pipelines, missing);
             }

@@ -32,7 +32,7 @@ impl Screen {
     /// Makes room for the picture that the panel asks for in this frame, before egui draws it. SYNC: waits for the frames in flight
     /// when the panel grows beyond the last image.
     pub(super) fn prepare_texture(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
-        let Some(request) = &viewer.panels.texture.request else { return Ok(()) };
+        let Some(request) = &self.panels.docked.texture.request else { return Ok(()) };
         let side = request.size.0.max(request.size.1).next_power_of_two().clamp(SIDES.0, SIDES.1);
         let fits = |image: &UiImage| image.image().desc().width >= side;
         if self.texture.image.as_ref().is_some_and(fits) {
@@ -41,7 +41,7 @@ impl Screen {
         let Some(tools) = viewer.tools() else { return Ok(()) };
         if let Some(old) = self.texture.image.take() {
             self.frames.wait_all()?;
-            viewer.panels.texture.shown = None;
+            self.panels.docked.texture.shown = None;
             self.ui.remove_image(old);
         }
         self.texture.drawn = None;
@@ -56,7 +56,7 @@ impl Screen {
         viewer: &mut Viewer,
         frame: Option<&BoundFrame>,
     ) -> Result<(), GpuError> {
-        let Some(request) = viewer.panels.texture.request.clone() else { return Ok(()) };
+        let Some(request) = self.panels.docked.texture.request.clone() else { return Ok(()) };
         let Some(tools) = viewer.tools() else { return Ok(()) };
         let Some(image) = self.texture.image.as_ref() else {
             // The next frame begins with one.
@@ -86,7 +86,7 @@ impl Screen {
             tools.draw_texture(encoder, &set, &request.view, &request.meshes, frame, target, size);
         });
         let part = egui::vec2(size.0 as f32 / side as f32, size.1 as f32 / side as f32);
-        viewer.panels.texture.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
+        self.panels.docked.texture.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
         self.texture.drawn = Some(wanted);
         self.redraws = true;
         Ok(())

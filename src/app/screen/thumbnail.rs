@@ -16,7 +16,7 @@ pub(super) struct Pending {
 impl Screen {
     /// Draws the next missing thumbnail, unless an edit is on its way.
     pub(super) fn record_thumbnail(&mut self, viewer: &Viewer) -> Result<(), GpuError> {
-        self.lacks_thumbnails &= viewer.panels.timeline.is_visible;
+        self.lacks_thumbnails &= viewer.workspace.sight.timeline;
         if self.thumbnail.is_some() || self.lacks_thumbnails || viewer.awaits_edit() {
             return Ok(());
         }

@@ -19,7 +19,7 @@ impl Screen {
     /// How much of the picture to draw. While the panel Timing is open, new shaders get a few frames more than they need, to be measured.
     pub(super) fn redraw(viewer: &mut Viewer, frame: Option<&BoundFrame>) -> Redraw {
         let Some(state) = frame.map(|frame| &frame.state) else { return Redraw::IfChanged };
-        let is_measurable = viewer.panels.measures() && viewer.is_settled() && !state.pipelines.accumulates;
+        let is_measurable = viewer.workspace.sight.timing && viewer.is_settled() && !state.pipelines.accumulates;
         match is_measurable && viewer.timing.wants_frame(&shown(state)) {
             true => Redraw::Always,
             false => Redraw::IfChanged,

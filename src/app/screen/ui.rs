@@ -23,11 +23,11 @@ impl Screen {
         self.show_background(viewer);
         self.take_copies(viewer);
         self.finish_window_shot(viewer);
-        if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
+        if self.gallery.is_misfit(&viewer.gpu, &self.panels.docked.gallery, self.egui.pixels_per_point()) {
             // SYNC: rare, because thumbnails change their size only with the width of their panel.
             self.frames.wait_all()?;
             self.background.wait()?;
-            self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
+            self.gallery.drop_texture(&mut self.ui, &mut self.panels.docked.gallery);
         }
         self.take_times(viewer);
         let prepared = self.prepare_texture(viewer);
@@ -39,8 +39,9 @@ impl Screen {
         };
         let input = self.input.take_egui_input(window);
         let begin = Instant::now();
-        let (mut shown, mut commands) = (None, Vec::new());
-        let output = self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, viewer, &readings, &mut commands)));
+        let (mut shown, mut commands, panels) = (None, Vec::new(), &mut self.panels);
+        let output =
+            self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, viewer, panels, &readings, &mut commands)));
         let panels_ms = begin.elapsed().as_secs_f64() * 1e3;
         commands.into_iter().for_each(|command| viewer.execute(command));
         // A drag, or a number that is being typed, is one step.

@@ -6,7 +6,8 @@ use std::time::Instant;
 use super::Viewer;
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
-use crate::app::layout::Panel;
+use crate::app::state::arrangement::Panel;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::{dialog, editor};
 use crate::picture::read_checked_look;
 use crate::scene::LoadOptions;
@@ -52,10 +53,10 @@ impl Viewer {
             Command::HideSelected => self.hide_selected(),
             Command::IsolateSelected => self.isolate_selected(),
             Command::ShowAll => self.show_all(),
-            Command::OpenPanel(panel) => self.panels.layout.open(panel),
+            Command::OpenPanel(panel) => self.workspace.request(PanelRequest::Open(panel)),
             Command::OpenInspector(page) => {
-                self.panels.inspector.page = page;
-                self.panels.layout.open(Panel::Inspector);
+                self.inspection.page = page;
+                self.workspace.request(PanelRequest::Open(Panel::Inspector));
             }
             Command::LookThrough(camera) => self.look_through(camera),
             Command::PlaceRectangle => self.place_rectangle(),
@@ -69,9 +70,9 @@ impl Viewer {
                 self.choosing = Some(dialog);
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
-            Command::ShowGallery => self.panels.open_gallery.is_open = true,
+            Command::ShowGallery => self.workspace.request(PanelRequest::ShowGallery),
             Command::RestoreSession => self.restore_session(),
-            Command::RestoreAlways(always) => self.panels.last_sessions.set_always(always),
+            Command::RestoreAlways(always) => self.last_sessions.set_always(always),
             Command::Say(text) => self.say(text),
             Command::Ask(request) => self.ask_self(*request),
             Command::CancelCaptures => self.cancel_captures(),

@@ -19,7 +19,7 @@ const MARKER: u32 = 6;
 impl Viewer {
     /// Pins a pixel, or unpins it if it is the pinned one and its marker is in sight.
     pub(super) fn inspect(&mut self, at: [u32; 2]) {
-        let inspector = &mut self.panels.inspector;
+        let inspector = &mut self.inspection;
         // The panel reads the pixel once it is open.
         if !inspector.is_visible {
             inspector.pin = Some(at);
@@ -38,7 +38,7 @@ impl Viewer {
     /// Begins to read the values of a pixel: picture number `picture`, which `state` draws. Earlier values stay until newer ones come.
     /// Returns whether the picture is new.
     pub(in crate::app) fn begin_values(&mut self, picture: u64, at: [u32; 2], state: &FrameState) -> bool {
-        let inspector = &mut self.panels.inspector;
+        let inspector = &mut self.inspection;
         if inspector.reading.as_ref().is_some_and(|reading| reading.picture == picture) {
             return false;
         }
@@ -64,14 +64,14 @@ impl Viewer {
 
     /// Takes the texels at the pixel of picture number `picture`.
     pub(in crate::app) fn take_texels(&mut self, picture: u64, texels: Vec<Texel>) {
-        if let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture) {
+        if let Some(reading) = self.inspection.reading.as_mut().filter(|reading| reading.picture == picture) {
             reading.texels = texels;
         }
     }
 
     /// Takes values of picture number `picture`.
     pub(in crate::app) fn take_values(&mut self, picture: u64, values: impl Iterator<Item = (String, PixelValue)>) {
-        let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture) else {
+        let Some(reading) = self.inspection.reading.as_mut().filter(|reading| reading.picture == picture) else {
             return;
         };
         reading.values.extend(values.map(|(slug, value)| (slug, (value, picture))));
@@ -80,7 +80,7 @@ impl Viewer {
     /// Learns that all values of picture number `picture` were taken. Returns whether that is new.
     pub(in crate::app) fn values_complete(&mut self, picture: u64) -> bool {
         let mut is_new = false;
-        if let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture)
+        if let Some(reading) = self.inspection.reading.as_mut().filter(|reading| reading.picture == picture)
             && !std::mem::replace(&mut reading.is_complete, true)
         {
             is_new = true;
@@ -108,7 +108,7 @@ impl Viewer {
     /// Has the first statement found that makes NaN or infinity at the pinned pixel, if there is any: in the mode on screen, else in the
     /// final picture, else in the first mode that has one.
     fn search_not_finite(&mut self) {
-        let inspector = &self.panels.inspector;
+        let inspector = &self.inspection;
         let is_wanted = inspector.is_pinned() && inspector.search_not_finite.is_none() && !self.is_cut_short();
         let Some(reading) = inspector.reading.as_ref().filter(|reading| is_wanted && reading.is_complete) else {
             return;
@@ -132,12 +132,12 @@ impl Viewer {
         };
         let mode = mode.slug.clone();
         let number = self.threads.finder.find(request);
-        self.panels.inspector.search_not_finite = Some(NotFiniteSearch { number, mode, found: None });
+        self.inspection.search_not_finite = Some(NotFiniteSearch { number, mode, found: None });
     }
 
     /// Takes the result of the newest search.
     pub(super) fn on_not_finite(&mut self, number: u64, found: NotFinite) {
-        let search = self.panels.inspector.search_not_finite.as_mut().filter(|search| search.number == number);
+        let search = self.inspection.search_not_finite.as_mut().filter(|search| search.number == number);
         let Some(search) = search else { return };
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
         emit(&self.events, &Event::NotFinite { generation, not_finite: found.json() });
@@ -147,7 +147,7 @@ impl Viewer {
     /// Has the curves of the inspected material measured, while the page that shows them is in sight. Values are complete then, so the
     /// newest edit is on screen.
     fn request_curves(&mut self) {
-        let inspector = &self.panels.inspector;
+        let inspector = &self.inspection;
         if inspector.page != Page::Lobe || self.is_cut_short() {
             return;
         }
@@ -170,12 +170,12 @@ impl Viewer {
             material,
         };
         let number = self.threads.measurer.measure(&self.compiler, request);
-        self.panels.inspector.asked = Some(Asked { number, material, shaders, settings });
+        self.inspection.asked = Some(Asked { number, material, shaders, settings });
     }
 
     /// Takes curves, if they are those that were asked for last.
     pub(super) fn on_curves(&mut self, measured: Measured) {
-        let inspector = &mut self.panels.inspector;
+        let inspector = &mut self.inspection;
         let Some(asked) = inspector.asked.as_ref().filter(|asked| asked.number == measured.number) else { return };
         let Measured { now, before, ms, .. } = measured;
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);

@@ -8,9 +8,10 @@ use super::Viewer;
 use super::compare::write_files;
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::layout::{Panel, Preset};
+use crate::app::state::arrangement::Preset;
 use crate::app::state::exercise::{LearnCommand, Measured};
 use crate::app::state::selection::Selected;
+use crate::app::state::workspace::PanelRequest;
 use crate::events::{Event, emit};
 use crate::learn::{Exercise, exercise_of, exercises, prepare};
 use crate::settings::Settings;
@@ -24,10 +25,10 @@ impl Viewer {
         learning.asks &= command == LearnCommand::StartOver;
         match (command, learning.exercise) {
             (LearnCommand::Open(number), _) => self.prepare_exercise(number),
-            (LearnCommand::List, _) if self.panels.layout.is_in_sight(Panel::Learn) => learning.shows_list ^= true,
+            (LearnCommand::List, _) if self.workspace.sight.learn => learning.shows_list ^= true,
             (LearnCommand::List, _) => {
                 learning.shows_list = true;
-                self.panels.layout.arrange(Preset::Learn);
+                self.workspace.request(PanelRequest::Arrange(Preset::Learn));
             }
             (LearnCommand::Hint, Some(exercise)) => {
                 let most = exercise.hints.len();
@@ -97,10 +98,8 @@ impl Viewer {
         self.threads.checker.supersede();
         self.learning.open(&folder, exercise);
         if exercise.is_some() {
-            self.panels.hint.hide();
-            if !self.panels.layout.is_in_sight(Panel::Learn) {
-                self.panels.layout.arrange_temporarily(Preset::Learn);
-            }
+            self.hint.hide();
+            self.workspace.request(PanelRequest::ShowExercise);
         }
         if self.settled.is_some() && self.settled == self.session.shaders.as_ref().map(|shaders| shaders.generation) {
             self.check_exercise();

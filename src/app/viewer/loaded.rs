@@ -45,9 +45,9 @@ impl Viewer {
                 if !is_restored && (is_other || self.session.model().is_none()) {
                     self.follow_lights(model);
                 }
-                self.panels.show_model_warnings = true;
+                self.model.shows_warnings = true;
                 if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
-                    self.panels.recent.remember(Kind::Model, path);
+                    self.recent.remember(Kind::Model, path);
                 }
                 self.model.path = loaded.path;
                 self.model.load_ms = loaded.ms;
@@ -65,7 +65,7 @@ impl Viewer {
                 let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
                 self.model.files = on_screen.into_iter().chain(tried).collect();
                 if let Some(path) = &loaded.path {
-                    self.panels.recent.forget(Kind::Model, path);
+                    self.recent.forget(Kind::Model, path);
                 }
                 self.model_failed(&message);
                 self.say(message);

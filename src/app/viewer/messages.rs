@@ -6,9 +6,10 @@ use std::sync::Arc;
 use super::{FirstFrame, Viewer};
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
-use crate::app::layout::Preset;
+use crate::app::state::arrangement::Preset;
 use crate::app::state::inspection::Shown;
 use crate::app::state::recent::Kind;
+use crate::app::state::workspace::PanelRequest;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::pipeline::{Outcome, Reload};
@@ -24,10 +25,9 @@ impl Viewer {
     /// Shows the panels for a single file, which has no model, or those of before for a tree.
     fn arrange_for(&mut self, is_single_file: bool) {
         let was_single_file = std::mem::replace(&mut self.shader.is_single_file, is_single_file);
-        let layout = &mut self.panels.layout;
         match (was_single_file, is_single_file) {
-            (false, true) => layout.arrange_temporarily(Preset::Toy),
-            (true, false) => layout.arrange_as_before(),
+            (false, true) => self.workspace.request(PanelRequest::ArrangeTemporarily(Preset::Toy)),
+            (true, false) => self.workspace.request(PanelRequest::ArrangeAsBefore),
             _ => {}
         }
     }
@@ -63,7 +63,6 @@ impl Viewer {
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Curves(measured) => self.on_curves(*measured),
             Message::NotFinite(number, found) => self.on_not_finite(number, *found),
-            Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
             Message::Tools(tools) => self.on_tools(tools),
             Message::Look(Ok(look)) => {
@@ -80,8 +79,8 @@ impl Viewer {
                 self.look_read(Err(message));
             }
             Message::Asked(asked) => self.on_asked(*asked),
-            // The screen has taken it.
-            Message::Accessibility(_) => {}
+            // The screen has taken them.
+            Message::Accessibility(_) | Message::Pictures(_) => {}
             Message::Captures(number, done, of) => self.controlled.captures.progress(number, done, of),
             Message::Captured(number) => self.controlled.captures.ended(number),
             Message::Compared(number, compared) => self.on_compared(number, compared),
@@ -122,7 +121,7 @@ impl Viewer {
     /// Remembers the shader tree on disk, if it compiles.
     fn remember_tree(&mut self, outcome: &Outcome) {
         if let (Outcome::Ready(_), Some(tree)) = (outcome, self.source.location()) {
-            self.panels.recent.remember(Kind::Tree, tree);
+            self.recent.remember(Kind::Tree, tree);
         }
     }
 
@@ -221,7 +220,7 @@ impl Viewer {
         let is_watch = event.changed.is_empty() && event.stages == [expression::STAGE];
         // Numbers that are dragged, and an older version in place of the newest, are no saves.
         if self.has_folder() && self.edits.draft().is_none() && self.edits.restored.is_none() {
-            self.panels.hint.saved(&event);
+            self.hint.saved(&event);
         }
         let changed = if is_watch { vec![expression::MODE.to_owned()] } else { event.changed.clone() };
         self.shader.last = Some(ReloadEvent { changed, ..event });
@@ -262,7 +261,7 @@ impl Viewer {
                     Ok(environment) => {
                         self.warn_of(environment.wrong());
                         if !environment::BUILT_IN.contains(&key.name.as_str()) {
-                            self.panels.recent.remember(Kind::Environment, Path::new(&key.name));
+                            self.recent.remember(Kind::Environment, Path::new(&key.name));
                         }
                         emit(&self.events, &Event::Bake(&environment.report));
                         self.session.revisions.suns = environment.sun_count();
@@ -272,7 +271,7 @@ impl Viewer {
                         if let BakeError::Gpu(GpuError::EndlessLoop(words)) = error {
                             self.on_endless_loop(words);
                         }
-                        self.panels.recent.forget(Kind::Environment, Path::new(&key.name));
+                        self.recent.forget(Kind::Environment, Path::new(&key.name));
                         self.resources.set_environment(key, None);
                         self.fail_waiting(&error.to_string());
                         self.say(format!("{error}\nThe previous environment stays."));
@@ -360,7 +359,7 @@ impl Viewer {
             }
             TaskKind::Measurer => {
                 // The same question would panic again, so it stays asked until another one comes.
-                let inspector = &mut self.panels.inspector;
+                let inspector = &mut self.inspection;
                 if let Some(asked) = &inspector.asked {
                     let now = Err("the measurement failed".to_owned());
                     inspector.curves = Some(Shown { of: asked.material, now, before: None });
@@ -368,7 +367,7 @@ impl Viewer {
                 "measuring"
             }
             TaskKind::Finder => {
-                self.panels.inspector.fail_search();
+                self.inspection.fail_search();
                 "finding"
             }
             TaskKind::Capture(number) => {

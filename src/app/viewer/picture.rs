@@ -46,8 +46,8 @@ impl Viewer {
         size: (u32, u32),
         prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
-        let preview = self.panels.gallery.preview().filter(|_| !self.recorder.is_safe_mode());
-        let Some(preview) = preview.map(str::to_owned) else {
+        let preview = self.workspace.sight.preview.clone().filter(|_| !self.recorder.is_safe_mode());
+        let Some(preview) = preview else {
             return self.frame_of_settings(size, prepare);
         };
         // A preview is no setting: it is not recorded, and ends when the mouse leaves the mode.
@@ -166,7 +166,7 @@ impl Viewer {
         // A watched expression is no look of the version.
         let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
         let lacks = self.versions.without_thumbnail();
-        if !self.panels.timeline.is_visible {
+        if !self.workspace.sight.timeline {
             return None;
         }
         let mut with_picture = lacks.filter_map(|version| {
@@ -230,8 +230,8 @@ impl Viewer {
         let shown = self.shown()?;
         let request = &shown.pipelines;
         let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
-        let preview = self.panels.gallery.preview();
-        let selected = preview.and_then(|slug| shown.shaders.modes.iter().find(|mode| mode.slug == slug));
+        let preview = self.workspace.sight.preview.as_ref();
+        let selected = preview.and_then(|slug| shown.shaders.modes.iter().find(|mode| mode.slug == *slug));
         let title = title(shown.mode()?, selected.or_else(|| self.session.mode()), paths)?;
         Some(request.limit().map_or_else(|| title.clone(), |limit| format!("{title}. Note: {limit}")))
     }

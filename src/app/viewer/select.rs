@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Viewer;
 use crate::app::state::selection::{LightId, Selected, name_or};
+use crate::app::state::workspace::PanelRequest;
 use crate::events::{Event, SelectedEvent, emit};
 use crate::scene::{CameraController, CameraView, Model, pick};
 use crate::settings::LightSource;
@@ -15,7 +16,7 @@ impl Viewer {
         let Some(scene) = state.scene.clone() else { return };
         let hit = pick(scene.model(), &state.camera, state.size, (x, y), |instance| scene.sides(instance));
         self.select(self.selected.clicked(hit.map(|hit| hit.instance)));
-        self.panels.scene.follow();
+        self.workspace.request(PanelRequest::FollowSelection);
     }
 
     /// Selects a part of the scene, and prints an event.

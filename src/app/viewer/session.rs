@@ -20,7 +20,7 @@ impl Viewer {
 
     /// Goes on with the last session, as it was left.
     pub(super) fn restore_session(&mut self) {
-        let Some(last) = self.panels.last_sessions.here.clone() else {
+        let Some(last) = self.last_sessions.here.clone() else {
             return self.say("There is no session to restore");
         };
         self.go_to(last.work);
@@ -55,7 +55,7 @@ impl Viewer {
 
     /// Whether to offer the last session: until the user does anything that is worth keeping.
     pub(in crate::app) fn offers_session(&mut self) -> bool {
-        self.offers_session &= self.panels.last_sessions.here.is_some() && !self.has_work();
+        self.offers_session &= self.last_sessions.here.is_some() && !self.has_work();
         self.offers_session
     }
 

@@ -5,7 +5,7 @@ use egui::{Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos
 
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
-use crate::app::layout::Panel;
+use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::widgets::search::Words;
 use crate::app::widgets::spoken;

@@ -150,16 +150,16 @@ impl Frame {
 }
 
 /// Shows the handles over the picture while a light is selected.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, gizmo: &mut Gizmo, rect: Rect) {
     let Selected::Light(selected) = viewer.selected else {
-        viewer.panels.gizmo.drag = None;
+        gizmo.drag = None;
         return;
     };
     let Some(state) = viewer.shown().filter(|state| state.pipelines.draws_model) else { return };
     let Some(model) = state.scene.as_ref().map(|scene| scene.model().clone()) else { return };
     let frame = Frame { view: state.camera, bounds: model.bounds, rect, size: state.size };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("gizmo"))).with_clip_rect(rect);
-    viewer.panels.gizmo.follow(&frame.view);
+    gizmo.follow(&frame.view);
     let lights = &mut viewer.session.settings.lights;
     let mut shown = Vec::new();
     if lights.source == LightSource::Orbit {
@@ -176,7 +176,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
         }
     }
     for light in shown {
-        if handle(egui, &painter, &frame, lights, light, light == selected, &mut viewer.panels.gizmo) {
+        if handle(egui, &painter, &frame, lights, light, light == selected, gizmo) {
             chosen = Some(light);
         }
     }

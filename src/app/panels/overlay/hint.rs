@@ -12,7 +12,7 @@ use crate::learn::exercises;
 
 /// Shows the card while the hint is not dismissed.
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {
-    if !viewer.panels.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
+    if !viewer.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
         return;
     }
     // Which tree it is is known with the first shaders. A single file is the user's own already.
@@ -42,7 +42,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                     let text =
                         "Write them to a folder of your own, edit a file there and save it: the picture updates.";
                     ui.label(RichText::new(text).color(QUIET));
-                    let standard = viewer.panels.hint.folder.clone();
+                    let standard = viewer.hint.folder.clone();
                     buttons(ui, commands, &mut is_done, |ui| {
                         let hover = "Writes the shaders there, as `specula new` does, and opens them";
                         let text = format!("Write to ./{}", standard.display());
@@ -56,7 +56,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
         });
     });
     if is_done {
-        viewer.panels.hint.dismiss();
+        viewer.hint.dismiss();
     }
 }
 

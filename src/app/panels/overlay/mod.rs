@@ -17,14 +17,15 @@ use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margi
 use egui::{TextStyle, Ui};
 
 use super::inspector::marker;
-use super::{Readings, WARNING};
+use super::{Panels, Readings, WARNING};
 use crate::app::command::Command;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{CARD, LINE};
+use crate::settings::ViewSettings;
 use diagnostics::Shown;
 pub(super) use gizmo::Gizmo;
 pub(super) use labels::Labels;
-use legend::Legend;
+use legend::{Legend, LegendState};
 
 /// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
@@ -40,49 +41,51 @@ const NAMES: f32 = 36.0;
 /// Shows what lies over the picture.
 pub(super) fn show(
     egui: &egui::Context,
-    viewer: &mut Viewer,
+    (viewer, panels): (&mut Viewer, &mut Panels),
     readings: &Readings,
     picture: Rect,
     commands: &mut Vec<Command>,
 ) {
-    in_picture(egui, viewer, readings, picture);
+    in_picture(egui, (&mut *viewer, &mut *panels), readings, picture);
     let cut_short = viewer.is_cut_short();
     let mut free = picture;
     if !viewer.session.diagnostics.is_empty() {
         let shown = Shown { diagnostics: &viewer.session.diagnostics, cut_short, picture };
-        let (card, hides) = diagnostics::show(egui, &shown, &mut viewer.panels.files, commands);
+        let (card, hides) = diagnostics::show(egui, &shown, &mut panels.files, commands);
         free.max.y = card.top();
         if hides {
             viewer.session.diagnostics.clear();
         }
     }
-    if viewer.panels.visible && viewer.session.diagnostics.is_empty() {
+    if panels.visible && viewer.session.diagnostics.is_empty() {
         hint::show(egui, viewer, picture, commands);
     }
     restore::show(egui, viewer, picture, commands);
-    version::show(egui, viewer, picture, commands);
+    if let Some(number) = version::show(egui, viewer, picture, commands) {
+        panels.docked.timeline.ask(number);
+    }
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
-    if viewer.panels.visible {
-        label(egui, viewer, readings, picture);
+    if panels.visible {
+        label(egui, &mut viewer.session.settings.view, &mut panels.legend, readings, picture);
     }
 }
 
 /// Shows what belongs to places of the picture.
-fn in_picture(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: Rect) {
+fn in_picture(egui: &egui::Context, (viewer, panels): (&mut Viewer, &mut Panels), readings: &Readings, picture: Rect) {
     compare::show(egui, viewer, picture);
-    marker(egui, &viewer.panels.inspector, picture);
-    gizmo::show(egui, viewer, picture);
-    grid::show(egui, &viewer.session, &viewer.panels, picture);
-    let has_labels = viewer.panels.visible && readings.legend.is_some() && !viewer.panels.grid.is_on();
+    marker(egui, &viewer.inspection, picture);
+    gizmo::show(egui, viewer, &mut panels.gizmo, picture);
+    grid::show(egui, (&viewer.session, &viewer.grid), &panels.docked.gallery, picture);
+    let has_labels = panels.visible && readings.legend.is_some() && !viewer.grid.is_on();
     if let Some(model) = viewer.session.model().filter(|_| has_labels) {
-        labels::show(egui, &mut viewer.panels.labels, model, &viewer.session.settings.camera, picture);
+        labels::show(egui, &mut panels.labels, model, &viewer.session.settings.camera, picture);
     }
 }
 
 /// Kept messages and the model's warnings, until the user hides them.
 fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
-    let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
+    let model = viewer.session.model().filter(|_| viewer.model.shows_warnings);
     let mut lines: Vec<String> = viewer.notices.kept().to_vec();
     lines.extend(model.map(|model| model.first_warnings(MODEL_WARNINGS)).unwrap_or_default());
     if lines.is_empty() {
@@ -102,7 +105,7 @@ fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     });
     if hide {
         viewer.notices.dismiss();
-        viewer.panels.show_model_warnings = false;
+        viewer.model.shows_warnings = false;
     }
 }
 
@@ -133,10 +136,9 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
 }
 
 /// The legend of the mode, and the value under the mouse.
-fn label(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: Rect) {
+fn label(egui: &egui::Context, view: &mut ViewSettings, state: &mut LegendState, readings: &Readings, picture: Rect) {
     let Some(of) = &readings.legend else { return };
     let legend = Legend { title: readings.title.as_deref(), of, value: readings.value.as_ref() };
-    let (view, state) = (&mut viewer.session.settings.view, &mut viewer.panels.legend);
     if legend.value.is_none() && !legend.is_whole(view, state) {
         return;
     }

@@ -12,7 +12,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
     if !viewer.offers_session() {
         return;
     }
-    let Some(words) = viewer.panels.last_sessions.here.as_ref().map(|session| session.words()) else { return };
+    let Some(words) = viewer.last_sessions.here.as_ref().map(|session| session.words()) else { return };
     area(Id::new("restore"), Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(ACCENT).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).clamp(180.0, 420.0));

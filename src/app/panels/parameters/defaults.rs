@@ -54,11 +54,11 @@ pub(super) fn menu(ui: &mut Ui, name: &str, is_enabled: bool) {
 }
 
 /// Shows the dialog while it is open.
-pub(in crate::app) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec<Command>) {
+pub(in crate::app) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut Asked, commands: &mut Vec<Command>) {
     if let Some(only) = egui.data_mut(|data| data.remove_temp::<Option<String>>(wish())) {
-        viewer.panels.defaults.ask(only);
+        state.ask(only);
     }
-    let Some(only) = viewer.panels.defaults.about.clone() else { return };
+    let Some(only) = state.about.clone() else { return };
     let edits = viewer.edits_of_defaults(only.as_deref());
     let has_folder = viewer.has_folder();
     let mut closes = false;
@@ -104,6 +104,6 @@ pub(in crate::app) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: 
         });
     });
     if closes || modal.should_close() {
-        viewer.panels.defaults.about = None;
+        state.about = None;
     }
 }

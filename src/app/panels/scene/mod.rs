@@ -9,7 +9,7 @@ use egui::{RichText, ScrollArea, Ui};
 
 use super::QUIET;
 use crate::app::command::Command;
-use crate::app::layout::Panel;
+use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search::{self, Words};

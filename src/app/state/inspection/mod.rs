@@ -39,9 +39,9 @@ impl Page {
     }
 }
 
-/// State of the inspector. Nothing is read or measured while its panel is out of sight.
+/// What is known of the inspected pixel. Nothing is read or measured while its panel is out of sight.
 #[derive(Default)]
-pub(in crate::app) struct Inspector {
+pub(in crate::app) struct Inspection {
     /// Whether the panel is in sight in this frame.
     pub(in crate::app) is_visible: bool,
     /// The pixel that the user has clicked.
@@ -51,7 +51,6 @@ pub(in crate::app) struct Inspector {
     /// Whether the pixel under the mouse is shown while none is pinned.
     pub(in crate::app) follows: bool,
     pub(in crate::app) page: Page,
-    pub(in crate::app) search: String,
     /// The newest values, also while newer ones are being read.
     pub(in crate::app) reading: Option<Reading>,
     /// Inputs of the newest request for curves.
@@ -59,11 +58,9 @@ pub(in crate::app) struct Inspector {
     pub(in crate::app) curves: Option<Shown>,
     /// The search for the first statement that makes NaN or infinity at the pinned pixel.
     pub(in crate::app) search_not_finite: Option<NotFiniteSearch>,
-    /// How far the user has turned the lobe in space, degrees.
-    pub(in crate::app) turn_deg: f32,
 }
 
-impl Inspector {
+impl Inspection {
     /// Learns that the search has failed. The same search would fail again, so it is not repeated.
     pub(in crate::app) fn fail_search(&mut self) {
         if let Some(search) = &mut self.search_not_finite {

@@ -1,0 +1,96 @@
+//! What panels are asked to do in the next frame, and what of them the last frame has shown.
+
+use super::arrangement::{Panel, Preset};
+
+/// A change of the user interface that something else than the user interface asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) enum PanelRequest {
+    /// Hide or show all panels.
+    Toggle,
+    /// Show the panels if they are hidden.
+    Unhide,
+    /// Open a panel, or show its tab.
+    Open(Panel),
+    /// Show an arrangement.
+    Arrange(Preset),
+    /// Show an arrangement until [`Self::ArrangeAsBefore`]. The next window is arranged as before.
+    ArrangeTemporarily(Preset),
+    /// Show the arrangement before the temporary one.
+    ArrangeAsBefore,
+    /// Show the user's own arrangement.
+    ArrangeOwn,
+    /// Show the chosen arrangement without the user's changes.
+    ResetArrangement,
+    /// Show the exercise, if its panel is not in sight.
+    ShowExercise,
+    /// Change between the light and the dark theme.
+    ToggleTheme,
+    /// Show or hide the histogram of the picture's values.
+    ToggleHistogram,
+    /// Show the list of keys.
+    ShowKeys,
+    /// Show what can be opened, with pictures.
+    ShowGallery,
+    /// Ask whether to write this version to the files.
+    AskVersion(u64),
+    /// Ask whether to write the values of the parameters to the files.
+    AskDefaults,
+    /// Give the keys to the field of the panel Expression.
+    FocusExpression,
+    /// Scroll the list of the scene to the selection.
+    FollowSelection,
+}
+
+/// What the last frame has shown. What nobody sees is neither drawn nor measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::app) struct Sight {
+    /// Whether the panel with the exercise was in sight.
+    pub(in crate::app) learn: bool,
+    /// Whether the versions of the shaders were.
+    pub(in crate::app) timeline: bool,
+    /// Whether the times of frames were.
+    pub(in crate::app) timing: bool,
+    /// The mode that the mouse rests on, which the picture previews.
+    pub(in crate::app) preview: Option<String>,
+    /// Whether there is an arrangement of the user's own to go back to.
+    pub(in crate::app) has_own_arrangement: bool,
+}
+
+/// The user interface as the rest of the window knows it. A request is carried out once.
+#[derive(Default)]
+pub(in crate::app) struct Workspace {
+    requests: Vec<PanelRequest>,
+    pub(in crate::app) sight: Sight,
+}
+
+impl Workspace {
+    /// Asks for a change in the next frame.
+    pub(in crate::app) fn request(&mut self, request: PanelRequest) {
+        self.requests.push(request);
+    }
+
+    /// Asks for a change that the user must see: hidden panels are shown.
+    pub(in crate::app) fn request_in_sight(&mut self, request: PanelRequest) {
+        self.requests.extend([PanelRequest::Unhide, request]);
+    }
+
+    /// The requests since the last frame, in their order.
+    pub(in crate::app) fn take_requests(&mut self) -> Vec<PanelRequest> {
+        std::mem::take(&mut self.requests)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_are_carried_out_once_and_in_order() {
+        let mut workspace = Workspace::default();
+        workspace.request(PanelRequest::Toggle);
+        workspace.request_in_sight(PanelRequest::Open(Panel::Timeline));
+        let all = [PanelRequest::Toggle, PanelRequest::Unhide, PanelRequest::Open(Panel::Timeline)];
+        assert_eq!(workspace.take_requests(), all);
+        assert_eq!(workspace.take_requests(), []);
+    }
+}
