@@ -7,31 +7,14 @@ use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::keyboard::ModifiersState;
 
 use super::command::Command;
+use super::mouse::Mouse;
 use super::screen::Screen;
 use super::viewer::Viewer;
 use crate::frame::BEYOND;
 use crate::scene::CameraController;
 use keyboard::on_keyboard;
-
-/// State of the mouse.
-#[derive(Default)]
-pub(super) struct Mouse {
-    /// Position in pixels of the window.
-    pub(super) at: Vec2,
-    /// Whether the mouse is over the picture, not over a panel.
-    pub(super) over: bool,
-    left: bool,
-    middle: bool,
-    right: bool,
-    modifiers: ModifiersState,
-    /// Time and place of the last press of the left button, for double clicks.
-    last_press: Option<(Instant, Vec2)>,
-    /// Where the left button went down, while it may still become a click: the mouse has not been dragged.
-    click: Option<Vec2>,
-}
 
 /// Most time between the presses of a double click.
 const DOUBLE_CLICK: Duration = Duration::from_millis(400);

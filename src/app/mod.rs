@@ -6,12 +6,15 @@
 mod command;
 mod control;
 mod dialog;
+mod drawn;
 mod editor;
 mod gallery;
 mod input;
 mod keys;
 mod layout;
+mod mouse;
 mod numbers;
+mod options;
 mod palette;
 mod panels;
 mod screen;
@@ -20,7 +23,6 @@ mod state;
 mod viewer;
 mod widgets;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -32,64 +34,18 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
-use crate::control::{Asked, Clients, Control};
+use crate::control::Asked;
 use crate::disk_cache;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
-use crate::recovery::{Recorder, SessionState};
-use crate::scene::LoadOptions;
-use crate::settings::Settings;
-use crate::shader::{Compiler, Source, Watcher};
-use crate::threads::loader::{self, Reading};
 use crate::threads::worker::WorkerMessage;
-use crate::threads::{Message, MessageSender, watch_files};
+use crate::threads::{Message, MessageSender};
+use options::Early;
 use screen::{Next, Screen};
 use viewer::Viewer;
 
+pub use options::{AppOptions, OtherPicture};
 pub use state::last_session::session_to_restore;
-
-/// How to open the window.
-pub struct AppOptions {
-    /// Shader tree.
-    pub source: Source,
-    /// Shader compiler.
-    pub compiler: Arc<Compiler>,
-    /// Model file; `None` is the built-in shader ball.
-    pub model: Option<PathBuf>,
-    /// Settings to start with.
-    pub settings: Settings,
-    /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
-    pub plain: Option<SessionState>,
-    /// Whether a model that has lights shines by them: the user has not said which lights shine.
-    pub follows_lights: bool,
-    /// Size of the window in pixels.
-    pub size: (u32, u32),
-    /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
-    pub at: Option<(i32, i32)>,
-    /// Records the session for the process that goes on with it after a loss of the device.
-    pub recorder: Recorder,
-    /// Part of the name of the device to use.
-    pub device: Option<String>,
-    /// Whether to enable the validation layers.
-    pub validation: bool,
-    /// The file or shader tree to compare the picture with.
-    pub compare: Option<OtherPicture>,
-    /// Whether models may read files outside their folder.
-    pub allow_outside: bool,
-    /// Those who get events and send commands.
-    pub control: Control,
-    /// Start of the program, for the events' times.
-    pub start: Instant,
-}
-
-/// The other picture of a comparison.
-#[derive(Clone, Debug)]
-pub enum OtherPicture {
-    /// A picture from a file.
-    File(PathBuf),
-    /// The picture of another shader tree.
-    Tree(PathBuf),
-}
 
 /// Why there is no window, or why it closed early.
 #[derive(Debug, thiserror::Error)]
@@ -135,30 +91,6 @@ fn no_display(error: winit::error::EventLoopError) -> AppError {
     let reason =
         text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": ")).map_or(&*text, |(_, reason)| reason);
     AppError::NoDisplay(reason.trim_end_matches([')', '.']).to_owned())
-}
-
-/// Work that needs neither window nor device, and so starts before them.
-struct Early {
-    watcher: Option<Watcher>,
-    reading: Reading,
-    events: Clients,
-}
-
-impl Early {
-    fn begin(options: &AppOptions, events: &Clients, sender: &MessageSender) -> Self {
-        // Watch the file before reading it, so that no save is missed in between.
-        let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
-        let watcher = watch_files(&files, sender).unwrap_or_else(|message| {
-            crate::message::tell(message);
-            None
-        });
-        let compiler = options.compiler.clone();
-        // Both only begin early what would be done later.
-        let _ = std::thread::Builder::new().spawn(move || compiler.warm());
-        let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
-        let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
-        Self { watcher, reading, events: events.clone() }
-    }
 }
 
 struct App {

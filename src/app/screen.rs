@@ -1,25 +1,32 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
 mod background;
+mod between;
+mod cell;
 mod error_map;
 mod extras;
 mod gallery;
 mod grid;
 mod inspector;
 mod loops;
+mod measured;
 mod number;
 mod pace;
 mod probe;
 mod reference;
+mod reference_view;
 mod selection;
 mod sets;
 mod shots;
+mod shown_texture;
 mod texture;
 mod thumbnail;
 mod timing;
 mod ui;
 mod waiting;
+mod window_shot;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -29,7 +36,7 @@ use winit::event_loop::ActiveEventLoop;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
-use super::input::Mouse;
+use super::mouse::Mouse;
 use super::panels::Panels;
 use super::state::grid::PictureRect;
 use super::state::timing::CpuTimes;
@@ -39,17 +46,19 @@ use crate::cpu_clock::CpuClock;
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, NextImage, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::render::tools::Outline;
-use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
+use crate::render::{BoundFrame, Output, PixelAt, Readback, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use crate::threads::MessageSender;
 use background::Background;
-pub(super) use background::Next;
-use error_map::ErrorMap;
+pub(super) use between::Next;
+use cell::Cell;
 use gallery::Gallery;
 use inspector::PixelReader;
+use measured::ErrorMap;
 use number::NumberReader;
-use reference::ReferenceView;
-use shots::WindowShot;
+use reference_view::ReferenceView;
+use shown_texture::ShownTexture;
+use window_shot::WindowShot;
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
@@ -61,6 +70,13 @@ const COVERED: Duration = Duration::from_secs(1);
 const HIDDEN: Duration = Duration::from_millis(100);
 /// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
+
+/// A thumbnail on the way from the device.
+struct PendingThumbnail {
+    /// The version.
+    number: u64,
+    readback: Readback,
+}
 
 /// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {
@@ -77,7 +93,8 @@ pub(super) struct Screen {
     egui: egui::Context,
     pub(super) panels: Panels,
     input: egui_winit::State,
-    waiting: waiting::Waiting,
+    /// Events that came while egui had yet to move the focus, in their order.
+    waiting: VecDeque<WindowEvent>,
     /// Textures of egui to upload, and those to free because no later frame uses them.
     textures: egui::TexturesDelta,
     /// Whether the swapchain no longer fits the window.
@@ -108,10 +125,10 @@ pub(super) struct Screen {
     window_shot: Option<WindowShot>,
     /// The targets of the selection's outline, while there is a selection.
     outline: Option<Outline>,
-    texture: texture::ShownTexture,
+    texture: ShownTexture,
     /// Draws thumbnails of versions while some are missing.
     thumbnails: Option<View>,
-    thumbnail: Option<thumbnail::Pending>,
+    thumbnail: Option<PendingThumbnail>,
     /// The newest value under the mouse, and whether it is the reference's.
     pixel: Option<(PixelAt, bool)>,
     pub(super) mouse: Mouse,
@@ -121,7 +138,7 @@ pub(super) struct Screen {
     /// The part that shows all modes of the grid.
     pub(super) whole: PictureRect,
     /// The modes of the grid beside the selected one.
-    cells: Vec<grid::Cell>,
+    cells: Vec<Cell>,
     /// Their slugs and places in this frame.
     wanted: Vec<(String, PictureRect)>,
     /// The part of the picture that no handle between it and a panel covers, in points.
@@ -171,7 +188,7 @@ impl Screen {
             egui,
             panels: Panels::restored(),
             input,
-            waiting: waiting::Waiting::default(),
+            waiting: VecDeque::new(),
             textures: egui::TexturesDelta::default(),
             stale: true,
             first: true,
@@ -188,7 +205,7 @@ impl Screen {
             error_map: ErrorMap::default(),
             window_shot: None,
             outline: None,
-            texture: texture::ShownTexture::default(),
+            texture: ShownTexture::default(),
             thumbnails: None,
             thumbnail: None,
             pixel: None,
@@ -301,7 +318,7 @@ impl Screen {
         let frame = self.next_frame(viewer)?;
         self.prepare_reference(viewer, frame.as_ref())?;
         self.prepare_grid(viewer)?;
-        self.view.samples_range = self.panels.legend.shows_histogram && self.panels.visible;
+        self.view.samples_range = self.panels.overlay.legend.shows_histogram && self.panels.visible;
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);

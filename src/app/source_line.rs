@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::shader::expression::{place_of, variables};
+use crate::settings::Settings;
+use crate::shader::expression::{MODE, place_of, variables};
 use crate::shader::rewrite::{Edit, Literal, literals, spelled_like};
 use crate::shader::{ShaderSet, TreePath};
 
@@ -53,6 +54,11 @@ impl SourceLine {
             })
             .collect()
     }
+}
+
+/// Shows the value of an expression over the model.
+pub(super) fn watch(settings: &mut Settings, at: String) {
+    (settings.expression.at, settings.mode) = (at, MODE.to_owned());
 }
 
 #[cfg(test)]

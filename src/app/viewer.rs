@@ -14,30 +14,35 @@ mod select;
 mod session;
 mod stages;
 mod tools;
-mod versions;
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::control::Controlled;
 use super::dialog::Dialog;
+use super::drawn::compare::Compare;
+use super::drawn::generations::Generations;
+use super::drawn::last_complete::{LastComplete, target};
+use super::drawn::waits::Waits;
+use super::options::{AppOptions, Early};
 use super::state::exercise::Learning;
 use super::state::grid::Grid;
 use super::state::hint::Hint;
 use super::state::history::History;
 use super::state::inspection::Inspection;
 use super::state::last_session::LastSessions;
+use super::state::model::ModelStatus;
 use super::state::notices::Notices;
 use super::state::playback::Playback;
 use super::state::recent::Recent;
 use super::state::selection::Selected;
+use super::state::shaders::edits::Edits;
 use super::state::shaders::stages::StageTable;
 use super::state::shaders::status::ShaderStatus;
+use super::state::shaders::versions::Versions;
 use super::state::timing::Timing;
 use super::state::watched_files::WatchedFiles;
 use super::state::workspace::Workspace;
-use super::{AppOptions, Early};
 use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::frame::{Clock, Scene};
@@ -45,38 +50,13 @@ use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
 use crate::recovery::{Recorder, SessionState};
+use crate::render::tools::Tools;
 use crate::render::{BoundFrame, Resources};
 use crate::session::Session;
-use crate::settings::{LightSource, Settings};
+use crate::settings::LightSource;
 use crate::shader::{Compiler, Diagnostic, Source};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{MessageSender, Threads};
-pub(super) use compare::{Compare, Difference, Reference};
-use edits::Edits;
-pub(super) use edits::NO_FOLDER;
-use picture::target;
-pub(super) use picture::{Waits, readout};
-pub(super) use versions::Version;
-use versions::Versions;
-
-/// The last complete picture and its inputs. The window draws it until the next picture is complete.
-#[derive(Clone)]
-pub(super) struct LastComplete {
-    settings: Arc<Settings>,
-    frame: BoundFrame,
-}
-
-impl LastComplete {
-    /// The picture.
-    pub(super) fn frame(&self) -> &BoundFrame {
-        &self.frame
-    }
-
-    /// The model in it.
-    fn scene(&self) -> Option<&Scene> {
-        self.frame.state.scene.as_ref()
-    }
-}
 
 /// A loop that did not end.
 struct EndlessLoop {
@@ -91,34 +71,12 @@ struct FirstFrame {
     event: ReloadEvent,
 }
 
-/// Files and state of the model on screen and of a model that is loading.
+/// The pipelines of outlines and pictures of textures.
 #[derive(Default)]
-pub(super) struct ModelStatus {
-    /// The file on screen; `None` is a built-in model.
-    path: Option<PathBuf>,
-    /// The file that was requested last.
-    requested: Option<PathBuf>,
-    /// The watched files: those of the model on screen, and after a failed load also those that it tried.
-    files: Arc<[PathBuf]>,
-    pub(super) loading: bool,
-    pub(super) load_ms: f64,
-    /// Whether the warnings of the model are shown over the picture.
-    pub(super) shows_warnings: bool,
-    /// Whether the camera stays where it is when the model that loads is another.
-    keeps_camera: bool,
-}
-
-impl ModelStatus {
-    /// Whether the model that was opened by this path is on screen.
-    pub(super) fn is_file(&self, path: &Path) -> bool {
-        self.path.as_deref() == Some(path)
-    }
-
-    /// Whether this file is on screen.
-    pub(super) fn is_open(&self, path: &Path) -> bool {
-        let shown = self.path.as_ref().and_then(|path| std::path::absolute(path).ok());
-        shown.is_some_and(|shown| shown == path)
-    }
+struct ToolsState {
+    made: Option<Arc<Tools>>,
+    /// Whether they were asked for.
+    is_asked: bool,
 }
 
 /// The window's state apart from the screen.
@@ -150,7 +108,7 @@ pub(super) struct Viewer {
     /// The selected instances of a scene.
     selected_cache: Option<(Selected, Scene, Arc<[bool]>)>,
     /// The pipelines of outlines and pictures of textures, once something has asked for them.
-    tools: tools::ToolsState,
+    tools: ToolsState,
     /// Whether the user has not said which lights shine, so that a model with lights shines by its own.
     follows_lights: bool,
     /// The lights that the last model was shown with because of that.
@@ -167,6 +125,8 @@ pub(super) struct Viewer {
     shown: Option<LastComplete>,
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
+    /// Their pipelines and last pictures.
+    generations: Generations,
     pub(super) edits: Edits,
     /// The times of the last frames.
     pub(super) timing: Timing,
@@ -244,7 +204,7 @@ impl Viewer {
             learning: Learning::restored(),
             selected: Selected::Nothing,
             selected_cache: None,
-            tools: tools::ToolsState::default(),
+            tools: ToolsState::default(),
             follows_lights: options.follows_lights,
             followed_source: LightSource::default(),
             gpu: gpu.clone(),
@@ -255,6 +215,7 @@ impl Viewer {
             allow_outside: options.allow_outside,
             shown: None,
             versions: Versions::default(),
+            generations: Generations::default(),
             compare: Compare::default(),
             edits,
             timing: Timing::default(),

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::{Next, Until};
 use crate::app::command::Command;
 use crate::app::source_line::SourceLine;
-use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::app::state::shaders::edits::NO_FOLDER;
+use crate::app::viewer::Viewer;
 use crate::control::Numbers;
 use crate::shader::rewrite::Edit;
 
@@ -17,7 +18,7 @@ impl Viewer {
         };
         let shaders = self.session.shaders.clone().ok_or("the shaders have not been compiled yet")?;
         // Numbers that are shown already are not those of the file.
-        let base = self.edits.draft().map(|draft| (draft.path.clone(), draft.base.clone()));
+        let base = self.edits.draft.as_ref().map(|draft| (draft.path.clone(), draft.base.clone()));
         let line = SourceLine::place(&shaders, at).and_then(|(path, text, line)| {
             let text = base.as_ref().filter(|(of, _)| of == path).map_or(text, |(_, base)| base);
             SourceLine::new(path, line, text)
@@ -41,7 +42,7 @@ impl Viewer {
         if let Some(restored) = &self.edits.restored {
             return Err(format!("version {} is shown; show the newest one first", restored.number));
         }
-        if self.edits.draft().is_some_and(|draft| !draft.is_at(&line.path, line.line)) {
+        if self.edits.draft.as_ref().is_some_and(|draft| !draft.is_at(&line.path, line.line)) {
             return Err("the numbers of another line are shown; write them or go back to the file first".into());
         }
         let edits = line.edits();
@@ -53,7 +54,7 @@ impl Viewer {
 
     /// Shows the picture with edits, or with the file.
     fn show_numbers(&mut self, edits: Vec<Edit>) -> Next {
-        if edits.is_empty() && self.edits.draft().is_none() {
+        if edits.is_empty() && self.edits.draft.as_ref().is_none() {
             return Next::Done(Value::Null);
         }
         self.execute(Command::Draft(edits));
@@ -62,7 +63,7 @@ impl Viewer {
 
     /// Writes the numbers that are shown.
     fn write_numbers(&mut self) -> Result<Next, String> {
-        let edits = self.edits.draft().map(|draft| draft.edits.clone());
+        let edits = self.edits.draft.as_ref().map(|draft| draft.edits.clone());
         self.write_edits_of(edits.ok_or("no other numbers are shown")?)
     }
 

@@ -216,6 +216,15 @@ pub(super) fn component(parameter: &Parameter) -> Scale {
     Scale::declared(parameter.range, &parameter.unit, is_whole)
 }
 
+/// The default of a constant; 0 or 1 for `bool`.
+pub(super) fn default_of(constant: &Constant) -> f64 {
+    match constant.scalar {
+        Scalar::Float => f64::from(f32::from_bits(constant.default)),
+        Scalar::Int => f64::from(constant.default.cast_signed()),
+        Scalar::Uint | Scalar::Bool => f64::from(constant.default),
+    }
+}
+
 /// The scale of a constant; `None` if it is no number.
 pub(super) fn of_constant(constant: &Constant) -> Option<Scale> {
     let is_number = constant.scalar != Scalar::Bool && constant.choices.is_empty();

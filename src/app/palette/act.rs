@@ -2,8 +2,8 @@
 
 use super::entries::Action;
 use crate::app::command::Command;
-use crate::app::panels::expression::watch;
-use crate::app::panels::parameters::default_of;
+use crate::app::numbers::default_of;
+use crate::app::source_line::watch;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::viewer::Viewer;

@@ -2,11 +2,11 @@
 
 use egui::{Button, Label, Response, RichText, Ui};
 
-use super::{ACCENT, QUIET};
 use crate::app::command::{Command, Side};
 use crate::app::numbers::Scale;
 use crate::app::widgets::rows::{Row, drag, group, heading, option_text, option_value, set_option};
 use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::scene::{CameraView, Model};
 use crate::settings::{CameraSettings, Curve, Settings, Value, setting};
 

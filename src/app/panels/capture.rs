@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use egui::{Align, Button, Checkbox, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
-use super::QUIET;
 use crate::app::command::Command;
 use crate::app::control::Captures;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{Row, elided, heading};
+use crate::app::widgets::theme::QUIET;
 use crate::capture::Turn;
 use crate::control::{Capture, Request, Sheet, Timeline, Turntable};
 use crate::picture::numbered_as;

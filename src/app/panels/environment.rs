@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use egui::{RichText, Ui};
 
-use super::QUIET;
 use crate::app::widgets::rows::{Row, check, choose, group, set_option, special};
+use crate::app::widgets::theme::QUIET;
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{Settings, ViewSettings};

@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
-use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
-use crate::app::source_line::SourceLine;
+use crate::app::source_line::{SourceLine, watch};
 use crate::app::state::shaders::difference::{Kind, Line};
-use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::app::state::shaders::edits::NO_FOLDER;
+use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::small_mono;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, small_mono};
 use crate::settings::Settings;
 use crate::shader::Expression;
 use crate::shader::expression::MODE;
@@ -46,11 +46,6 @@ impl ExpressionState {
     pub(in crate::app) fn show_line(&mut self, file: &str, line: u32) {
         (self.field, self.error) = (format!("{file}:{line}:"), None);
     }
-}
-
-/// Shows the value of an expression over the model.
-pub(in crate::app) fn watch(settings: &mut Settings, at: String) {
-    (settings.expression.at, settings.mode) = (at, MODE.to_owned());
 }
 
 /// Shows the panel.
@@ -123,7 +118,7 @@ fn find_line(viewer: &Viewer, state: &mut ExpressionState) {
         state.shown = None;
         return;
     };
-    let is_dragged = viewer.edits.draft().is_some();
+    let is_dragged = viewer.edits.draft.as_ref().is_some();
     let is_same = state.shown.as_ref().is_some_and(|shown| {
         (&shown.path, shown.line) == (path, line)
             && (is_dragged || Arc::ptr_eq(&shown.text, text) || shown.text == *text)
@@ -187,7 +182,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, state: &mut
 
 /// The numbers of the line as sliders.
 fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut SourceLine, commands: &mut Vec<Command>) {
-    let draft = viewer.edits.draft();
+    let draft = viewer.edits.draft.as_ref();
     let is_here = |edit: &Edit| edit.path == shown.path && edit.line == shown.line;
     let is_own = draft.is_some_and(|draft| draft.edits.first().is_some_and(is_here));
     if !shown.numbers.is_empty() {

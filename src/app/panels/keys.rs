@@ -2,9 +2,8 @@
 
 use egui::{Key, Label, RichText, Ui, Window, vec2};
 
-use super::{ACCENT, QUIET};
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::hide_hover_texts;
+use crate::app::widgets::theme::{ACCENT, QUIET, hide_hover_texts};
 
 /// Keys and what they do, in short; assets/manual/window.md says more.
 const KEYS: &[(&str, &str)] = &[

@@ -2,10 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use super::QUIET;
 use crate::app::command::Command;
 use crate::app::state::selection::{LightId, Selected};
 use crate::app::widgets::rows::{choose, group, heading, special};
+use crate::app::widgets::theme::QUIET;
 use crate::settings::{LightSource, Settings};
 
 /// Shows the panel. `in_model` is the number of lights in the model.

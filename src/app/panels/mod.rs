@@ -16,6 +16,7 @@ mod output;
 pub(super) mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
+pub(super) mod readings;
 pub(super) mod scene;
 mod shaders;
 mod status_bar;
@@ -26,7 +27,6 @@ pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{Ui, Vec2};
@@ -39,11 +39,8 @@ use super::state::arrangement::{Panel, Preset};
 use super::state::recent::Kind;
 use super::state::workspace::{PanelRequest, Sight};
 use super::viewer::Viewer;
-use super::widgets::theme::{self, ACCENT, EDGE, ERROR, QUIET, WARNING};
-use crate::frame::Limits;
-use crate::render::RangeSample;
-use crate::settings::Colormap;
-use crate::shader::Mode;
+use super::widgets::theme;
+use readings::Readings;
 
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
@@ -60,10 +57,7 @@ pub(super) struct Panels {
     key_list: keys::KeyList,
     pub(super) open_gallery: open_gallery::OpenGallery,
     pub(super) defaults: parameters::defaults::Asked,
-    gizmo: overlay::Gizmo,
-    files: overlay::diagnostics::Files,
-    pub(super) legend: overlay::legend::LegendState,
-    labels: overlay::Labels,
+    pub(super) overlay: overlay::Overlay,
 }
 
 /// The states of the panels in tiles.
@@ -93,10 +87,7 @@ impl Panels {
             key_list: keys::KeyList::default(),
             open_gallery: open_gallery::OpenGallery::default(),
             defaults: parameters::defaults::Asked::default(),
-            gizmo: overlay::Gizmo::default(),
-            files: overlay::diagnostics::Files::default(),
-            legend: overlay::legend::LegendState::default(),
-            labels: overlay::Labels::default(),
+            overlay: overlay::Overlay::default(),
         }
     }
 
@@ -114,7 +105,7 @@ impl Panels {
             PanelRequest::ShowExercise if self.layout.is_in_sight(Panel::Learn) => {}
             PanelRequest::ShowExercise => self.layout.arrange_temporarily(Preset::Learn),
             PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
-            PanelRequest::ToggleHistogram => self.legend.shows_histogram ^= true,
+            PanelRequest::ToggleHistogram => self.overlay.legend.shows_histogram ^= true,
             PanelRequest::ShowKeys => self.show_keys = true,
             PanelRequest::ShowGallery => self.open_gallery.is_open = true,
             PanelRequest::AskVersion(number) => self.docked.timeline.ask(number),
@@ -123,42 +114,6 @@ impl Panels {
             PanelRequest::FollowSelection => self.docked.scene.follow(),
         }
     }
-}
-
-/// Readings of the picture under the mouse.
-pub(super) struct Readings {
-    /// The value under the mouse.
-    pub(super) value: Option<Readout>,
-    /// Title over the picture.
-    pub(super) title: Option<String>,
-    /// Contents of the legend; `None` before the first picture.
-    pub(super) legend: Option<LegendOf>,
-}
-
-/// The text of a value in the picture.
-pub(super) struct Readout {
-    /// Name of the side of a comparison that has the pixel; `None` without a comparison.
-    pub(super) side: Option<String>,
-    /// Its numbers, or what they mean.
-    pub(super) value: String,
-    /// Unit, and whether the value is before exposure.
-    pub(super) unit: String,
-    /// Pixels from the upper left corner of the picture.
-    pub(super) at: (u32, u32),
-}
-
-/// The picture of which the legend speaks.
-pub(super) struct LegendOf {
-    pub(super) mode: Mode,
-    /// The values that the display shows as black and white; `None` for those of the mode.
-    pub(super) limits: Option<Limits>,
-    /// Samples of the picture's values.
-    pub(super) range_sample: Option<Arc<RangeSample>>,
-    pub(super) colormap: Colormap,
-    /// Factor from luminance to the display's 0..1.
-    pub(super) exposure: f32,
-    /// The colors that stand for single numbers.
-    pub(super) swatches: Vec<overlay::swatches::Swatch>,
 }
 
 /// Where the picture is, in points.
@@ -188,15 +143,17 @@ pub(super) fn show(
     panels.docked.gallery.begin_frame();
     let picture = if panels.visible && has_room {
         bars(ui, viewer, panels, commands);
-        let Panels { layout, docked, legend, .. } = &mut *panels;
-        let shows_histogram = &mut legend.shows_histogram;
+        let Panels { layout, docked, overlay, .. } = &mut *panels;
+        let shows_histogram = &mut overlay.legend.shows_histogram;
         let picture = layout
             .show(ui, &mut |ui, shown| panel(ui, shown, (&mut *viewer, &mut sight), docked, shows_histogram, commands));
         PictureArea { rect: picture, free: layout.free_of_handles() }
     } else {
         PictureArea { rect: whole, free: whole }
     };
-    overlay::show(ui.ctx(), (&mut *viewer, &mut *panels), readings, picture.rect, commands);
+    let beside = (&panels.docked.gallery, panels.visible);
+    let asked = overlay::show(ui.ctx(), (&mut *viewer, &mut panels.overlay), beside, readings, picture.rect, commands);
+    asked.into_iter().for_each(|number| panels.docked.timeline.ask(number));
     keys::show(ui.ctx(), &mut panels.key_list, &mut panels.show_keys, !panels.palette.is_open());
     open_gallery::show(ui.ctx(), viewer, &mut panels.open_gallery, commands);
     palette::show(ui.ctx(), viewer, &mut panels.palette, whole, commands);
@@ -215,7 +172,8 @@ const LONG: Duration = Duration::from_millis(250);
 
 /// The bars above and below the tiles.
 fn bars(ui: &mut Ui, viewer: &Viewer, panels: &mut Panels, commands: &mut Vec<Command>) {
-    top_bar::show(ui, panels, (&viewer.recent, &viewer.last_sessions), commands);
+    let Panels { layout, palette, show_keys, .. } = panels;
+    top_bar::show(ui, (layout, palette, show_keys), (&viewer.recent, &viewer.last_sessions), commands);
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
@@ -308,9 +266,4 @@ fn panel(
             capture::show(ui, &mut docked.capture, &viewer.controlled.captures, (size, versions), commands);
         }
     }
-}
-
-/// A count with its noun, such as "1 draw" or "2 draws".
-fn plural(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

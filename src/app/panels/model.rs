@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
-use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
-use crate::app::viewer::ModelStatus;
+use crate::app::state::model::ModelStatus;
 use crate::app::widgets::check_box;
+use crate::app::widgets::plural;
 use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
+use crate::app::widgets::theme::{QUIET, WARNING};
 use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialChannel, ModelSettings, Settings, setting};
 

@@ -5,12 +5,11 @@ mod tile;
 
 use egui::{RichText, Ui, vec2};
 
-use super::QUIET;
 use crate::app::gallery::GalleryState;
 use crate::app::state::grid::Grid;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::{icon, small_mono};
+use crate::app::widgets::theme::{QUIET, icon, small_mono};
 use crate::shader::ShaderSet;
 use crate::shader::annotation::{Mode, listed};
 

@@ -4,9 +4,9 @@ pub(super) mod range;
 
 use egui::{RichText, Ui};
 
-use super::QUIET;
 use crate::app::command::Command;
 use crate::app::widgets::rows::{Row, check, group, special};
+use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
 
 /// Shows the panel. `shows_histogram`: whether the legend over the picture has the histogram of its values.

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 
 use egui::{Response, RichText, Ui};
 
-use super::QUIET;
-use super::passes::is_of_pass;
-use crate::app::numbers::{component, of_constant, of_parameter};
+use crate::app::numbers::{component, default_of, of_constant, of_parameter};
+use crate::app::state::shaders::effects::{is_of_pass, switches};
 use crate::app::widgets::rows::{self, Row, edit_number, heading, set_option, short};
 use crate::app::widgets::search;
+use crate::app::widgets::theme::QUIET;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
@@ -29,7 +29,7 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_
         is_here && switch.is_none_or(|switch| is_true(switch, values))
     };
     let parameters: Vec<&Parameter> = shaders.parameters.iter().filter(is_wanted).collect();
-    let switches: Vec<u32> = super::passes::switches(shaders).map(|switch| switch.id).collect();
+    let switches: Vec<u32> = switches(shaders).map(|switch| switch.id).collect();
     let is_wanted = |constant: &&Constant| !switches.contains(&constant.id) && (!is_of_file || is_own(&constant.file));
     let constants: Vec<&Constant> = shaders.constants.iter().filter(is_wanted).collect();
     if constants.is_empty() && parameters.is_empty() {
@@ -252,15 +252,6 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
         Scalar::Int | Scalar::Uint => ShaderValue::Int(now as i64),
     };
     ((now != before).then_some(value), response)
-}
-
-/// The default of a constant; 0 or 1 for `bool`.
-pub(in crate::app) fn default_of(constant: &Constant) -> f64 {
-    match constant.scalar {
-        Scalar::Float => f64::from(f32::from_bits(constant.default)),
-        Scalar::Int => f64::from(constant.default.cast_signed()),
-        Scalar::Uint | Scalar::Bool => f64::from(constant.default),
-    }
 }
 
 fn check(ui: &mut Ui, number: &mut f64) -> Response {

@@ -5,13 +5,14 @@ use std::collections::BTreeSet;
 
 use egui::{CollapsingHeader, RichText, Ui};
 
-use super::QUIET;
 use super::parameters::{is_true, show_constant, show_parameter};
 use crate::app::state::playback::Playback;
+use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own, switches};
 use crate::app::widgets::rows::{Row, check, set_option};
 use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
-use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, embedded};
+use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
 
 /// Shows the panel. `is_animated`: something on screen reads the time.
 pub(super) fn show(
@@ -101,59 +102,6 @@ impl<'a> Found<'a> {
         let (shipped, added) = effects.into_iter().partition(|pass| is_shipped(pass));
         Self { added, switches: switches(shaders).filter(is_switch).collect(), shipped, inside }
     }
-}
-
-/// Whether the pass is one of the tree that Specula comes with.
-fn is_shipped(pass: &GraphPass) -> bool {
-    embedded::has(&pass.desc.stage)
-}
-
-/// The passes with a switch of their own.
-fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
-    let has_own = |pass: &&GraphPass| pass.desc.when.is_none() && pass.has_switch();
-    shaders.graph.passes.iter().map(|pass| &**pass).filter(has_own)
-}
-
-/// A pass and those whose images and buffers it needs.
-fn needs<'a>(shaders: &'a ShaderSet, pass: &GraphPass) -> impl Iterator<Item = &'a GraphPass> {
-    shaders.graph.needed_by(pass.name()).into_iter().map(|index| &*shaders.graph.passes[index])
-}
-
-/// The constants that switch passes, in the order of their ids.
-pub(super) fn switches(shaders: &ShaderSet) -> impl Iterator<Item = &Constant> {
-    shaders.constants.iter().filter(|constant| is_switch(shaders, &constant.name))
-}
-
-/// Whether the constant with this name switches passes.
-pub(in crate::app) fn is_switch(shaders: &ShaderSet, constant: &str) -> bool {
-    shaders.graph.passes.iter().any(|pass| pass.desc.when.as_deref() == Some(constant))
-}
-
-/// Whether a parameter belongs to a pass: it is in the pass's own block, or depends on the pass's switch.
-pub(in crate::app) fn is_of_pass(shaders: &ShaderSet, parameter: &Parameter) -> bool {
-    parameter.offset.is_none() || parameter.when.as_deref().is_some_and(|when| is_switch(shaders, when))
-}
-
-/// The parameters that a constant switches on with its passes.
-fn of_switch<'a>(shaders: &'a ShaderSet, switch: &Constant) -> Vec<&'a Parameter> {
-    let name = Some(&switch.name);
-    let passes: Vec<_> = shaders.graph.passes.iter().filter(|pass| pass.desc.when.as_ref() == name).collect();
-    let is_own = |parameter: &&Parameter| {
-        let in_block = || passes.iter().any(|pass| parameter.offset.is_none() && pass.has_parameter(&parameter.name));
-        parameter.when.as_ref() == name || in_block()
-    };
-    shaders.parameters.iter().filter(is_own).collect()
-}
-
-/// The parameters in the uniform blocks of an effect and of the internal passes that it needs.
-fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass) -> Vec<&'a Parameter> {
-    let internal = &shaders.graph.internal;
-    let is_its = |pass: &&GraphPass| pass.name() == effect.name() || internal.contains(pass.name());
-    let passes: Vec<_> = needs(shaders, effect).filter(|pass| pass.desc.when.is_none()).filter(is_its).collect();
-    let in_block = |parameter: &&Parameter| {
-        parameter.offset.is_none() && passes.iter().any(|pass| pass.has_parameter(&parameter.name))
-    };
-    shaders.parameters.iter().filter(in_block).collect()
 }
 
 /// Shows the row with the switch of a pass. Returns whether it is on.

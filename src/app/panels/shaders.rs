@@ -8,14 +8,13 @@ mod stages;
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::{ACCENT, ERROR, QUIET, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::state::shaders::log::reached;
 use crate::app::state::shaders::status::ShaderStatus;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
-use crate::events::ReloadEvent;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 use crate::shader::{Diagnostic, Severity};
 pub(super) use stages::short_figures;
 
@@ -120,22 +119,4 @@ fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
     }
     let hint = format!("{}\nSave a file here and the picture updates. Click to open it in the editor", status.tree);
     label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);
-}
-
-/// Three texts: the changed files with the compiled stages, the time of each step, and a hover text with the details.
-pub(super) fn lines(last: &ReloadEvent) -> (String, String, String) {
-    let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
-    let times = match last.ok {
-        true => format!(
-            "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
-            last.compile_ms, last.pipeline_ms, last.first_frame_ms
-        ),
-        false => format!("failed after {:.0} ms", last.compile_ms),
-    };
-    let hover = format!(
-        "{}\n-> {stages}\n{times}\nDetected {:.1} ms after the first file event. The frame is the first one with the new shaders.",
-        if last.changed.is_empty() { "start".to_owned() } else { last.changed.join("\n") },
-        last.detect_ms
-    );
-    (reached(last), times, hover)
 }

@@ -2,10 +2,12 @@
 
 use egui::{Align, Layout, RichText, Ui};
 
-use super::{plural, shaders};
+use super::shaders;
+use crate::app::drawn::waits::Waits;
+use crate::app::state::shaders::log::lines;
 use crate::app::state::shaders::stages::StageRow;
 use crate::app::state::shaders::status::ShaderStatus;
-use crate::app::viewer::Waits;
+use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use crate::shader::{Diagnostic, Severity};
@@ -69,7 +71,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
         ui.add_space(8.0);
     }
     if let Some(last) = &status.shader.last {
-        let (edit, times, hover) = shaders::lines(last);
+        let (edit, times, hover) = lines(last);
         let text = RichText::new(format!("{edit}  {times}")).monospace().small();
         ui.add(elided(text)).on_hover_text(hover);
     }

@@ -7,13 +7,13 @@ use glam::Vec3;
 
 use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
+use super::readings::{LegendOf, Readout};
 use super::timeline::comparison;
-use super::{LegendOf, Readout};
 use super::{camera, capture, output};
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::control::Captures;
 use crate::app::dialog::Dialog;
-use crate::app::viewer::Compare;
+use crate::app::drawn::compare::Compare;
 use crate::app::widgets::theme;
 use crate::control::{Request, Timeline, Turntable};
 use crate::scene::{Bounds, CameraView, Model};

@@ -3,12 +3,11 @@
 
 use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
-use super::QUIET;
 use super::scene::tree::textures;
 use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search;
-use crate::app::widgets::theme::small_mono_font;
+use crate::app::widgets::theme::{EDGE, QUIET, small_mono_font};
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
@@ -201,7 +200,7 @@ fn picture(
         Some((texture, part)) => {
             ui.painter().image(texture, rect, part, Color32::WHITE);
         }
-        None => drop(ui.painter().rect_filled(rect, 0.0, super::EDGE)),
+        None => drop(ui.painter().rect_filled(rect, 0.0, EDGE)),
     }
     let border = Rect::from_min_size(
         rect.min + vec2(-corner[0] * scale * texels.x, -corner[1] * scale * texels.y),

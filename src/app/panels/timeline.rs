@@ -2,22 +2,23 @@
 
 pub(super) mod comparison;
 
-use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
+use std::sync::Arc;
 
-use super::{EDGE, ERROR, WARNING};
+use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, TextureHandle, Ui, Vec2, vec2};
+
 use crate::app::command::{Command, CompareWith};
 use crate::app::state::shaders::difference::{Kind, Line};
-use crate::app::viewer::{Version, Viewer};
+use crate::app::state::shaders::versions::{Thumbnail, Version, Versions};
+use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::{ACCENT, GOOD, QUIET, TEXT, small_mono};
+use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
+use comparison::{ENTRIES, monospace};
 
 /// Size of a thumbnail in points.
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 /// How much smaller it is in a list.
 const IN_LIST: f32 = 0.625;
-/// The entries of the panel, for its search.
-const ENTRIES: &str = "versions";
 /// Widest entry of a list, points.
 const WIDEST: f32 = 320.0;
 /// Opacity of the accent behind the chosen entry.
@@ -31,10 +32,34 @@ pub(in crate::app) struct TimelineState {
     /// The version that the user is asked about before it is written to the files.
     asked: Option<u64>,
     search: String,
+    thumbnails: Thumbnails,
 }
 
 /// Height of a strip that shows anything of its cards, points.
 const ROOM_FOR_CARDS: f32 = 48.0;
+
+/// The thumbnails as textures.
+#[derive(Default)]
+struct Thumbnails(Vec<(Arc<Thumbnail>, TextureHandle)>);
+
+impl Thumbnails {
+    /// Loads those of new versions, and drops those of versions that are no longer kept.
+    fn update(&mut self, egui: &egui::Context, versions: &Versions) {
+        let all = || versions.iter().filter_map(|version| version.thumbnail.as_ref());
+        self.0.retain(|(shown, _)| all().any(|thumbnail| Arc::ptr_eq(shown, thumbnail)));
+        for thumbnail in all() {
+            if self.of(thumbnail).is_none() {
+                let image = egui::ColorImage::from_rgba_unmultiplied(thumbnail.size, &thumbnail.rgba8);
+                let texture = egui.load_texture("version", image, egui::TextureOptions::LINEAR);
+                self.0.push((thumbnail.clone(), texture));
+            }
+        }
+    }
+
+    fn of(&self, thumbnail: &Arc<Thumbnail>) -> Option<&TextureHandle> {
+        self.0.iter().find(|(shown, _)| Arc::ptr_eq(shown, thumbnail)).map(|(_, texture)| texture)
+    }
+}
 
 impl TimelineState {
     /// Asks the user whether to write a version to the files.
@@ -65,6 +90,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
         }
     }
     let viewer = &*viewer;
+    state.thumbnails.update(ui.ctx(), &viewer.versions);
     let newest = viewer.shown_generation();
     let scroll = if is_strip { egui::ScrollArea::horizontal() } else { egui::ScrollArea::vertical() };
     scroll.auto_shrink(false).show(ui, |ui| {
@@ -78,7 +104,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
                 words.no_match(ui, "version");
             }
             for version in found {
-                let entry = Entry { viewer, version, newest };
+                let thumbnail = version.thumbnail.as_ref().and_then(|thumbnail| state.thumbnails.of(thumbnail));
+                let entry = Entry { viewer, version, newest, thumbnail };
                 let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
                 entry.respond(response, &mut state.asked, commands);
             }
@@ -103,6 +130,7 @@ struct Entry<'a> {
     version: &'a Version,
     /// The version on screen.
     newest: u64,
+    thumbnail: Option<&'a TextureHandle>,
 }
 
 impl Entry<'_> {
@@ -172,7 +200,7 @@ impl Entry<'_> {
             ui.painter().rect_filled(response.rect, 3.0, ACCENT.color().gamma_multiply(FAINT));
             ui.painter().rect_stroke(response.rect, 3.0, Stroke::new(1.5, ACCENT), StrokeKind::Inside);
         }
-        match &self.version.thumbnail {
+        match self.thumbnail {
             Some(thumbnail) => egui::Image::new(thumbnail).corner_radius(2).paint_at(ui, picture),
             None => _ = ui.painter().rect_filled(picture, 2.0, EDGE),
         }
@@ -197,7 +225,7 @@ impl Entry<'_> {
     /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
     /// files.
     fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
-        let Self { viewer, version, newest } = self;
+        let Self { viewer, version, newest, .. } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
         if response.double_clicked() && can_show {
             commands.extend([Command::Compare(CompareWith::Nothing), Command::ShowVersion(Some(version.number))]);
@@ -261,11 +289,6 @@ fn hover(ui: &mut Ui, [title, times]: &[String; 2], hint: &str, lines: &[Line]) 
     if lines.len() > MOST_LINES {
         ui.label(RichText::new(format!("and {} more lines", lines.len() - MOST_LINES)).small().color(QUIET));
     }
-}
-
-/// Small text of a fixed width.
-pub(super) fn monospace(text: impl Into<String>) -> RichText {
-    small_mono(text)
 }
 
 /// Asks whether to write a version over the files of the tree.

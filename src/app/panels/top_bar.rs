@@ -2,10 +2,10 @@
 
 use egui::{Button, Checkbox, RichText, Ui, vec2};
 
-use super::Panels;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::layout::Layout;
+use crate::app::palette::Palette;
 use crate::app::state::arrangement::{Panel, Preset};
 use crate::app::state::last_session::LastSessions;
 use crate::app::state::recent::{Kind, Recent};
@@ -19,7 +19,7 @@ pub(super) const HEIGHT: f32 = 30.0;
 
 pub(super) fn show(
     ui: &mut Ui,
-    state: &mut Panels,
+    (layout, palette, show_keys): (&mut Layout, &mut Palette, &mut bool),
     (recent, last): (&Recent, &LastSessions),
     commands: &mut Vec<Command>,
 ) {
@@ -30,32 +30,30 @@ pub(super) fn show(
             ui.label(RichText::new("Specula").strong().color(theme::ACCENT));
             ui.add_space(6.0);
             open(ui, recent, last, commands);
-            panels(ui, &mut state.layout);
+            panels(ui, layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
-                    state.layout.arrange(preset);
+                    layout.arrange(preset);
                 }
             }
-            if state.layout.has_own()
-                && ui.button("Own").on_hover_text("The panels as you last arranged them").clicked()
-            {
-                state.layout.arrange_own();
+            if layout.has_own() && ui.button("Own").on_hover_text("The panels as you last arranged them").clicked() {
+                layout.arrange_own();
             }
-            if let Some(side) = state.layout.hidden_side() {
+            if let Some(side) = layout.hidden_side() {
                 let hint = format!("The window is too narrow for the panels on both sides: shows those on the {side}");
                 let button = named(ui.button(icon::ARROWS_LEFT_RIGHT), "Panels of the other side");
                 if button.on_hover_text(hint).clicked() {
-                    state.layout.swap_sides();
+                    layout.swap_sides();
                 }
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if named(ui.button(icon::QUESTION), "Keys").on_hover_text("Keys (F1, ?)").clicked() {
-                    state.show_keys ^= true;
+                    *show_keys ^= true;
                 }
-                let is_light = state.layout.is_light();
+                let is_light = layout.is_light();
                 let (symbol, hint) = if is_light { (icon::MOON, "Dark theme") } else { (icon::SUN, "Light theme") };
                 if named(ui.button(symbol), hint).on_hover_text(hint).clicked() {
-                    state.layout.set_light(!is_light);
+                    layout.set_light(!is_light);
                 }
                 let width = (ui.available_width() - 8.0).min(300.0);
                 if width > 120.0 {
@@ -64,7 +62,7 @@ pub(super) fn show(
                     let keys = small_mono("Ctrl+P").color(QUIET);
                     let button = Button::new(text).right_text(keys).min_size(vec2(width, 20.0)).truncate();
                     if named(ui.add(button), "Command palette").on_hover_text("Command palette").clicked() {
-                        state.palette.open();
+                        palette.open();
                     }
                 }
             });

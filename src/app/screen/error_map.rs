@@ -1,60 +1,19 @@
 //! Measures how much the picture differs from the one that it is compared with. Both are read back once they rest, and compared on
 //! a thread.
 
-use std::sync::Arc;
-
 use super::Screen;
-use super::reference::ReferenceView;
+use super::measured::{Copied, ErrorMap, Pair};
+use super::reference_view::ReferenceView;
 use crate::app::viewer::Viewer;
-use crate::frame::FrameState;
-use crate::gpu::{GpuError, Rect, Use};
+use crate::gpu::{GpuError, Use};
 use crate::render::{BoundFrame, Output, Redraw};
 use crate::threads::Side;
-
-/// Both pictures, by their numbers and states.
-pub(super) struct Pair {
-    numbers: [u64; 3],
-    states: [Arc<FrameState>; 2],
-}
-
-impl Pair {
-    fn is_same(&self, other: &Self) -> bool {
-        self.numbers == other.numbers && self.states.iter().zip(&other.states).all(|(a, b)| a.is_same(b))
-    }
-}
-
-/// Copies of both pictures that a frame in this slot makes, and their part that is measured.
-struct Copied {
-    slot: usize,
-    pictures: [Side; 2],
-    part: Rect,
-}
-
-/// The pictures that are measured.
-#[derive(Default)]
-pub(super) struct ErrorMap {
-    /// The pictures of the last frame.
-    last: Option<Pair>,
-    /// The pictures that were measured last, or are being measured.
-    measured: Option<Pair>,
-    /// The slot of the frame that copies both pictures.
-    copied: Option<Copied>,
-    /// The number of the last measurement.
-    number: u64,
-}
-
-impl ErrorMap {
-    /// Whether pictures are still on the way from the device.
-    pub(super) fn awaits_copies(&self) -> bool {
-        self.copied.is_some()
-    }
-}
 
 impl Screen {
     /// Copies the picture and the reference if both are the same as in the last frame, and not measured yet. Returns whether another
     /// frame is needed.
     pub(super) fn measure_error(&mut self, viewer: &mut Viewer, live: Option<&BoundFrame>) -> Result<bool, GpuError> {
-        let wanted = viewer.compare.is_on() && !viewer.compare.is_held();
+        let wanted = viewer.compare.is_on() && !viewer.compare.is_held;
         let Some((reference, live)) = self.reference.as_ref().filter(|_| wanted).zip(live) else {
             self.error_map = ErrorMap { number: self.error_map.number, ..ErrorMap::default() };
             viewer.compare.measuring = None;

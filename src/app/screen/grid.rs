@@ -4,21 +4,12 @@
 
 use std::sync::Arc;
 
+use super::cell::Cell;
 use super::{FRAMES_IN_FLIGHT, Screen};
 use crate::app::state::grid::{PictureRect, cells};
-use crate::app::viewer::{LastComplete, Viewer};
+use crate::app::viewer::Viewer;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{Output, Redraw, View};
-
-/// A mode beside the picture.
-pub(super) struct Cell {
-    mode: String,
-    pub(super) rect: PictureRect,
-    pub(super) view: View,
-    image: Arc<Image>,
-    /// The last complete frame; `None` until the pipelines are ready.
-    pub(super) shown: Option<LastComplete>,
-}
 
 impl Screen {
     /// Divides the picture's part of the window among the modes of the grid. The selected mode is drawn as ever, in its own place.
@@ -71,7 +62,7 @@ impl Screen {
         }
         cell.shown = viewer.frame_of_mode(&cell.mode, rect.size, cell.shown.take())?;
         if let Some(shown) = &cell.shown {
-            cell.view.prepare(shown.frame())?;
+            cell.view.prepare(&shown.frame)?;
         }
         Ok(())
     }
@@ -86,7 +77,7 @@ impl Screen {
         for cell in &mut self.cells {
             let Some(shown) = &cell.shown else { continue };
             let output = Output { image: &cell.image, before: Use::Undefined, at: (0, 0) };
-            let (view, frame) = (&mut cell.view, shown.frame());
+            let (view, frame) = (&mut cell.view, &shown.frame);
             encoder.untimed(|encoder| view.draw(encoder, slot, frame, &output, Redraw::IfChanged))?;
             encoder.transition(&cell.image, Use::Color, Use::CopyFrom);
             encoder.transition(target, Use::Color, Use::CopyTo);

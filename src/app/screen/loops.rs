@@ -20,7 +20,7 @@ impl Screen {
                 continue;
             }
             if let Some(words) = self.frames.endless_loop(slot) {
-                viewer.versions.cut_short(state.shaders.generation);
+                viewer.cut_short(state.shaders.generation);
                 self.endless = Some(state);
                 viewer.on_endless_loop(words);
                 continue;

@@ -14,7 +14,7 @@ impl Screen {
     pub(super) fn has_more(&self, viewer: &Viewer, frame: Option<&BoundFrame>) -> bool {
         let moving = self.reference.as_ref().filter(|reference| !reference.is_still());
         let reference = moving.map(|reference| (&reference.view, &reference.frame));
-        let cells = self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
+        let cells = self.cells.iter().filter_map(|cell| Some((&cell.view, &cell.shown.as_ref()?.frame)));
         let mut views = frame.map(|frame| (&self.view, frame)).into_iter().chain(reference).chain(cells);
         let is_unfinished = |(view, frame): (&View, &BoundFrame)| {
             let gets_better = frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED;

@@ -2,9 +2,10 @@
 
 use super::number::Pointed;
 use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::drawn::readout::readout;
 use crate::app::panels::overlay::swatches::swatches;
-use crate::app::panels::{LegendOf, Readout};
-use crate::app::viewer::{Viewer, readout};
+use crate::app::panels::readings::{LegendOf, Readout};
+use crate::app::viewer::Viewer;
 use crate::frame::FrameState;
 use crate::render::View;
 
@@ -83,7 +84,7 @@ impl Screen {
     /// The state of the picture under the mouse: that of a cell of the grid, or of the selected mode.
     fn pointed_at<'a>(&'a self, viewer: &'a Viewer) -> Option<&'a FrameState> {
         let cell = self.cells.iter().find(|cell| cell.view.probe.is_some());
-        let of_cell = cell.and_then(|cell| cell.shown.as_ref()).map(|shown| &*shown.frame().state);
+        let of_cell = cell.and_then(|cell| cell.shown.as_ref()).map(|shown| &*shown.frame.state);
         of_cell.or_else(|| viewer.shown())
     }
 

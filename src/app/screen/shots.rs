@@ -3,21 +3,12 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::control::Shot;
+use super::window_shot::WindowShot;
 use crate::app::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::gpu::{Buffer, Encoder, GpuError, Image, Memory, Use, vk};
 use crate::picture;
 use crate::render::{BoundFrame, Capture, Output, Redraw};
-
-/// A picture of the window on its way from the device.
-pub(super) struct WindowShot {
-    /// The frame that it was copied with.
-    slot: usize,
-    pixels: Arc<Buffer>,
-    size: (u32, u32),
-    shot: Shot,
-}
 
 impl Screen {
     /// Writes the screenshot that a key has asked for. It waits for the first picture, and for the range of a mode's values.

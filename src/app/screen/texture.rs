@@ -3,30 +3,12 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::panels::texture::TextureRequest;
 use crate::app::viewer::Viewer;
 use crate::gpu::{DescriptorSet, Encoder, GpuError, Image, UiImage, Use};
 use crate::render::BoundFrame;
 
 /// Sides of the image that pictures are drawn to, pixels: at least and at most.
 const SIDES: (u32, u32) = (256, 2048);
-
-/// The picture of a texture.
-#[derive(Default)]
-pub(super) struct ShownTexture {
-    image: Option<UiImage>,
-    /// The texture that is read, with its descriptor set.
-    source: Option<(Arc<Image>, Arc<DescriptorSet>)>,
-    /// Request that the image shows, and the scene whose meshes it draws.
-    drawn: Option<(TextureRequest, Option<crate::frame::Scene>)>,
-}
-
-impl ShownTexture {
-    /// Draws the picture again: the commands of a frame were not submitted.
-    pub(super) fn forget(&mut self) {
-        self.drawn = None;
-    }
-}
 
 impl Screen {
     /// Makes room for the picture that the panel asks for in this frame, before egui draws it. SYNC: waits for the frames in flight

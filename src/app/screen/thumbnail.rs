@@ -1,17 +1,11 @@
 //! Draws the thumbnails of the versions, one at a time, while the panel that shows them is open.
 
-use super::Screen;
+use super::{PendingThumbnail, Screen};
 use crate::app::panels::timeline::THUMBNAIL;
+use crate::app::state::shaders::versions::Thumbnail;
 use crate::app::viewer::Viewer;
 use crate::gpu::{GpuError, Use};
-use crate::render::{Output, Readback, Redraw, View};
-
-/// A thumbnail on the way from the device.
-pub(super) struct Pending {
-    /// The version.
-    pub(super) number: u64,
-    readback: Readback,
-}
+use crate::render::{Output, Redraw, View};
 
 impl Screen {
     /// Draws the next missing thumbnail, unless an edit is on its way.
@@ -34,18 +28,17 @@ impl Screen {
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
         let encoder = self.background.encoder()?;
         view.draw(encoder, 0, &frame, &output, Redraw::IfChanged)?;
-        self.thumbnail = view.read_back(encoder, &image)?.map(|readback| Pending { number, readback });
+        self.thumbnail = view.read_back(encoder, &image)?.map(|readback| PendingThumbnail { number, readback });
         Ok(())
     }
 
     /// Gives a thumbnail that is finished to its version.
     pub(super) fn take_thumbnail(&mut self, viewer: &mut Viewer) {
-        let is_finished = |_: &mut Pending| self.background.is_finished();
-        let Some(Pending { number, readback }) = self.thumbnail.take_if(is_finished) else { return };
+        let is_finished = |_: &mut PendingThumbnail| self.background.is_finished();
+        let Some(PendingThumbnail { number, readback }) = self.thumbnail.take_if(is_finished) else { return };
         let capture = readback.finish();
         let size = [capture.width as usize, capture.height as usize];
-        let image = egui::ColorImage::from_rgba_unmultiplied(size, &capture.rgba8);
-        let texture = self.egui.load_texture(format!("version {number}"), image, egui::TextureOptions::LINEAR);
-        viewer.versions.set_thumbnail(number, texture);
+        let thumbnail = Thumbnail { size, rgba8: capture.rgba8 };
+        viewer.versions.set_thumbnail(number, thumbnail);
     }
 }

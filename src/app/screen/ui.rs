@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use winit::window::Window;
 
 use super::Screen;
-use crate::app::panels::{self, Readings};
+use crate::app::panels;
+use crate::app::panels::readings::Readings;
 use crate::app::state::grid::PictureRect;
 use crate::app::viewer::Viewer;
 use crate::gpu::{Attachments, Encoder, GpuError, Image, Rect, Use};

@@ -1,15 +1,10 @@
 //! Keys that wait for a frame. egui takes all keys of a frame at once. A key behind one that moves the keyboard's focus (a click,
 //! Enter, Escape, Tab, the key of the palette) would still go where the focus was before: to a palette that is closed by now, say.
 
-use std::collections::VecDeque;
-
 use egui::{Event, Key};
 use winit::event::WindowEvent;
 
 use super::Screen;
-
-/// Events that came while egui had yet to move the focus, in their order.
-pub(super) type Waiting = VecDeque<WindowEvent>;
 
 impl Screen {
     /// Keeps a key for after the next frame if egui has yet to take one that moves the focus, and what happens behind such a

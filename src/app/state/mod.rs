@@ -8,6 +8,7 @@ pub(super) mod hint;
 pub(super) mod history;
 pub(super) mod inspection;
 pub(super) mod last_session;
+pub(super) mod model;
 pub(super) mod notices;
 pub(super) mod playback;
 pub(super) mod recent;

@@ -10,151 +10,25 @@ mod labels;
 mod tree;
 mod write;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{LastComplete, Version, Versions, Viewer};
-use crate::app::OtherPicture;
+use super::Viewer;
 use crate::app::command::{Command, CompareWith};
+use crate::app::drawn::compare::{Difference, Reference, With};
+use crate::app::drawn::generations::Generations;
+use crate::app::options::OtherPicture;
+use crate::app::state::shaders::versions::{Version, Versions};
 use crate::capture::VersionPicture;
-use crate::comparison::{Comparison, Still};
+use crate::comparison::Comparison;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::GpuError;
 use crate::render::BoundFrame;
 use crate::shader::ShaderSet;
-use file::PictureFile;
-use tree::TreePicture;
 pub(super) use write::write_files;
 
 /// The answer to a request for a comparison that a newer one has replaced.
 const REPLACED: &str = "the comparison was ended or replaced before it was shown";
-
-/// The other picture, and how much of it is shown.
-pub(in crate::app) struct Compare {
-    with: Option<With>,
-    /// The file or tree that is being read or compiled. It replaces `with` once it is ready; after a failure, `with` stays.
-    opening: Option<Opening>,
-    /// The number of the last request to read, scale or compile.
-    number: u64,
-    /// Whether the other picture was part of the last frame.
-    is_drawn: bool,
-    /// Where the border between both pictures is: the part of the width that shows the other one, 0..1.
-    pub(in crate::app) wipe: f32,
-    /// Whether only the other one is shown (Space).
-    is_held: bool,
-    /// The number of the measurement that is under way.
-    pub(in crate::app) measuring: Option<u64>,
-    /// The difference of both.
-    pub(in crate::app) difference: Option<Difference>,
-    /// Whether the map of the difference covers the picture.
-    pub(in crate::app) shows_map: bool,
-}
-
-/// How much both pictures differ.
-pub(in crate::app) struct Difference {
-    /// Mean FLIP (Andersson et al. 2020), 0..1.
-    pub(in crate::app) flip: f64,
-    /// Largest difference of a channel of the display, 0..1.
-    pub(in crate::app) largest: f64,
-    /// FLIP of each pixel in magma colors.
-    pub(in crate::app) map: egui::ImageData,
-    /// The map on the device, once it has been shown.
-    pub(in crate::app) texture: Option<egui::TextureHandle>,
-    /// The part of the picture that was measured, as fractions of its size.
-    pub(in crate::app) part: egui::Rect,
-}
-
-enum With {
-    /// A version of the shaders, by its number.
-    Version(u64),
-    /// A picture with all its settings, and the number of its version.
-    Kept(Box<LastComplete>, u64),
-    /// A picture from a file.
-    File(PictureFile),
-    /// The picture of another shader tree.
-    Tree(Box<TreePicture>),
-}
-
-/// The other side of the comparison while it is being opened.
-enum Opening {
-    /// A file that is being read, and the number of the request.
-    File(u64, PathBuf),
-    /// A tree that is being compiled.
-    Tree(Box<TreePicture>),
-}
-
-/// The other picture, as a frame draws it for a comparison.
-pub(in crate::app) struct Reference {
-    /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
-    pub(in crate::app) frame: BoundFrame,
-    /// The picture from a file, with the number of the request that made it.
-    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
-    /// The part of the width that shows it, from the left, 0..1.
-    pub(in crate::app) part: f32,
-}
-
-impl Default for Compare {
-    fn default() -> Self {
-        Self {
-            with: None,
-            opening: None,
-            number: 0,
-            is_drawn: false,
-            wipe: 0.5,
-            is_held: false,
-            measuring: None,
-            difference: None,
-            shows_map: false,
-        }
-    }
-}
-
-impl Compare {
-    /// Whether both pictures are on screen with a border between them.
-    pub(in crate::app) fn is_on(&self) -> bool {
-        self.with.is_some()
-    }
-
-    /// Whether the other picture is shown alone.
-    pub(in crate::app) fn is_held(&self) -> bool {
-        self.is_held
-    }
-
-    /// The version that is compared with.
-    pub(in crate::app) fn version(&self) -> Option<u64> {
-        match self.with {
-            Some(With::Version(number)) => Some(number),
-            _ => None,
-        }
-    }
-
-    /// Whether a picture or tree for the comparison is being read or compiled.
-    pub(in crate::app) fn is_opening(&self) -> bool {
-        self.opening.is_some()
-    }
-
-    /// Whether both pictures were part of the last frame.
-    pub(in crate::app) fn is_drawn(&self) -> bool {
-        self.is_drawn && self.is_on() && !self.is_opening()
-    }
-
-    /// Compares with something else.
-    fn set(&mut self, with: Option<With>) {
-        (self.difference, self.measuring, self.shows_map) = (None, None, false);
-        (self.with, self.is_drawn) = (with, false);
-    }
-
-    /// Ends the comparison, but not the numbers of its requests, whose answers may still come.
-    fn end(&mut self) {
-        *self = Self { number: self.number, ..Self::default() };
-    }
-
-    fn next_number(&mut self) -> u64 {
-        self.number += 1;
-        self.number
-    }
-}
 
 impl Viewer {
     /// Takes the measured difference.
@@ -167,11 +41,9 @@ impl Viewer {
             Ok(compared) if self.compare.is_on() => {
                 let (flip, largest) = (compared.error, compared.largest);
                 emit(&self.events, &Event::Compared { flip, largest });
-                let map = compared.map().to_rgb8();
-                let size = [map.width() as usize, map.height() as usize];
-                let map = egui::ColorImage::from_rgb(size, map.as_raw()).into();
+                let map = Arc::new(compared.map().to_rgb8());
                 let part = self.compare.measured_part();
-                self.compare.difference = Some(Difference { flip, largest, map, texture: None, part });
+                self.compare.difference = Some(Difference { flip, largest, map, part });
             }
             Ok(_) => {}
             Err(message) => self.say(message),
@@ -280,7 +152,8 @@ impl Viewer {
             self.compare.with = None;
             return Ok(None);
         };
-        let (set, like) = (version.set.clone(), version.picture.as_ref().map(|picture| picture.frame.clone()));
+        let Some(set) = self.generations.set(version.number).cloned() else { return Ok(None) };
+        let like = self.generations.picture(version.number).map(|picture| picture.frame.clone());
         let state = self.state_like(live, &set.shaders);
         if let Some(frame) = self.resources.bind_older(&set, &state, like.as_ref())? {
             return Ok(Some(frame));
@@ -288,7 +161,7 @@ impl Viewer {
         if self.is_complete && !state.pipelines.needs_pending(&set.shaders) {
             self.threads.worker.build(&set, &state.pipelines);
         }
-        let picture = self.versions.get(set.shaders.generation).and_then(|version| version.picture.as_ref());
+        let picture = self.generations.picture(set.shaders.generation);
         Ok(picture.map(|picture| self.interim(picture, self.clock, live.state.size)))
     }
 
@@ -308,23 +181,32 @@ impl Viewer {
         let versions =
             self.versions.iter().filter(|version| version.number == newest || self.versions.can_show(version, newest));
         let of = |version: &Version| {
-            let picture = version.picture.as_ref().or(self.shown.as_ref().filter(|_| version.number == newest));
+            let set = self.generations.set(version.number)?.clone();
+            let picture = self.generations.picture(version.number);
+            let picture = picture.or(self.shown.as_ref().filter(|_| version.number == newest));
             let label = format!("{}   {}", version.number, version.title());
-            VersionPicture { set: version.set.clone(), label, like: picture.map(|picture| picture.frame.clone()) }
+            Some(VersionPicture { set, label, like: picture.map(|picture| picture.frame.clone()) })
         };
-        versions.map(of).collect()
+        versions.filter_map(of).collect()
     }
 
     /// Ends the comparison and drops old versions, while memory is short.
     pub(in crate::app) fn forget_references(&mut self) {
         self.compare.end();
         self.versions.drop_old();
+        self.generations.keep(&self.versions);
     }
 
     /// Ends the comparison and drops all versions.
     pub(super) fn forget_all_references(&mut self) {
         self.compare.end();
-        self.versions = Versions::default();
+        (self.versions, self.generations) = (Versions::default(), Generations::default());
+    }
+
+    /// Marks a version in which a loop did not end, and releases its picture.
+    pub(in crate::app) fn cut_short(&mut self, number: u64) {
+        self.versions.cut_short(number);
+        self.generations.drop_picture(number);
     }
 
     /// Ends the comparison, since a loop did not end in one of both pictures.

@@ -2,77 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::Viewer;
-use super::restored::Restored;
-use crate::settings::{ExpressionSettings, ShaderValue};
+use crate::app::state::shaders::edits::{Draft, NO_FOLDER};
 use crate::shader::rewrite::{Edit, applied, defaults};
 use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
 use crate::shader::{Change, Expression, ShaderSet, TreePath};
 use crate::threads::Message;
 use crate::write_back;
-
-/// Message for a shader tree that has no folder on disk.
-pub(in crate::app) const NO_FOLDER: &str = "These shaders are not in a folder on disk. `specula new DIR` writes them to a folder that you \
-    can open and edit";
-
-/// Changes of the shaders that are under way.
-#[derive(Default)]
-pub(in crate::app) struct Edits {
-    /// The expression that the worker knows of.
-    watched: ExpressionSettings,
-    /// Numbers of a line that are dragged.
-    pub(super) draft: Option<Draft>,
-    /// The older version that is shown in place of the newest.
-    pub(in crate::app) restored: Option<Restored>,
-    /// Values that were written to the files. Each setting is dropped once a reload has made its value the default.
-    written: BTreeMap<String, ShaderValue>,
-}
-
-/// Numbers that are dragged, and not in the file yet.
-pub(in crate::app) struct Draft {
-    pub(in crate::app) edits: Vec<Edit>,
-    pub(in crate::app) path: TreePath,
-    line: u32,
-    /// The text of the file without the edits.
-    pub(in crate::app) base: Arc<str>,
-}
-
-impl Draft {
-    /// Whether the dragged numbers are those of this line.
-    pub(in crate::app) fn is_at(&self, path: &TreePath, line: u32) -> bool {
-        (&self.path, self.line) == (path, line)
-    }
-
-    /// Whether a text of the file differs from that on disk in the dragged line at most.
-    fn is_of(&self, text: &str) -> bool {
-        let other = |number: usize| number + 1 != self.line as usize;
-        let rest = |text: &str| -> Vec<String> {
-            text.split('\n').enumerate().filter(|(number, _)| other(*number)).map(|(_, line)| line.to_owned()).collect()
-        };
-        rest(text) == rest(&self.base)
-    }
-}
-
-impl Edits {
-    /// The edits at the start, when the worker begins with this expression.
-    pub(super) fn new(watched: &ExpressionSettings) -> Self {
-        Self { watched: watched.clone(), ..Self::default() }
-    }
-
-    /// The numbers that are dragged.
-    pub(in crate::app) fn draft(&self) -> Option<&Draft> {
-        self.draft.as_ref()
-    }
-
-    /// Forgets numbers that are dragged, and the version that is shown: another tree is opened.
-    pub(super) fn forget_draft(&mut self) {
-        (self.draft, self.restored) = (None, None);
-    }
-}
 
 impl Viewer {
     /// Tells the worker of another watched expression. It reads the settings.

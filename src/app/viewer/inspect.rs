@@ -154,7 +154,7 @@ impl Viewer {
         let chosen = self.session.settings.lights.chosen;
         let material = inspector.reading.as_ref().filter(|reading| reading.is_hit()).and_then(|of| of.material(chosen));
         let (Some(material), Some(newest)) = (material, self.session.shaders.clone()) else { return };
-        let before = self.versions.shaders_before(newest.generation);
+        let before = self.versions.last_before(newest.generation).map(|version| version.shaders.clone());
         let address = |shaders: &Arc<ShaderSet>| Arc::as_ptr(shaders) as usize;
         let shaders = [address(&newest), before.as_ref().map_or(0, address)];
         let settings = format!("{:?}", self.session.settings.shader);

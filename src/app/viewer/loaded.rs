@@ -21,7 +21,7 @@ impl Viewer {
         match loaded.result {
             Ok(uploaded) => {
                 // The pictures of older versions would keep the old model on the device.
-                self.versions.drop_pictures();
+                self.generations.drop_pictures();
                 self.forget_second_picture();
                 let (model, is_other) = (uploaded.model(), loaded.path != self.model.path);
                 for warning in &model.warnings {

@@ -142,7 +142,8 @@ impl Viewer {
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
                 self.follow_edits(&set.shaders);
-                self.versions.complete(set);
+                self.versions.complete(&set.shaders);
+                self.generations.complete(set);
                 if !self.names_checked || self.session.mode().is_none() {
                     self.check_names();
                 }
@@ -219,7 +220,7 @@ impl Viewer {
         // No file has changed if only another expression is watched.
         let is_watch = event.changed.is_empty() && event.stages == [expression::STAGE];
         // Numbers that are dragged, and an older version in place of the newest, are no saves.
-        if self.has_folder() && self.edits.draft().is_none() && self.edits.restored.is_none() {
+        if self.has_folder() && self.edits.draft.as_ref().is_none() && self.edits.restored.is_none() {
             self.hint.saved(&event);
         }
         let changed = if is_watch { vec![expression::MODE.to_owned()] } else { event.changed.clone() };

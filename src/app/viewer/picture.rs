@@ -3,36 +3,18 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::{LastComplete, Viewer};
-use crate::app::panels::Readout;
+use super::Viewer;
+use crate::app::drawn::last_complete::{LastComplete, target};
+use crate::app::drawn::readout::title;
+use crate::app::drawn::waits::Waits;
 use crate::events::{Event, emit};
-use crate::frame::{Clock, FrameState, TargetFormat};
-use crate::gpu::{Gpu, GpuError};
+use crate::frame::{Clock, FrameState};
+use crate::gpu::GpuError;
 use crate::recovery::SessionState;
-use crate::render::{BoundFrame, Missing, PixelAt, View};
+use crate::render::{BoundFrame, Missing};
 use crate::settings::Settings;
-use crate::shader::{Mode, PixelValue, expression};
+use crate::shader::expression;
 use crate::threads::worker::Snapshot;
-
-/// The work of other threads that the picture waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Waits {
-    /// Pipelines. Until then, the last picture stays.
-    Pipelines,
-    /// The light of the environment or the BRDF tables. Until then, the picture has the light of before.
-    Light,
-}
-
-impl Waits {
-    /// The work that a state with these missing resources waits for.
-    fn of(missing: &Missing) -> Option<Self> {
-        match missing {
-            missing if missing.pipelines => Some(Self::Pipelines),
-            missing if missing.tables.is_some() || missing.environment.is_some() => Some(Self::Light),
-            _ => None,
-        }
-    }
-}
 
 impl Viewer {
     /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture
@@ -134,13 +116,17 @@ impl Viewer {
         if let Some(last) =
             last.filter(|last| last.scene().is_some() && last.frame.state.shaders.generation != generation)
         {
-            self.versions.retire(last);
+            let number = last.frame.state.shaders.generation;
+            if self.versions.get(number).is_some_and(|version| !version.is_cut_short()) {
+                self.generations.retire(last);
+            }
         }
-        if let Some(set) = self.resources.pipelines().filter(|set| has_model && !self.versions.has(set)) {
+        if let Some(set) = self.resources.pipelines().filter(|set| has_model && !self.versions.has(&set.shaders)) {
             let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
             let reload = edit.map(|first| first.event.clone()).or_else(|| self.shader.last.clone()).unwrap_or_default();
             let again = self.edits.restored.as_ref().map(|restored| restored.number);
-            self.versions.add(set, reload, again.is_some() || self.edits.draft().is_some(), again);
+            self.versions.add(&set.shaders, reload, again.is_some() || self.edits.draft.as_ref().is_some(), again);
+            self.generations.add(set, &self.versions);
         }
     }
 
@@ -170,7 +156,7 @@ impl Viewer {
             return None;
         }
         let mut with_picture = lacks.filter_map(|version| {
-            let picture = if version.number == newest { shown } else { version.picture.as_ref() };
+            let picture = if version.number == newest { shown } else { self.generations.picture(version.number) };
             Some((version.number, picture?))
         });
         let (number, picture) = with_picture.next()?;
@@ -234,70 +220,5 @@ impl Viewer {
         let selected = preview.and_then(|slug| shown.shaders.modes.iter().find(|mode| mode.slug == *slug));
         let title = title(shown.mode()?, selected.or_else(|| self.session.mode()), paths)?;
         Some(request.limit().map_or_else(|| title.clone(), |limit| format!("{title}. Note: {limit}")))
-    }
-}
-
-/// The value of a pixel in a picture; `None` where nothing covers the pixel. `exact` is its value in 32 bits if that can be read, and
-/// `None` in it until it has been read.
-pub(in crate::app) fn readout(
-    state: &FrameState,
-    pixel: &PixelAt,
-    exact: Option<Option<PixelValue>>,
-) -> Option<Readout> {
-    let PixelAt { at, value, .. } = pixel;
-    let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
-    let mode = state.mode().filter(|_| covered)?;
-    let [value, unit] = texts(mode, value, exact);
-    Some(Readout { side: None, value: value.trim_start().to_owned(), unit, at: *at })
-}
-
-/// A pixel's value and its unit: see [`readout`].
-fn texts(mode: &Mode, picture: &PixelValue, exact: Option<Option<PixelValue>>) -> [String; 2] {
-    match exact {
-        Some(Some(number)) if mode.numbers.is_some() => [number.text(mode).trim().to_owned(), String::new()],
-        Some(None) if mode.numbers.is_some() => ["…".to_owned(), String::new()],
-        // At an edge, the picture has a mean of several surfaces.
-        Some(Some(exact)) if picture.value[3] >= 1.0 && exact.value[3] >= 1.0 => exact.parts_in_picture(mode),
-        _ => picture.parts_in_picture(mode),
-    }
-}
-
-/// The title over the picture: the mode on screen and the selected mode that is being built. The final picture has no title.
-/// `paths` is the number of random paths per pixel so far in an accumulating mode.
-fn title(shown: &Mode, set: Option<&Mode>, paths: Option<u32>) -> Option<String> {
-    match (set.filter(|set| set.slug != shown.slug), paths) {
-        (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
-        (None, Some(1)) => Some(format!("{}   1 path per pixel", shown.name)),
-        (None, Some(paths)) => Some(format!("{}   {paths} paths per pixel", shown.name)),
-        (None, None) => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
-    }
-}
-
-/// Half floats with the samples of the settings, or 1 if the device does not support them.
-pub(super) fn target(gpu: &Gpu, settings: &Settings) -> TargetFormat {
-    View::target_format(gpu, settings.view.msaa, false).unwrap_or(TargetFormat::half(1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::shader::{Encode, Numbers};
-
-    #[test]
-    fn the_exact_value_replaces_that_of_the_picture_except_at_edges() {
-        let value = |number: f32, coverage| PixelValue { value: [number, 0.0, 0.0, coverage], ..PixelValue::default() };
-        let mode = Mode { components: 1, encode: Encode::Data, ..Mode::default() };
-        let text = |mode: &Mode, picture: PixelValue, exact| texts(mode, &picture, exact)[0].trim().to_owned();
-        let half = value(3.183_594, 1.0);
-        let exact = Some(Some(value(3.183_1, 1.0)));
-        assert_eq!(text(&mode, half, None), "3.18359");
-        assert_eq!(text(&mode, half, Some(None)), "3.18359");
-        assert_eq!(text(&mode, half, exact), "3.18310");
-        assert_eq!(text(&mode, value(1.5, 0.5), exact), "1.50000");
-        assert_eq!(text(&mode, half, Some(Some(value(0.0, 0.0)))), "3.18359");
-
-        let colors = Mode { numbers: Some(Numbers::Index), ..mode };
-        assert_eq!(text(&colors, half, Some(None)), "…");
-        assert_eq!(text(&colors, half, Some(Some(value(7.0, 1.0)))), "7");
     }
 }

@@ -1,44 +1,18 @@
 //! An older version of the shaders in place of the newest one, in the whole window and without a change of the files. A save ends it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Viewer;
+use crate::app::state::shaders::edits::{Restored, Texts};
 use crate::shader::source::draft::DraftText;
 use crate::shader::{ShaderSet, TreePath};
-
-/// Texts of the files of a tree.
-type Texts = BTreeMap<TreePath, Arc<str>>;
-
-/// The version that is shown.
-pub(in crate::app) struct Restored {
-    /// Its number when it was the newest.
-    pub(in crate::app) number: u64,
-    /// The texts of the files.
-    files: Texts,
-    /// The texts that are shown.
-    shown: Texts,
-    /// The texts that were shown in place of the newest before, if any.
-    shown_before: Option<Texts>,
-    /// The files that differ.
-    changed: BTreeSet<TreePath>,
-}
-
-impl Restored {
-    /// Whether these shaders have a text that neither the version nor its restoring explains: a file was saved. Shaders that were
-    /// under way when the version was chosen have the texts of before.
-    fn is_edited(&self, shaders: &ShaderSet) -> bool {
-        let known = || [Some(&self.shown), Some(&self.files), self.shown_before.as_ref()].into_iter().flatten();
-        let is_known = |path, text| known().any(|texts| texts.get(path) == Some(text));
-        shaders.texts.iter().any(|(path, text)| self.shown.contains_key(path) && !is_known(path, text))
-    }
-}
 
 impl Viewer {
     /// Shows a version in place of the newest, until a file is saved.
     pub(super) fn show_version(&mut self, number: u64) {
         let Some((files, version)) = self.texts_of_files().zip(self.versions.get(number)) else { return };
-        let texts = &version.set.shaders.texts;
+        let texts = &version.shaders.texts;
         let differs = |(path, text): &(&TreePath, &Arc<str>)| files.get(*path).is_some_and(|file| file != *text);
         let changed: BTreeSet<TreePath> = texts.iter().filter(differs).map(|(path, _)| path.clone()).collect();
         if changed.is_empty() {
@@ -83,27 +57,7 @@ impl Viewer {
             return Some(restored.files.clone());
         }
         let mut texts = self.session.shaders.as_ref()?.texts.clone();
-        texts.extend(self.edits.draft().map(|draft| (draft.path.clone(), draft.base.clone())));
+        texts.extend(self.edits.draft.as_ref().map(|draft| (draft.path.clone(), draft.base.clone())));
         Some(texts)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shaders_that_were_under_way_are_no_save() {
-        let texts = |text: &str| BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from(text))]);
-        let restored = Restored {
-            number: 1,
-            files: texts("file"),
-            shown: texts("version 1"),
-            shown_before: Some(texts("version 2")),
-            changed: BTreeSet::new(),
-        };
-        let is_edited = |text: &str| restored.is_edited(&ShaderSet { texts: texts(text), ..ShaderSet::default() });
-        assert!(["version 1", "version 2", "file"].iter().all(|text| !is_edited(text)));
-        assert!(is_edited("saved"));
     }
 }

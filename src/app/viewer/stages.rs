@@ -15,7 +15,8 @@ impl Viewer {
             return;
         }
         if self.stages.is_outdated(set, &state.pipelines) {
-            let before = self.versions.set_before(state.shaders.generation);
+            let before = self.versions.last_before(state.shaders.generation);
+            let before = before.and_then(|version| self.generations.set(version.number));
             self.stages.update(set, &state.pipelines, before, &self.shader.log);
         }
         if self.shader.asks_driver && is_settled && self.shader.told.as_ref() != Some(&state.pipelines) {

@@ -5,14 +5,6 @@ use std::sync::Arc;
 use super::Viewer;
 use crate::render::tools::Tools;
 
-/// The pipelines on their way.
-#[derive(Default)]
-pub(super) struct ToolsState {
-    made: Option<Arc<Tools>>,
-    /// Whether they were asked for.
-    is_asked: bool,
-}
-
 impl Viewer {
     /// The pipelines. The first call has a thread make them; until then there are none.
     pub(in crate::app) fn tools(&mut self) -> Option<Arc<Tools>> {

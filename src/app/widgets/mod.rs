@@ -5,3 +5,8 @@ pub(in crate::app) mod rows;
 pub(in crate::app) mod search;
 pub(in crate::app) mod spoken;
 pub(in crate::app) mod theme;
+
+/// A count with its noun, such as "1 draw" or "2 draws".
+pub(in crate::app) fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}

@@ -147,11 +147,6 @@ fn legend(ui: &mut Ui, has_before: bool, doc: &str) {
     });
 }
 
-/// Luminance Y of linear RGB (ITU-R BT.709).
-pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;

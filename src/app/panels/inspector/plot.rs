@@ -3,7 +3,6 @@
 use egui::{Align2, Color32, Grid, Response, RichText, Stroke, Ui};
 use egui_plot::{Arrows, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
 
-use super::lobe::luminance;
 use crate::app::state::inspection::directions::Directions;
 use crate::app::widgets::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
 use crate::measure::{Curves, Lobe, Material};
@@ -221,6 +220,11 @@ fn curve(plot: &mut PlotUi<'_>, name: &str, color: Color32, points: &[[f64; 2]],
 fn note(plot: &mut PlotUi<'_>, [x, y]: [f64; 2], anchor: Align2, text: String, color: Color32) {
     let text = RichText::new(text).font(small_font());
     plot.text(Text::new("", PlotPoint::new(x, y), text).color(color).anchor(anchor).allow_hover(false));
+}
+
+/// Luminance Y of linear RGB (ITU-R BT.709).
+pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// A number in few characters, for the scale of a plot.

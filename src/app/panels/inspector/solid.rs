@@ -4,8 +4,7 @@ use egui::epaint::{Mesh, Vertex};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::lobe::luminance;
-use super::plot::GRID;
+use super::plot::{GRID, luminance};
 use crate::app::state::inspection::directions::Directions;
 use crate::app::widgets::theme::{ACCENT, WARNING, small_font};
 use crate::measure::Hemisphere;

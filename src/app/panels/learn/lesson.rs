@@ -2,7 +2,7 @@
 
 use egui::{Frame, Label, Margin, RichText, Ui};
 
-use super::mark;
+use super::mark::mark;
 use crate::app::command::Command;
 use crate::app::state::exercise::{LearnCommand, Learning, Measured};
 use crate::app::state::shaders::difference::Kind;

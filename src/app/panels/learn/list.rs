@@ -2,7 +2,7 @@
 
 use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
 
-use super::paint_mark;
+use super::mark::paint_mark;
 use crate::app::command::Command;
 use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::app::widgets::spoken;

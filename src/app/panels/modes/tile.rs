@@ -3,8 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use crate::app::gallery::GalleryState;
-use crate::app::panels::QUIET;
-use crate::app::widgets::theme::{ACCENT, EDGE, LINE, small_font, small_mono_font};
+use crate::app::widgets::theme::{ACCENT, EDGE, LINE, QUIET, small_font, small_mono_font};
 use crate::shader::Mode;
 
 /// The smallest width of a tile, points.

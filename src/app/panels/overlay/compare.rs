@@ -1,10 +1,15 @@
 //! The border between the picture and the one that it is compared with, and the names of both.
 
-use egui::{
-    Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2,
-};
+use std::sync::Arc;
 
-use crate::app::viewer::{Compare, Difference, Viewer};
+use egui::{
+    Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, TextureHandle, Vec2,
+    pos2, vec2,
+};
+use image::RgbImage;
+
+use crate::app::drawn::compare::Difference;
+use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{PICTURE_ACCENT, small_font};
 
 /// Width of the strip that the mouse takes hold of, in points.
@@ -15,16 +20,16 @@ const MARK: f32 = 9.0;
 const MARGIN: Vec2 = vec2(8.0, 4.0);
 
 /// Shows the border over the picture, and moves it with the mouse. It lies below messages and errors.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, shown: &mut ShownMap, picture: Rect) {
     let Some([earlier, now]) = viewer.comparison_labels() else { return };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("compare"))).with_clip_rect(picture);
     let bottom = picture.center_bottom() - vec2(0.0, 12.0);
-    if viewer.compare.is_held() {
+    if viewer.compare.is_held {
         return name(&painter, bottom, Align2::CENTER_BOTTOM, &earlier);
     }
     let compare = &mut viewer.compare;
     if compare.shows_map {
-        map(&painter, compare, picture);
+        shown.paint(&painter, compare.difference.as_ref(), picture);
         return name(&painter, bottom, Align2::CENTER_BOTTOM, "FLIP: black is equal, white is the largest difference");
     }
     let x = picture.min.x + compare.wipe * picture.width();
@@ -51,14 +56,24 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     name(&painter, beside(1.0), Align2::LEFT_BOTTOM, &now);
 }
 
-/// Covers the picture with the map of the difference.
-fn map(painter: &Painter, compare: &mut Compare, picture: Rect) {
-    let Some(Difference { map, texture, part, .. }) = &mut compare.difference else { return };
-    let load = || painter.ctx().load_texture("difference", map.clone(), egui::TextureOptions::NEAREST);
-    let texture = texture.get_or_insert_with(load).id();
-    let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    let at = |corner: Pos2| picture.min + corner.to_vec2() * picture.size();
-    painter.image(texture, Rect::from_min_max(at(part.min), at(part.max)), uv, Color32::WHITE);
+/// The map of the difference that was shown last, as a texture.
+#[derive(Default)]
+pub(in crate::app::panels) struct ShownMap(Option<(Arc<RgbImage>, TextureHandle)>);
+
+impl ShownMap {
+    /// Covers the picture with the map of the difference.
+    fn paint(&mut self, painter: &Painter, difference: Option<&Difference>, picture: Rect) {
+        let Some(Difference { map, part: [low, high], .. }) = difference else { return };
+        self.0.take_if(|(shown, _)| !Arc::ptr_eq(shown, map));
+        let (_, texture) = self.0.get_or_insert_with(|| {
+            let size = [map.width() as usize, map.height() as usize];
+            let image = egui::ColorImage::from_rgb(size, map.as_raw());
+            (map.clone(), painter.ctx().load_texture("difference", image, egui::TextureOptions::NEAREST))
+        });
+        let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        let at = |[x, y]: [f32; 2]| picture.min + vec2(x, y) * picture.size();
+        painter.image(texture.id(), Rect::from_min_max(at(*low), at(*high)), uv, Color32::WHITE);
+    }
 }
 
 /// Writes the name of one of the pictures.

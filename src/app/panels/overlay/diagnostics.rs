@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use egui::{Align2, Id, Rect, RichText, Ui};
 
-use super::{area, card};
+use super::card::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::panels::plural;
+use crate::app::widgets::plural;
 use crate::app::widgets::theme::{ERROR, QUIET, STRONG, TEXT, WARNING};
 use crate::shader::{Diagnostic, Severity};
 

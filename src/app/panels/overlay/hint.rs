@@ -2,7 +2,7 @@
 
 use egui::{Align2, Id, Rect, RichText, Ui};
 
-use super::{area, card};
+use super::card::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::state::exercise::LearnCommand;

@@ -4,8 +4,9 @@
 use clap::ValueEnum as _;
 use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
-use super::{swatches, wrapped};
-use crate::app::panels::{LegendOf, Readout};
+use super::card::wrapped;
+use super::swatches;
+use crate::app::panels::readings::{LegendOf, Readout};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::frame::Limits;

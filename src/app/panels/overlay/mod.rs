@@ -1,7 +1,8 @@
 //! The overlay: diagnostics, messages, loading state, the legend of the mode, handles, and names over the picture.
 
+mod card;
 mod compare;
-pub(super) mod diagnostics;
+mod diagnostics;
 mod gizmo;
 mod grid;
 mod hint;
@@ -11,75 +12,88 @@ mod restore;
 pub(in crate::app) mod swatches;
 mod version;
 
-use std::sync::Arc;
-
-use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margin, Order, Rect, RichText, Stroke};
-use egui::{TextStyle, Ui};
+use egui::{Align2, Id, Rect, RichText, TextStyle};
 
 use super::inspector::marker;
-use super::{Panels, Readings, WARNING};
+use super::readings::Readings;
 use crate::app::command::Command;
+use crate::app::gallery::GalleryState;
 use crate::app::viewer::Viewer;
-use crate::app::widgets::theme::{CARD, LINE};
+use crate::app::widgets::theme::{LINE, WARNING};
 use crate::settings::ViewSettings;
-use diagnostics::Shown;
-pub(super) use gizmo::Gizmo;
-pub(super) use labels::Labels;
+use card::{area, card, wrapped};
+use compare::ShownMap;
+use diagnostics::{Files, Shown};
+use gizmo::Gizmo;
+use labels::Labels;
 use legend::{Legend, LegendState};
 
 /// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
-/// Points between the edge of the picture and a card.
-const MARGIN: f32 = 12.0;
-/// Points between the edge of a card and its text.
-const PADDING: f32 = 12.0;
 /// A passing message needs this many points above the diagnostics.
 const NOTICE: f32 = 60.0;
 /// Height of the names of what is compared, below the picture, points.
 const NAMES: f32 = 36.0;
 
-/// Shows what lies over the picture.
+/// State of the overlay between frames.
+#[derive(Default)]
+pub(in crate::app) struct Overlay {
+    pub(in crate::app) legend: LegendState,
+    files: Files,
+    gizmo: Gizmo,
+    labels: Labels,
+    map: ShownMap,
+}
+
+/// Shows what lies over the picture. `with_panels`: the panels are shown as well. Returns the version of the shaders that the user wants to
+/// write to the files.
 pub(super) fn show(
     egui: &egui::Context,
-    (viewer, panels): (&mut Viewer, &mut Panels),
+    (viewer, state): (&mut Viewer, &mut Overlay),
+    (gallery, with_panels): (&GalleryState, bool),
     readings: &Readings,
     picture: Rect,
     commands: &mut Vec<Command>,
-) {
-    in_picture(egui, (&mut *viewer, &mut *panels), readings, picture);
+) -> Option<u64> {
+    in_picture(egui, (&mut *viewer, &mut *state), (gallery, with_panels), readings, picture);
     let cut_short = viewer.is_cut_short();
     let mut free = picture;
     if !viewer.session.diagnostics.is_empty() {
         let shown = Shown { diagnostics: &viewer.session.diagnostics, cut_short, picture };
-        let (card, hides) = diagnostics::show(egui, &shown, &mut panels.files, commands);
+        let (card, hides) = diagnostics::show(egui, &shown, &mut state.files, commands);
         free.max.y = card.top();
         if hides {
             viewer.session.diagnostics.clear();
         }
     }
-    if panels.visible && viewer.session.diagnostics.is_empty() {
+    if with_panels && viewer.session.diagnostics.is_empty() {
         hint::show(egui, viewer, picture, commands);
     }
     restore::show(egui, viewer, picture, commands);
-    if let Some(number) = version::show(egui, viewer, picture, commands) {
-        panels.docked.timeline.ask(number);
-    }
+    let asked = version::show(egui, viewer, picture, commands);
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
-    if panels.visible {
-        label(egui, &mut viewer.session.settings.view, &mut panels.legend, readings, picture);
+    if with_panels {
+        label(egui, &mut viewer.session.settings.view, &mut state.legend, readings, picture);
     }
+    asked
 }
 
 /// Shows what belongs to places of the picture.
-fn in_picture(egui: &egui::Context, (viewer, panels): (&mut Viewer, &mut Panels), readings: &Readings, picture: Rect) {
-    compare::show(egui, viewer, picture);
+fn in_picture(
+    egui: &egui::Context,
+    (viewer, state): (&mut Viewer, &mut Overlay),
+    (gallery, with_panels): (&GalleryState, bool),
+    readings: &Readings,
+    picture: Rect,
+) {
+    compare::show(egui, viewer, &mut state.map, picture);
     marker(egui, &viewer.inspection, picture);
-    gizmo::show(egui, viewer, &mut panels.gizmo, picture);
-    grid::show(egui, (&viewer.session, &viewer.grid), &panels.docked.gallery, picture);
-    let has_labels = panels.visible && readings.legend.is_some() && !viewer.grid.is_on();
+    gizmo::show(egui, viewer, &mut state.gizmo, picture);
+    grid::show(egui, (&viewer.session, &viewer.grid), gallery, picture);
+    let has_labels = with_panels && readings.legend.is_some() && !viewer.grid.is_on();
     if let Some(model) = viewer.session.model().filter(|_| has_labels) {
-        labels::show(egui, &mut panels.labels, model, &viewer.session.settings.camera, picture);
+        labels::show(egui, &mut state.labels, model, &viewer.session.settings.camera, picture);
     }
 }
 
@@ -147,24 +161,4 @@ fn label(egui: &egui::Context, view: &mut ViewSettings, state: &mut LegendState,
     area(id, Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, state, picture.width()));
     });
-}
-
-/// A text that wraps where a card would be wider than `width` with its margins. An area keeps its first size, and so would wrap a
-/// longer text by the width of the text before it.
-fn wrapped(ui: &Ui, text: &str, font: FontId, color: Color32, width: f32) -> Arc<Galley> {
-    let width = (width - 2.0 * (MARGIN + PADDING + 1.0)).max(80.0);
-    ui.painter().layout(text.to_owned(), font, color, width)
-}
-
-fn area(id: Id, corner: Align2, picture: Rect) -> Area {
-    let at = corner.pos_in_rect(&picture.shrink(MARGIN));
-    Area::new(id).order(Order::Middle).pivot(corner).fixed_pos(at).constrain_to(picture)
-}
-
-fn card(edge: impl Into<Color32>) -> Frame {
-    Frame::new()
-        .fill(CARD.color().gamma_multiply(0.93))
-        .stroke(Stroke::new(1.0, edge))
-        .corner_radius(CornerRadius::same(6))
-        .inner_margin(Margin::symmetric(PADDING as i8, 8))
 }

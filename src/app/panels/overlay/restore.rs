@@ -2,7 +2,7 @@
 
 use egui::{Align2, Id, Rect, RichText};
 
-use super::{area, card};
+use super::card::{area, card};
 use crate::app::command::Command;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{ACCENT, QUIET};

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Id, Rect, RichText};
 
-use super::{area, card};
+use super::card::{area, card};
 use crate::app::command::Command;
 use crate::app::state::arrangement::Panel;
 use crate::app::viewer::Viewer;
@@ -10,7 +10,7 @@ use crate::app::widgets::theme::{ACCENT, QUIET};
 
 /// Shows the card over the picture while an older version is shown. Returns the version that the user wants to write.
 pub(super) fn show(egui: &egui::Context, viewer: &Viewer, picture: Rect, commands: &mut Vec<Command>) -> Option<u64> {
-    let Some(number) = viewer.edits.restored.as_ref().map(|restored| restored.number) else { return None };
+    let number = viewer.edits.restored.as_ref()?.number;
     let mut asks = None;
     area(Id::new(("version", number)), Align2::RIGHT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(ACCENT).show(ui, |ui| {

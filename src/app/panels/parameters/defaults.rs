@@ -4,8 +4,9 @@
 use egui::{Button, Grid, Id, Label, Modal, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::panels::{ACCENT, ERROR, QUIET};
-use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::app::state::shaders::edits::NO_FOLDER;
+use crate::app::viewer::Viewer;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 
 /// State of the confirmation dialog.
 #[derive(Default)]

@@ -3,13 +3,16 @@
 use egui::{Button, Label, RichText, Ui};
 
 use super::material;
+use super::title::title;
 use super::tree::kind;
 use crate::app::command::Command;
-use crate::app::panels::{ACCENT, QUIET, lights, plural};
+use crate::app::panels::lights;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::{LightId, Selected, common_material, name_or};
 use crate::app::viewer::Viewer;
+use crate::app::widgets::plural;
 use crate::app::widgets::rows::heading;
+use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::frame::Scene;
 use crate::scene::{Bounds, Model};
 use crate::settings::LightSource;
@@ -52,14 +55,6 @@ pub(super) fn show(
         }
         Selected::Light(light) => show_light(ui, viewer, model, light),
     }
-}
-
-/// Kind and name of what is selected.
-pub(super) fn title(ui: &mut Ui, kind: &str, name: &str) {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(kind).small().color(QUIET));
-        ui.add(Label::new(RichText::new(name).strong()).truncate());
-    });
 }
 
 /// The counts of a selection, kept while it is the same.

@@ -2,15 +2,15 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::details::title;
+use super::title::title;
 use super::tree::textures;
 use crate::app::command::Command;
 use crate::app::numbers::Scale;
-use crate::app::panels::{ACCENT, QUIET, WARNING};
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::{Row, color, edit_number, heading, set_option, short};
+use crate::app::widgets::theme::{ACCENT, QUIET, WARNING};
 use crate::frame::Scene;
 use crate::scene::{Material, MaterialFactor, material_factors, slot_name};
 use crate::settings::{FactorValue, Settings, factor_path};

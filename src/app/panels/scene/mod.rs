@@ -3,16 +3,17 @@
 mod details;
 pub(super) mod material;
 mod row;
+mod title;
 pub(super) mod tree;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::QUIET;
 use crate::app::command::Command;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::QUIET;
 use tree::Tree;
 
 /// Height of the part about the selection at first, points.

@@ -3,10 +3,9 @@
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::tree::Row;
-use crate::app::panels::{EDGE, QUIET};
 use crate::app::state::selection::Selected;
 use crate::app::widgets::spoken;
-use crate::app::widgets::theme::STRONG;
+use crate::app::widgets::theme::{EDGE, QUIET, STRONG};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 18.0;

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
-use crate::app::panels::plural;
 use crate::app::state::selection::{LightId, Selected, name_or};
+use crate::app::widgets::plural;
 use crate::app::widgets::search::Words;
 use crate::frame::Scene;
 use crate::scene::{Instance, LightKind, Model, TextureSource};

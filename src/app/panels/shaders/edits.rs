@@ -2,10 +2,9 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use super::super::{ERROR, QUIET};
-use super::lines;
-use crate::app::state::shaders::log::{ShaderLog, reached};
+use crate::app::state::shaders::log::{ShaderLog, lines, reached};
 use crate::app::widgets::rows::elided;
+use crate::app::widgets::theme::{ERROR, QUIET};
 use crate::events::in_short;
 
 /// Height of a line, in points.

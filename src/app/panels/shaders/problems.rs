@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
-use super::super::{ACCENT, ERROR, QUIET, WARNING, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::viewer::Viewer;
+use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, WARNING};
 use crate::shader::{Diagnostic, Severity};
 
 /// Height of a line, in points.

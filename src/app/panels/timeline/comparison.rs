@@ -4,12 +4,13 @@ use egui::{Label, RichText, TextWrapMode, Ui};
 
 use crate::app::command::{Command, CompareWith};
 use crate::app::dialog::Dialog;
-use crate::app::panels::timeline::{ENTRIES, monospace};
-use crate::app::viewer::{Compare, Difference};
+use crate::app::drawn::compare::{Compare, Difference};
 use crate::app::widgets::search;
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::QUIET;
+use crate::app::widgets::theme::{QUIET, small_mono};
 
+/// The entries of the panel, for its search.
+pub(super) const ENTRIES: &str = "versions";
 /// The meaning of the numbers of a comparison.
 const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different the pictures look to a viewer who flips between \
     them, 0.7 m from a 4K screen. Largest: the largest difference of a channel of the display";
@@ -77,4 +78,9 @@ fn numbers(difference: Option<&Difference>) -> Vec<String> {
         }
         None => vec!["FLIP …".to_owned()],
     }
+}
+
+/// Small text of a fixed width.
+pub(super) fn monospace(text: impl Into<String>) -> RichText {
+    small_mono(text)
 }

@@ -42,6 +42,24 @@ pub(in crate::app) fn reached(reload: &ReloadEvent) -> String {
     }
 }
 
+/// Three texts: the changed files with the compiled stages, the time of each step, and a hover text with the details.
+pub(in crate::app) fn lines(last: &ReloadEvent) -> (String, String, String) {
+    let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
+    let times = match last.ok {
+        true => format!(
+            "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
+            last.compile_ms, last.pipeline_ms, last.first_frame_ms
+        ),
+        false => format!("failed after {:.0} ms", last.compile_ms),
+    };
+    let hover = format!(
+        "{}\n-> {stages}\n{times}\nDetected {:.1} ms after the first file event. The frame is the first one with the new shaders.",
+        if last.changed.is_empty() { "start".to_owned() } else { last.changed.join("\n") },
+        last.detect_ms
+    );
+    (reached(last), times, hover)
+}
+
 /// The last edits, the newest first.
 #[derive(Default)]
 pub(in crate::app) struct ShaderLog {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Sample, Shown};
+use super::sample::{Sample, Shown};
 
 /// Frames of each side that count, the newest.
 const FRAMES: usize = 16;

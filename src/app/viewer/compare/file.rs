@@ -4,108 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Compare, Opening, REPLACED, With};
+use super::REPLACED;
+use crate::app::drawn::compare::file::PictureFile;
+use crate::app::drawn::compare::{Opening, With};
 use crate::app::viewer::Viewer;
 use crate::comparison::{Picture, Still};
-use crate::gpu::Rect;
 use crate::threads::Message;
-
-/// A picture from a file.
-pub(super) struct PictureFile {
-    path: PathBuf,
-    picture: Arc<Picture>,
-    /// The number of the request that has read it.
-    number: u64,
-    /// The newest scaled picture, with the number of the request that made it.
-    still: Option<(u64, Arc<Still>)>,
-    /// [`Self::number`] and the size that `still` was made of, or that a failed scaling asked for.
-    scaled: Option<(u64, (u32, u32))>,
-    /// The number of the scaling that is under way.
-    scaling: Option<u64>,
-}
-
-impl PictureFile {
-    fn new(number: u64, path: PathBuf, picture: Arc<Picture>) -> Self {
-        Self { path, picture, number, still: None, scaled: None, scaling: None }
-    }
-
-    /// The file's name, and its size in pixels if it is scaled.
-    pub(super) fn label(&self) -> String {
-        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        match self.scaled_size() {
-            Some((width, height)) => format!("{name}, scaled to {width} x {height}"),
-            None => name.into_owned(),
-        }
-    }
-
-    /// The size that the picture has on screen, if that is not its own.
-    fn scaled_size(&self) -> Option<(u32, u32)> {
-        let (_, still) = self.still.as_ref()?;
-        let size = (still.covered.width, still.covered.height);
-        (size != self.picture.size()).then_some(size)
-    }
-
-    /// How it is shown, in sentences; empty for one that is shown as it is.
-    fn note(&self) -> String {
-        let (width, height) = self.picture.size();
-        let scaled = self.scaled_size().map(|(to_width, to_height)| {
-            format!(
-                "The file has {width} x {height} pixels, scaled to {to_width} x {to_height} in the middle of the picture. FLIP is \
-                 measured where the scaled picture covers this one."
-            )
-        });
-        let light = matches!(*self.picture, Picture::Raw(_))
-            .then(|| "Shown with the exposure and tone map of the picture.".to_owned());
-        scaled.into_iter().chain(light).collect::<Vec<_>>().join(" ")
-    }
-}
-
-impl Compare {
-    /// How a picture from a file is shown, if not as it is.
-    pub(in crate::app) fn note(&self) -> Option<String> {
-        match &self.with {
-            Some(With::File(file)) => Some(file.note()).filter(|note| !note.is_empty()),
-            _ => None,
-        }
-    }
-
-    /// The file that is compared with, or that is being read for it.
-    pub(in crate::app) fn files(&self) -> impl Iterator<Item = &PathBuf> + Clone {
-        let opening = match &self.opening {
-            Some(Opening::File(_, path)) => Some(path),
-            _ => None,
-        };
-        opening.into_iter().chain(self.file())
-    }
-
-    /// The file that is compared with.
-    pub(in crate::app) fn file(&self) -> Option<&PathBuf> {
-        match &self.with {
-            Some(With::File(file)) => Some(&file.path),
-            _ => None,
-        }
-    }
-
-    /// Whether a file that is dropped on the window becomes the other picture: a PNG or JPEG while pictures are compared, and light
-    /// while a picture from a file is. Otherwise such files are a look and an environment.
-    pub(in crate::app) fn takes(&self, path: &Path) -> bool {
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        match ending.as_str() {
-            "png" | "jpg" | "jpeg" => self.is_on(),
-            "hdr" | "exr" => self.file().is_some(),
-            _ => false,
-        }
-    }
-
-    /// The part of the picture that is measured, as fractions of its size.
-    pub(super) fn measured_part(&self) -> egui::Rect {
-        let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-        let Some(With::File(PictureFile { still: Some((_, still)), .. })) = &self.with else { return whole };
-        let (Rect { x, y, width, height }, size) = (still.covered, still.size());
-        let at = |x: u32, y: u32| egui::pos2(x as f32 / size.0.max(1) as f32, y as f32 / size.1.max(1) as f32);
-        egui::Rect::from_min_max(at(x, y), at(x + width, y + height))
-    }
-}
 
 impl Viewer {
     /// Reads a picture on a thread, and then compares with it.

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::With;
-use crate::app::viewer::{LastComplete, Viewer};
+use crate::app::drawn::compare::With;
+use crate::app::drawn::last_complete::LastComplete;
+use crate::app::viewer::Viewer;
 use crate::settings::Settings;
 
 /// A value of a setting with more characters is left out.

@@ -3,82 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Compare, Opening, REPLACED, With};
-use crate::app::viewer::picture::target;
-use crate::app::viewer::{LastComplete, Viewer};
-use crate::frame::FrameState;
+use super::REPLACED;
+use crate::app::drawn::compare::tree::{LastAsked, TreePicture};
+use crate::app::drawn::compare::{Opening, With};
+use crate::app::drawn::last_complete::{LastComplete, target};
+use crate::app::viewer::Viewer;
 use crate::gpu::GpuError;
 use crate::pipeline::PipelineSet;
 use crate::render::BoundFrame;
 use crate::shader::{Diagnostic, Severity, Source};
 use crate::threads::second_tree::{Needs, SecondTree, SecondTreeMessage};
 use crate::threads::worker::Snapshot;
-
-/// The picture of a second shader tree.
-pub(super) struct TreePicture {
-    name: String,
-    tree: SecondTree,
-    /// The pipelines of its last good shaders.
-    set: Option<Arc<PipelineSet>>,
-    /// Whether its files have errors.
-    has_errors: bool,
-    /// Its last picture from the thread, whose light is its own.
-    like: Option<LastComplete>,
-    /// The picture that the thread was asked for last.
-    asked: Option<LastAsked>,
-}
-
-/// The inputs of a picture that the thread was asked for.
-struct LastAsked {
-    /// A picture without resources.
-    state: Arc<FrameState>,
-    snapshot: Snapshot,
-}
-
-impl LastAsked {
-    /// Whether a picture needs the same resources.
-    fn has_needs_of(&self, state: &FrameState) -> bool {
-        let asked = &*self.state;
-        Arc::ptr_eq(&asked.shaders, &state.shaders)
-            && asked.pipelines == state.pipelines
-            && asked.scene == state.scene
-            && asked.environment == state.environment
-            && asked.tables == state.tables
-            && asked.measured == state.measured
-    }
-}
-
-impl TreePicture {
-    pub(super) fn label(&self) -> String {
-        match self.has_errors {
-            true => format!("{}, before its last edit, which does not compile", self.name),
-            false => self.name.clone(),
-        }
-    }
-}
-
-impl Compare {
-    /// The second tree that is compared with, or that is being compiled for it.
-    fn tree(&mut self, number: u64) -> Option<&mut TreePicture> {
-        let opening = match &mut self.opening {
-            Some(Opening::Tree(tree)) => Some(tree),
-            _ => None,
-        };
-        let with = match &mut self.with {
-            Some(With::Tree(tree)) => Some(tree),
-            _ => None,
-        };
-        opening.into_iter().chain(with).map(|tree| &mut **tree).find(|tree| tree.tree.number == number)
-    }
-
-    /// The name of the second tree.
-    pub(in crate::app) fn tree_name(&self) -> Option<&str> {
-        match &self.with {
-            Some(With::Tree(tree)) => Some(&tree.name),
-            _ => None,
-        }
-    }
-}
 
 impl Viewer {
     /// Compiles a tree on a thread, and then compares with it.

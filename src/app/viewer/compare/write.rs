@@ -16,7 +16,7 @@ impl Viewer {
         let all = self.source.root().zip(self.versions.get(number)).zip(self.texts_of_files());
         let Some(((root, version), files)) = all else { return Vec::new() };
         let differs = |(path, text): &(&TreePath, &Arc<str>)| files.get(*path) != Some(*text);
-        let texts = version.set.shaders.texts.iter().filter(differs);
+        let texts = version.shaders.texts.iter().filter(differs);
         texts.map(|(path, text)| (root.join(path.as_str()), text.clone())).collect()
     }
 

@@ -1,0 +1,80 @@
+//! How to open the window, and the work that begins before it is open.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::control::{Clients, Control};
+use crate::recovery::{Recorder, SessionState};
+use crate::scene::LoadOptions;
+use crate::settings::Settings;
+use crate::shader::{Compiler, Source, Watcher};
+use crate::threads::loader::{self, Reading};
+use crate::threads::{MessageSender, watch_files};
+
+/// How to open the window.
+pub struct AppOptions {
+    /// Shader tree.
+    pub source: Source,
+    /// Shader compiler.
+    pub compiler: Arc<Compiler>,
+    /// Model file; `None` is the built-in shader ball.
+    pub model: Option<PathBuf>,
+    /// Settings to start with.
+    pub settings: Settings,
+    /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
+    pub plain: Option<SessionState>,
+    /// Whether a model that has lights shines by them: the user has not said which lights shine.
+    pub follows_lights: bool,
+    /// Size of the window in pixels.
+    pub size: (u32, u32),
+    /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
+    pub at: Option<(i32, i32)>,
+    /// Records the session for the process that goes on with it after a loss of the device.
+    pub recorder: Recorder,
+    /// Part of the name of the device to use.
+    pub device: Option<String>,
+    /// Whether to enable the validation layers.
+    pub validation: bool,
+    /// The file or shader tree to compare the picture with.
+    pub compare: Option<OtherPicture>,
+    /// Whether models may read files outside their folder.
+    pub allow_outside: bool,
+    /// Those who get events and send commands.
+    pub control: Control,
+    /// Start of the program, for the events' times.
+    pub start: Instant,
+}
+
+/// The other picture of a comparison.
+#[derive(Clone, Debug)]
+pub enum OtherPicture {
+    /// A picture from a file.
+    File(PathBuf),
+    /// The picture of another shader tree.
+    Tree(PathBuf),
+}
+
+/// Work that needs neither window nor device, and so starts before them.
+pub(super) struct Early {
+    pub(super) watcher: Option<Watcher>,
+    pub(super) reading: Reading,
+    pub(super) events: Clients,
+}
+
+impl Early {
+    pub(super) fn begin(options: &AppOptions, events: &Clients, sender: &MessageSender) -> Self {
+        // Watch the file before reading it, so that no save is missed in between.
+        let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
+        let watcher = watch_files(&files, sender).unwrap_or_else(|message| {
+            crate::message::tell(message);
+            None
+        });
+        let compiler = options.compiler.clone();
+        // Both only begin early what would be done later.
+        let _ = std::thread::Builder::new().spawn(move || compiler.warm());
+        let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
+        let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
+        Self { watcher, reading, events: events.clone() }
+    }
+}

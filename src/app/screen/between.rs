@@ -1,0 +1,140 @@
+//! What is drawn between frames: thumbnails and values of pixels.
+
+use std::time::{Duration, Instant};
+
+use super::Screen;
+use crate::app::viewer::Viewer;
+use crate::gpu::GpuError;
+
+/// Time between two looks at whether the device has run a submission. No driver sends an event then.
+const POLL: Duration = Duration::from_millis(2);
+
+/// How long a software device goes on between frames. Showing a thumbnail takes it longer than drawing one.
+const UNSEEN: Duration = Duration::from_millis(200);
+
+/// The next step of the window.
+pub(in crate::app) enum Next {
+    /// Draws a frame.
+    Frame,
+    /// Waits, then asks again.
+    After(Duration),
+    /// Waits for an event.
+    Event,
+}
+
+impl Screen {
+    /// Draws more between two frames, once the device has run what was drawn last, or says that a frame is due.
+    ///
+    /// # Errors
+    /// A device error other than out of memory.
+    pub(in crate::app) fn go_on(&mut self, viewer: &mut Viewer) -> Result<Next, GpuError> {
+        let now = Instant::now();
+        let left = |due: Option<Instant>| due.map(|due| due.saturating_duration_since(now));
+        let is_finished = self.background.is_finished();
+        if left(self.due).is_some_and(|left| left.is_zero()) || (is_finished && viewer.gpu_is_fast()) {
+            return Ok(Next::Frame);
+        }
+        let mut wait = self.time_to_poll();
+        if is_finished && !viewer.awaits_edit() {
+            if left(self.shows_at()).is_some_and(|left| left.is_zero()) {
+                return Ok(Next::Frame);
+            }
+            wait = self.draw_background(viewer, self.egui.pixels_per_point())?;
+        }
+        Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
+    }
+
+    /// When the results that no frame has shown are due.
+    fn shows_at(&self) -> Option<Instant> {
+        self.background.is_unseen.then(|| self.last_frame + UNSEEN)
+    }
+
+    /// The time until the device is asked again about what it draws between frames; `None` if it draws nothing.
+    fn time_to_poll(&self) -> Option<Duration> {
+        (!self.background.is_finished()).then_some(POLL)
+    }
+
+    /// Takes the results of what was drawn between frames, if it is finished. Returns whether there are any.
+    fn take_background(&mut self, viewer: &mut Viewer) -> bool {
+        self.take_thumbnail(viewer);
+        self.inspector.take(&self.background, viewer);
+        self.number.take(&self.background);
+        let is_new = self.background.is_finished() && std::mem::take(&mut self.background.is_unread);
+        if is_new && self.background.frames.endless_loop(0).is_some() {
+            self.end_background(viewer);
+        }
+        is_new
+    }
+
+    /// Takes the results for the frame that begins.
+    pub(super) fn show_background(&mut self, viewer: &mut Viewer) {
+        self.take_background(viewer);
+        self.background.is_unseen = false;
+    }
+
+    /// Draws thumbnails and values of pixels that are out of date. Returns the time until they or results that no frame has shown need the
+    /// next frame, or `None`. A lack of memory drops them.
+    ///
+    /// # Errors
+    /// A device error other than out of memory.
+    pub(super) fn draw_background(
+        &mut self,
+        viewer: &mut Viewer,
+        pixels_per_point: f32,
+    ) -> Result<Option<Duration>, GpuError> {
+        if !self.background.is_finished() {
+            return Ok(Some(POLL));
+        }
+        self.background.is_unseen |= self.take_background(viewer);
+        let recorded = self.record_background(viewer, pixels_per_point);
+        let submitted = recorded.and_then(|waits| self.background.submit().map(|()| waits));
+        let waits = self.survive(submitted)?;
+        if waits.is_none() {
+            self.background.encoder = None;
+            (self.thumbnails, self.thumbnail, self.lacks_thumbnails) = (None, None, true);
+            self.gallery.forget();
+            self.inspector.forget();
+            self.number.stop();
+            // The newest picture matters more.
+            self.shortage = None;
+        }
+        // The frame that follows shows the results.
+        let wait = self.time_to_poll().or_else(|| waits.into_iter().flatten().flatten().min());
+        let shows = self.shows_at().map(|at| at.saturating_duration_since(Instant::now()));
+        Ok(wait.into_iter().chain(shows).min())
+    }
+
+    fn record_background(
+        &mut self,
+        viewer: &mut Viewer,
+        pixels_per_point: f32,
+    ) -> Result<[Option<Duration>; 3], GpuError> {
+        let recorded = self.record_thumbnail(viewer);
+        if self.survive(recorded)?.is_none() {
+            (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
+            self.lacks_thumbnails = true;
+        }
+        let context = (&self.layouts, pixels_per_point);
+        let thumbnails = self.gallery.draw(
+            &mut self.background,
+            (&mut *viewer, &mut self.panels.docked.gallery),
+            &mut self.ui,
+            context,
+        )?;
+        let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
+        let values = self.inspector.draw(&mut self.background, viewer, &self.layouts, of_pixel)?;
+        let pointed = self.pointed_number(viewer);
+        let number = self.number.draw(&mut self.background, viewer, &self.layouts, pointed)?;
+        Ok([thumbnails, values, number])
+    }
+
+    /// Draws nothing between frames until something changes.
+    pub(super) fn end_background(&mut self, viewer: &mut Viewer) {
+        self.gallery.stop();
+        self.inspector.stop();
+        self.number.stop();
+        if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
+            viewer.cut_short(number);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! A picture of the window on its way from the device.
+
+use std::sync::Arc;
+
+use crate::app::control::Shot;
+use crate::gpu::Buffer;
+
+/// A picture of the window on its way from the device.
+pub(super) struct WindowShot {
+    /// The frame that it was copied with.
+    pub(super) slot: usize,
+    pub(super) pixels: Arc<Buffer>,
+    pub(super) size: (u32, u32),
+    pub(super) shot: Shot,
+}

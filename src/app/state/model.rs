@@ -1,0 +1,34 @@
+//! The model on screen, and the one that is being loaded.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files and state of the model on screen and of a model that is loading.
+#[derive(Default)]
+pub(in crate::app) struct ModelStatus {
+    /// The file on screen; `None` is a built-in model.
+    pub(in crate::app) path: Option<PathBuf>,
+    /// The file that was requested last.
+    pub(in crate::app) requested: Option<PathBuf>,
+    /// The watched files: those of the model on screen, and after a failed load also those that it tried.
+    pub(in crate::app) files: Arc<[PathBuf]>,
+    pub(in crate::app) loading: bool,
+    pub(in crate::app) load_ms: f64,
+    /// Whether the warnings of the model are shown over the picture.
+    pub(in crate::app) shows_warnings: bool,
+    /// Whether the camera stays where it is when the model that loads is another.
+    pub(in crate::app) keeps_camera: bool,
+}
+
+impl ModelStatus {
+    /// Whether the model that was opened by this path is on screen.
+    pub(in crate::app) fn is_file(&self, path: &Path) -> bool {
+        self.path.as_deref() == Some(path)
+    }
+
+    /// Whether this file is on screen.
+    pub(in crate::app) fn is_open(&self, path: &Path) -> bool {
+        let shown = self.path.as_ref().and_then(|path| std::path::absolute(path).ok());
+        shown.is_some_and(|shown| shown == path)
+    }
+}

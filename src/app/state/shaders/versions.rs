@@ -1,0 +1,273 @@
+//! The versions of the shaders that were on screen, with what each changed, what it cost and how it looked.
+
+use std::cell::OnceCell;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use chrono::{DateTime, Local};
+
+use super::difference::{Line, difference};
+use crate::events::ReloadEvent;
+use crate::shader::ShaderSet;
+
+/// Number of versions that are kept. Each has pipelines, and after an edit of D also the light that was baked with it.
+const MOST: usize = 12;
+
+/// A picture in small.
+pub(in crate::app) struct Thumbnail {
+    /// Width and height, pixels.
+    pub(in crate::app) size: [usize; 2],
+    /// sRGB with alpha, row by row.
+    pub(in crate::app) rgba8: Vec<u8>,
+}
+
+/// One version of the shaders.
+pub(in crate::app) struct Version {
+    /// Its generation.
+    pub(in crate::app) number: u64,
+    /// When it was first on screen.
+    pub(in crate::app) since: DateTime<Local>,
+    /// The reload that made it.
+    pub(in crate::app) reload: ReloadEvent,
+    /// Device time of its first frame, milliseconds.
+    pub(in crate::app) device_ms: Option<f64>,
+    /// Thumbnail of its last picture.
+    pub(in crate::app) thumbnail: Option<Arc<Thumbnail>>,
+    pub(in crate::app) shaders: Arc<ShaderSet>,
+    /// Whether a loop did not end in its picture.
+    is_cut_short: bool,
+    /// Whether the files have other texts: numbers are dragged, or it is an older version again. The next version takes its place.
+    is_draft: bool,
+    /// The older version that it is again.
+    again: Option<u64>,
+    /// Its texts compared with those of the version before.
+    difference: OnceCell<Vec<Line>>,
+}
+
+impl Version {
+    /// The names of the changed files without folders, "whole tree", or the version that it is again.
+    pub(in crate::app) fn title(&self) -> String {
+        if let Some(number) = self.again {
+            return format!("version {number} again");
+        }
+        let names: Vec<&str> = self.reload.changed.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
+        if names.is_empty() { "whole tree".to_owned() } else { names.join(", ") }
+    }
+
+    /// Whether a loop did not end in its picture.
+    pub(in crate::app) fn is_cut_short(&self) -> bool {
+        self.is_cut_short
+    }
+}
+
+/// The newest versions, the oldest first.
+#[derive(Default)]
+pub(in crate::app) struct Versions {
+    list: VecDeque<Version>,
+}
+
+impl Versions {
+    /// All versions, the oldest first.
+    pub(in crate::app) fn iter(&self) -> impl DoubleEndedIterator<Item = &Version> {
+        self.list.iter()
+    }
+
+    pub(in crate::app) fn get(&self, number: u64) -> Option<&Version> {
+        self.list.iter().find(|version| version.number == number)
+    }
+
+    fn get_mut(&mut self, number: u64) -> Option<&mut Version> {
+        self.list.iter_mut().find(|version| version.number == number)
+    }
+
+    /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
+    /// started again; the versions before are then dropped.
+    pub(in crate::app) fn add(
+        &mut self,
+        shaders: &Arc<ShaderSet>,
+        reload: ReloadEvent,
+        is_draft: bool,
+        again: Option<u64>,
+    ) {
+        if self.list.back().is_some_and(|last| last.number >= shaders.generation) {
+            self.list.clear();
+        }
+        let ends_draft = self.list.back().is_some_and(|last| last.is_draft);
+        if ends_draft {
+            self.list.pop_back();
+        }
+        // Another watched expression is no version: the texts of the tree are the same.
+        let may_be_same = ends_draft || reload.changed.is_empty();
+        let is_same = |last: &&mut Version| may_be_same && last.shaders.texts == shaders.texts;
+        if let Some(last) = self.list.back_mut().filter(is_same) {
+            (last.number, last.shaders) = (shaders.generation, shaders.clone());
+            return;
+        }
+        self.list.push_back(Version {
+            number: shaders.generation,
+            since: Local::now(),
+            reload,
+            device_ms: None,
+            thumbnail: None,
+            shaders: shaders.clone(),
+            is_cut_short: false,
+            is_draft,
+            again,
+            difference: OnceCell::new(),
+        });
+        self.list.drain(..self.list.len().saturating_sub(MOST));
+    }
+
+    /// Takes the shaders with the stages that were compiled later.
+    pub(in crate::app) fn complete(&mut self, shaders: &Arc<ShaderSet>) {
+        if let Some(version) = self.get_mut(shaders.generation) {
+            version.shaders = shaders.clone();
+        }
+    }
+
+    /// Takes the times of a version's first frame. Those of the first frame with another watched expression are not the version's.
+    pub(in crate::app) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
+        if let Some(version) = self.get_mut(number).filter(|version| version.reload.first_frame_ms == 0.0) {
+            (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
+        }
+    }
+
+    /// Keeps the newest version although its numbers were dragged: they are in the files now.
+    pub(in crate::app) fn keep_draft(&mut self) {
+        if let Some(last) = self.list.back_mut() {
+            last.is_draft = false;
+        }
+    }
+
+    /// Takes the thumbnail of a version.
+    pub(in crate::app) fn set_thumbnail(&mut self, number: u64, thumbnail: Thumbnail) {
+        if let Some(version) = self.get_mut(number) {
+            version.thumbnail = Some(Arc::new(thumbnail));
+        }
+    }
+
+    /// Marks a version in which a loop did not end. It is not shown again, since it would keep the device as long again.
+    pub(in crate::app) fn cut_short(&mut self, number: u64) {
+        if let Some(version) = self.get_mut(number) {
+            version.is_cut_short = true;
+        }
+    }
+
+    /// Marks a version as good again: a setting had made its loop endless.
+    pub(in crate::app) fn loops_end(&mut self, number: u64) {
+        if let Some(version) = self.get_mut(number) {
+            version.is_cut_short = false;
+        }
+    }
+
+    /// Whether a version is the one of these shaders: numbers may start again.
+    pub(in crate::app) fn has(&self, shaders: &Arc<ShaderSet>) -> bool {
+        self.list.iter().any(|version| Arc::ptr_eq(&version.shaders, shaders))
+    }
+
+    /// Versions that lack a thumbnail, the newest first.
+    pub(in crate::app) fn without_thumbnail(&self) -> impl Iterator<Item = &Version> {
+        self.list.iter().rev().filter(|version| version.thumbnail.is_none() && !version.is_cut_short)
+    }
+
+    /// Whether a version can be shown beside the version `newest`, which is on screen.
+    pub(in crate::app) fn can_show(&self, version: &Version, newest: u64) -> bool {
+        version.number < newest && !version.is_cut_short
+    }
+
+    /// The newest version before `newest`.
+    pub(in crate::app) fn last_before(&self, newest: u64) -> Option<&Version> {
+        self.list.iter().rev().find(|version| version.number < newest)
+    }
+
+    /// The newest version before `newest` that can be shown.
+    pub(in crate::app) fn before(&self, newest: u64) -> Option<&Version> {
+        self.list.iter().rev().find(|version| self.can_show(version, newest))
+    }
+
+    /// The version that a version was made from, and the lines in which their texts differ.
+    pub(in crate::app) fn difference<'a>(&'a self, version: &'a Version) -> &'a [Line] {
+        let before = self.last_before(version.number);
+        version.difference.get_or_init(|| {
+            before.map(|before| difference(&before.shaders.texts, &version.shaders.texts)).unwrap_or_default()
+        })
+    }
+
+    /// Drops all versions but the newest, while memory is short.
+    pub(in crate::app) fn drop_old(&mut self) {
+        self.list.drain(..self.list.len().saturating_sub(1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::shader::TreePath;
+
+    fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
+        let texts = BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from(text))]);
+        Arc::new(ShaderSet { generation, texts, ..ShaderSet::default() })
+    }
+
+    fn save() -> ReloadEvent {
+        ReloadEvent { changed: vec!["brdf/a.glsl".to_owned()], ..ReloadEvent::default() }
+    }
+
+    fn numbers(versions: &Versions) -> Vec<u64> {
+        versions.iter().map(|version| version.number).collect()
+    }
+
+    #[test]
+    fn the_newest_versions_are_kept() {
+        let mut versions = Versions::default();
+        (1..=15).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false, None));
+        assert_eq!(numbers(&versions), (4..=15).collect::<Vec<_>>());
+        versions.drop_old();
+        assert_eq!(numbers(&versions), [15]);
+        // Another tree begins again at 1.
+        versions.add(&shaders(1, "another"), ReloadEvent::default(), false, None);
+        assert_eq!(numbers(&versions), [1]);
+    }
+
+    #[test]
+    fn dragged_numbers_make_one_version() {
+        let mut versions = Versions::default();
+        versions.add(&shaders(1, "a"), save(), false, None);
+        versions.add(&shaders(2, "b"), save(), true, None);
+        versions.add(&shaders(3, "c"), save(), true, None);
+        assert_eq!(numbers(&versions), [1, 3]);
+        // The texts of the files are back, so it is the version before.
+        versions.add(&shaders(4, "a"), save(), false, None);
+        assert_eq!(numbers(&versions), [4]);
+        versions.add(&shaders(5, "d"), save(), true, None);
+        versions.keep_draft();
+        versions.add(&shaders(6, "e"), save(), false, None);
+        assert_eq!(numbers(&versions), [4, 5, 6]);
+    }
+
+    #[test]
+    fn a_version_whose_loop_did_not_end_is_passed_over() {
+        let mut versions = Versions::default();
+        (1..=3).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false, None));
+        versions.cut_short(2);
+        assert_eq!(versions.before(3).map(|version| version.number), Some(1));
+        assert_eq!(versions.last_before(3).map(|version| version.number), Some(2));
+        assert_eq!(versions.without_thumbnail().map(|version| version.number).collect::<Vec<_>>(), [3, 1]);
+        versions.loops_end(2);
+        assert_eq!(versions.before(3).map(|version| version.number), Some(2));
+    }
+
+    #[test]
+    fn titles_name_files_or_the_version_that_is_shown_again() {
+        let mut versions = Versions::default();
+        versions.add(&shaders(1, "a"), ReloadEvent::default(), false, None);
+        versions.add(&shaders(2, "b"), save(), false, None);
+        versions.add(&shaders(3, "a"), save(), true, Some(1));
+        let titles: Vec<String> = versions.iter().map(Version::title).collect();
+        assert_eq!(titles, ["whole tree", "a.glsl", "version 1 again"]);
+        let newest = versions.get(3).unwrap();
+        assert!(versions.difference(newest).iter().any(|line| line.text.contains('a')));
+    }
+}
