@@ -5,6 +5,7 @@ mod file;
 mod geometry;
 pub(super) mod materials;
 mod nodes;
+mod place;
 #[cfg(test)]
 mod tests;
 pub(super) mod values;
@@ -16,7 +17,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use gltf::json;
 use rayon::prelude::*;
 
 use self::file::buffers::{Buffers, Files};
@@ -26,6 +26,7 @@ use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
+use self::place::LARGEST_COORDINATE;
 use super::error::Problem;
 use super::load_options::{Canceled, LoadOptions};
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
@@ -33,9 +34,6 @@ use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
 use crate::message::panic_text;
 use crate::regular_file;
-
-/// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is then still finite in `f32`.
-const LARGEST_COORDINATE: f32 = 1e15;
 
 /// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.
 pub fn load_file(
@@ -168,26 +166,4 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 
 fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
-}
-
-/// The name of an object in messages: `materials[3] "Visor"`.
-fn place(kind: &str, index: usize, name: Option<&str>) -> String {
-    match name {
-        Some(name) if !name.is_empty() => format!("{kind}[{index}] \"{}\"", name.escape_debug()),
-        _ => format!("{kind}[{index}]"),
-    }
-}
-
-fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem {
-    let expected = if count == 0 {
-        format!("no use of {kind}, of which there are none")
-    } else {
-        format!("an index into {kind} of 0 to {}", count - 1)
-    };
-    Problem::invalid(place, expected, index.to_string())
-}
-
-/// Looks up an index. `place` names the object that holds the index, for the message.
-fn get<'a, T>(items: &'a [T], index: json::Index<T>, place: &str, kind: &str) -> Result<&'a T, Problem> {
-    items.get(index.value()).ok_or_else(|| out_of_range(place, kind, index.value(), items.len()))
 }

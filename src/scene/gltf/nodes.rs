@@ -7,7 +7,7 @@ use json::validation::Checked;
 
 use super::super::error::Problem;
 use super::super::model::{Bounds, Camera, Light, LightKind, Node};
-use super::{get, out_of_range, place};
+use super::place::{get, out_of_range, place};
 
 /// The objects of a scene.
 #[derive(Default)]

@@ -70,5 +70,5 @@ fn list<'a>(fields: &Fields<'a>, key: &str) -> Result<&'a [json::Value], Problem
 
 fn indexed(value: Option<&json::Value>, place: &str, kind: &str, count: usize) -> Result<usize, Problem> {
     let index = values::index(value, place, kind)?;
-    if index < count { Ok(index) } else { Err(super::out_of_range(place, kind, index, count)) }
+    if index < count { Ok(index) } else { Err(super::place::out_of_range(place, kind, index, count)) }
 }

@@ -9,7 +9,7 @@ use gltf::json;
 use super::uri::{self, Target};
 use crate::regular_file;
 use crate::scene::error::Problem;
-use crate::scene::gltf::place;
+use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 
 /// The model's folder, and the files that the loader has looked for.
@@ -109,12 +109,12 @@ impl<'a> Buffers<'a> {
     pub fn view(&self, root: &json::Root, view: json::Index<json::buffer::View>, user: &str) -> Result<&[u8], Problem> {
         let index = view.value();
         let Some(view) = root.buffer_views.get(index) else {
-            return Err(crate::scene::gltf::out_of_range(user, "bufferViews", index, root.buffer_views.len()));
+            return Err(out_of_range(user, "bufferViews", index, root.buffer_views.len()));
         };
         let place = place("bufferViews", index, view.name.as_deref());
         let buffer_index = view.buffer.value();
         let Some(buffer) = self.0.get(buffer_index) else {
-            return Err(crate::scene::gltf::out_of_range(&place, "buffers", buffer_index, self.0.len()));
+            return Err(out_of_range(&place, "buffers", buffer_index, self.0.len()));
         };
         let Some(bytes) = buffer else {
             let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");

@@ -7,7 +7,7 @@ use json::validation::Checked;
 
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
-use crate::scene::gltf::place;
+use crate::scene::gltf::place::{out_of_range, place};
 
 /// Maximum number of elements of an accessor without a buffer view, which no data limits.
 const MAX_ZEROS: u64 = 1 << 22;
@@ -95,7 +95,7 @@ impl<'a> Reader<'a> {
     fn check(&self, index: Index, format: &Format, user: &str) -> Result<Checkup<'a>, Problem> {
         let accessors = &self.root.accessors;
         let Some(accessor) = accessors.get(index.value()) else {
-            return Err(crate::scene::gltf::out_of_range(user, "accessors", index.value(), accessors.len()));
+            return Err(out_of_range(user, "accessors", index.value(), accessors.len()));
         };
         let place = format!("{} ({user})", place("accessors", index.value(), accessor.name.as_deref()));
         let (Checked::Valid(kind), Checked::Valid(component)) = (accessor.type_, accessor.component_type) else {

@@ -10,7 +10,8 @@ use super::accessor::{Format, Normalized as N, Reader};
 use super::triangles::{self, Corners};
 use crate::interface as contract;
 use crate::scene::error::Problem;
-use crate::scene::gltf::{LARGEST_COORDINATE, get, place, variants};
+use crate::scene::gltf::place::{LARGEST_COORDINATE, get, place};
+use crate::scene::gltf::variants;
 use crate::scene::model::{Bounds, Material, Primitive, Topology, Vertex};
 
 /// A primitive and its warnings.

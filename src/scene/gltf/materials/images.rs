@@ -13,7 +13,7 @@ use super::placeholder;
 use super::textures::Origin;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
-use crate::scene::gltf::place;
+use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 use crate::scene::model::Image;
 
@@ -84,7 +84,7 @@ fn read<'a>(
     index: usize,
 ) -> Result<Cow<'a, [u8]>, Problem> {
     let Some(image) = root.images.get(index) else {
-        return Err(crate::scene::gltf::out_of_range("textures", "images", index, root.images.len()));
+        return Err(out_of_range("textures", "images", index, root.images.len()));
     };
     let place = place("images", index, image.name.as_deref());
     match (&image.uri, image.buffer_view) {

@@ -10,7 +10,7 @@ use super::textures::{Collector, Origin, Slot};
 use crate::interface as contract;
 use crate::scene::error::Problem;
 use crate::scene::extensions::{EXTENSIONS, SPECULAR_GLOSSINESS};
-use crate::scene::gltf::place;
+use crate::scene::gltf::place::place;
 use crate::scene::gltf::values::{self, Extensions, Fields, clamp, roughness};
 use crate::scene::model::{AlphaMode, Material, Texture};
 

@@ -9,7 +9,7 @@ use json::texture::{MagFilter, MinFilter, WrappingMode};
 use json::validation::Checked;
 
 use crate::scene::error::Problem;
-use crate::scene::gltf::place;
+use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::gltf::values::{self, Extensions, Fields};
 use crate::scene::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 
@@ -101,7 +101,7 @@ impl<'a> Collector<'a> {
     fn texture_use(&mut self, slot: &Slot, place: &str) -> Result<TextureUse, Problem> {
         let textures = &self.root.textures;
         let Some(texture) = textures.get(slot.texture) else {
-            return Err(crate::scene::gltf::out_of_range(place, "textures", slot.texture, textures.len()));
+            return Err(out_of_range(place, "textures", slot.texture, textures.len()));
         };
         let origin = self.origin(texture, slot.texture)?;
         let sampler = match texture.sampler {
@@ -109,12 +109,7 @@ impl<'a> Collector<'a> {
             Some(at) => match self.root.samplers.get(at.value()) {
                 Some(sampler) => read_sampler(sampler, at.value())?,
                 None => {
-                    return Err(crate::scene::gltf::out_of_range(
-                        place,
-                        "samplers",
-                        at.value(),
-                        self.root.samplers.len(),
-                    ));
+                    return Err(out_of_range(place, "samplers", at.value(), self.root.samplers.len()));
                 }
             },
         };
@@ -149,7 +144,7 @@ impl<'a> Collector<'a> {
         };
         match source {
             Some(source) if source >= self.root.images.len() => {
-                Err(crate::scene::gltf::out_of_range(&place, "images", source, self.root.images.len()))
+                Err(out_of_range(&place, "images", source, self.root.images.len()))
             }
             Some(source) => Ok(Origin::Image(source)),
             None => Ok(Origin::Texture(index)),
