@@ -18,14 +18,14 @@ const IN_FILE: Duration = Duration::from_secs(5);
 
 /// The progress of a command. A thread prints it, so that it also appears while the device or a compiler works.
 pub struct Progress {
-    state: Arc<Mutex<State>>,
+    state: Arc<Mutex<ProgressState>>,
     /// Dropping it ends the thread.
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// State shared with the thread that prints.
-struct State {
+struct ProgressState {
     is_terminal: bool,
     start: Instant,
     /// Start of the current part.
@@ -44,7 +44,7 @@ impl Progress {
     /// Starts to show progress, if `is_shown`. Scripts that read events get none.
     pub fn new(is_shown: bool) -> Self {
         let (is_terminal, start) = (std::io::stderr().is_terminal(), Instant::now());
-        let state = Arc::new(Mutex::new(State {
+        let state = Arc::new(Mutex::new(ProgressState {
             is_terminal,
             start,
             part_start: start,
@@ -113,11 +113,11 @@ impl Drop for Progress {
     }
 }
 
-fn locked(state: &Mutex<State>) -> MutexGuard<'_, State> {
+fn locked(state: &Mutex<ProgressState>) -> MutexGuard<'_, ProgressState> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl State {
+impl ProgressState {
     /// Prints the line, if it is due.
     fn show(&mut self) {
         let now = Instant::now();

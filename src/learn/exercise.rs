@@ -37,7 +37,7 @@ struct Edit {
 /// The file to open in the editor.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct FileToOpen {
     /// Path in the tree.
     pub file: String,
     /// A text in the line to open.
@@ -60,7 +60,7 @@ struct Data {
     /// Settings of the picture, as `--set` takes them.
     #[serde(default)]
     set: Vec<String>,
-    open: Place,
+    open: FileToOpen,
     /// Edits that put the fault into the shipped tree at the start.
     #[serde(default)]
     fault: Vec<Edit>,
@@ -92,7 +92,7 @@ pub struct Exercise {
     /// The built-in model that it shows.
     pub model: String,
     /// The file to open in the editor.
-    pub open: Place,
+    pub open: FileToOpen,
     /// The goals, all of which must be reached.
     pub goals: Vec<Goal>,
     set: Vec<String>,

@@ -23,7 +23,7 @@ use std::sync::LazyLock;
 
 use include_dir::{Dir, include_dir};
 
-pub use exercise::{Exercise, Level, Place};
+pub use exercise::{Exercise, FileToOpen, Level};
 pub use folder::{exercise_of, prepare};
 pub use goal::{Finding, Goal};
 pub use goal_meter::{GoalMeter, LearnError};

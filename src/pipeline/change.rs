@@ -54,10 +54,10 @@ pub fn figures(now: &StageReport, before: Option<&StageReport>) -> Vec<Figure> {
         before: before.as_ref().map(|before| before.words as f64),
     };
     let earlier = before.and_then(|before| before.executables);
-    let told = Kind::ALL.into_iter().filter_map(|kind| {
+    let told = StatisticKind::ALL.into_iter().filter_map(|kind| {
         let (statistic, value) = kind.of(now.executables.as_deref()?)?;
         let before = earlier.as_deref().and_then(|earlier| kind.of(earlier)).map(|(_, value)| value);
-        let is_shown = kind != Kind::Spills || value > 0.0 || before.is_some_and(|before| before > 0.0);
+        let is_shown = kind != StatisticKind::Spills || value > 0.0 || before.is_some_and(|before| before > 0.0);
         let meaning = match statistic.meaning.as_str() {
             "" => format!("{}, as the driver tells it", statistic.name),
             meaning => format!("{}, as the driver tells it: {meaning}", statistic.name),
@@ -87,14 +87,14 @@ pub fn all_statistics(now: &StageReport, before: Option<&StageReport>) -> Vec<(S
 
 /// Kind of a pipeline statistic, derived from the driver's name for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum StatisticKind {
     Registers,
     Instructions,
     Spills,
     Code,
 }
 
-impl Kind {
+impl StatisticKind {
     const ALL: [Self; 4] = [Self::Registers, Self::Instructions, Self::Spills, Self::Code];
 
     fn unit(self) -> &'static str {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
-use crate::scene::{Measured, MeasuredError, TextureSource};
+use crate::scene::{MeasuredBrdf, MeasuredError, TextureSource};
 
 use super::bound_frame::BoundFrame;
 use super::brdf::measured::measured_buffer;
@@ -40,14 +40,14 @@ impl Missing {
 }
 
 /// The last good resource with its key, and the key of the last failure.
-struct Slot<K, T> {
+struct LastGood<K, T> {
     made: Option<(K, Arc<T>)>,
     failed: Option<K>,
     /// The resource of a state without a key, and the fallback after a failure before the first success.
     none: Arc<T>,
 }
 
-impl<K: PartialEq, T> Slot<K, T> {
+impl<K: PartialEq, T> LastGood<K, T> {
     fn new(none: Arc<T>) -> Self {
         Self { made: None, failed: None, none }
     }
@@ -79,7 +79,7 @@ impl<K: PartialEq, T> Slot<K, T> {
     }
 }
 
-impl<K: Clone, T> Clone for Slot<K, T> {
+impl<K: Clone, T> Clone for LastGood<K, T> {
     fn clone(&self) -> Self {
         Self { made: self.made.clone(), failed: self.failed.clone(), none: self.none.clone() }
     }
@@ -94,10 +94,10 @@ pub struct Resources {
     pipelines: Option<Arc<PipelineSet>>,
     model: Option<Arc<GpuModel>>,
     scene: Option<(Scene, Arc<GpuScene>)>,
-    tables: Slot<Arc<TablesKey>, Tables>,
-    environment: Slot<Arc<EnvironmentKey>, GpuEnvironment>,
-    measured: Slot<MeasuredKey, Buffer>,
-    path_tracing: Slot<PathTracingKey, PathTracing>,
+    tables: LastGood<Arc<TablesKey>, Tables>,
+    environment: LastGood<Arc<EnvironmentKey>, GpuEnvironment>,
+    measured: LastGood<MeasuredKey, Buffer>,
+    path_tracing: LastGood<PathTracingKey, PathTracing>,
 }
 
 impl Resources {
@@ -112,10 +112,10 @@ impl Resources {
             pipelines: None,
             model: None,
             scene: None,
-            tables: Slot::new(Tables::of_mirror(gpu)?),
-            environment: Slot::new(GpuEnvironment::uniform(gpu, ambient)?),
-            measured: Slot::new(measured_buffer(gpu, None)?),
-            path_tracing: Slot::new(PathTracing::empty(gpu)?),
+            tables: LastGood::new(Tables::of_mirror(gpu)?),
+            environment: LastGood::new(GpuEnvironment::uniform(gpu, ambient)?),
+            measured: LastGood::new(measured_buffer(gpu, None)?),
+            path_tracing: LastGood::new(PathTracing::empty(gpu)?),
         })
     }
 
@@ -317,7 +317,7 @@ impl Resources {
             self.bake_after(key, before.as_ref(), true)?;
         }
         if let Some(key) = missing.measured {
-            let read = Measured::open(&key.path).map_err(ProvideError::from);
+            let read = MeasuredBrdf::open(&key.path).map_err(ProvideError::from);
             let uploaded = read.and_then(|measured| Ok(measured_buffer(&self.gpu, Some(&measured))?));
             self.set_measured(key, uploaded.as_ref().ok().cloned());
             uploaded?;

@@ -25,13 +25,13 @@ pub struct Bvh {
 }
 
 #[derive(Clone, Copy)]
-struct Bounds {
+struct Aabb {
     min: Vec3,
     max: Vec3,
 }
 
-impl Bounds {
-    /// The neutral element of [`Bounds::join`].
+impl Aabb {
+    /// The neutral element of [`Aabb::join`].
     const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
     /// The bounds of an empty tree: finite, so that a shader may compute with them.
     const NOTHING: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO };
@@ -50,7 +50,7 @@ impl Bounds {
 /// A triangle while the tree is built.
 #[derive(Clone, Copy)]
 struct Item {
-    bounds: Bounds,
+    bounds: Aabb,
     index: u32,
 }
 
@@ -77,10 +77,10 @@ struct Binning {
 
 impl Binning {
     fn new(items: &[Item]) -> Self {
-        let start = Bounds::EMPTY;
+        let start = Aabb::EMPTY;
         let centers = items.iter().fold(start, |all, item| {
             let center = item.center();
-            all.join(Bounds { min: center, max: center })
+            all.join(Aabb { min: center, max: center })
         });
         let size = centers.max - centers.min;
         // Along an axis on which all centers agree, every item falls into bin 0.
@@ -93,7 +93,7 @@ impl Binning {
     }
 
     fn best_split(&self, items: &[Item]) -> Option<Split> {
-        let mut bins = [[(Bounds::EMPTY, 0usize); BINS]; 3];
+        let mut bins = [[(Aabb::EMPTY, 0usize); BINS]; 3];
         for item in items {
             for (axis, bins) in bins.iter_mut().enumerate() {
                 let (bounds, count) = &mut bins[self.bin(item, axis)];
@@ -108,16 +108,16 @@ impl Binning {
 
 /// The cheapest split along an axis: the sum over both children of area times number of triangles. `None` if all triangles
 /// are in one bin.
-fn cheapest(axis: usize, bins: &[(Bounds, usize); BINS]) -> Option<Split> {
+fn cheapest(axis: usize, bins: &[(Aabb, usize); BINS]) -> Option<Split> {
     let mut right = [0.0; BINS];
-    let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+    let (mut bounds, mut count) = (Aabb::EMPTY, 0);
     for bin in (1..BINS).rev() {
         bounds = bounds.join(bins[bin].0);
         count += bins[bin].1;
         right[bin] = if count == 0 { f32::INFINITY } else { bounds.area() * count as f32 };
     }
     let mut best: Option<Split> = None;
-    let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+    let (mut bounds, mut count) = (Aabb::EMPTY, 0);
     for bin in 1..BINS {
         bounds = bounds.join(bins[bin - 1].0);
         count += bins[bin - 1].1;
@@ -133,7 +133,7 @@ impl Bvh {
     /// Builds the hierarchy of triangles with finite corners.
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
         let item = |(index, [a, b, c]): (usize, &[Vec3; 3])| {
-            let bounds = Bounds { min: a.min(*b).min(*c), max: a.max(*b).max(*c) };
+            let bounds = Aabb { min: a.min(*b).min(*c), max: a.max(*b).max(*c) };
             Item { bounds, index: index as u32 }
         };
         let mut items: Vec<Item> = triangles.iter().enumerate().map(item).collect();
@@ -192,7 +192,7 @@ fn build_on_one_thread(items: &mut [Item], start: usize, depth: u32) -> Vec<BvhN
 
 /// A node around these items, without children or triangles.
 fn node(items: &[Item]) -> BvhNode {
-    let bounds = items.iter().map(|item| item.bounds).reduce(Bounds::join).unwrap_or(Bounds::NOTHING);
+    let bounds = items.iter().map(|item| item.bounds).reduce(Aabb::join).unwrap_or(Aabb::NOTHING);
     BvhNode { min_ws: bounds.min.to_array(), max_ws: bounds.max.to_array(), ..BvhNode::default() }
 }
 

@@ -38,7 +38,7 @@ pub use features::{features, packs_occlusion};
 pub use gltf::triangles;
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
 pub use load_options::{Canceled, LoadOptions};
-pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
+pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, point_at, ray};

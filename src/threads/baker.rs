@@ -14,7 +14,7 @@ use crate::render::{
     BakeControl, BakeError, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables,
     measured_buffer,
 };
-use crate::scene::Measured;
+use crate::scene::MeasuredBrdf;
 
 /// Messages of the baker.
 pub(crate) enum BakeMessage {
@@ -127,7 +127,7 @@ impl Baker {
         let (gpu, newest) = (self.gpu.clone(), self.newest_read.clone());
         self.spawn(TaskKind::MeasuredBrdf(key.clone()), move |sender| {
             let path = key.path.clone();
-            let read = Running::start(move || Measured::open(&path));
+            let read = Running::start(move || MeasuredBrdf::open(&path));
             let Some(read) = read.wait_unless(&|| newest.load(Ordering::SeqCst) != number) else { return };
             let result = read.map_err(|error| error.to_string());
             let result =

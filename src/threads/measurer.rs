@@ -23,7 +23,7 @@ pub(crate) struct CurvesRequest {
 }
 
 /// Result of a request for curves.
-pub(crate) struct Measured {
+pub(crate) struct MeasuredCurves {
     /// The number of the request.
     pub(crate) number: u64,
     /// The curves of the newest shaders, or the reason why there are none.
@@ -66,14 +66,19 @@ struct BrdfMeters {
 
 impl BrdfMeters {
     /// `None` without shaders, or if a newer request has come.
-    fn measure(&mut self, turn: &Turn<'_>, request: &CurvesRequest) -> Option<Measured> {
+    fn measure(&mut self, turn: &Turn<'_>, request: &CurvesRequest) -> Option<MeasuredCurves> {
         let start = Instant::now();
         let [now, before] = &request.shaders;
         self.made.retain(|(of, _)| request.shaders.iter().flatten().any(|kept| Arc::ptr_eq(kept, of)));
         let now = self.curves(now.as_ref()?, request);
         let before = before.as_ref().filter(|_| !turn.is_superseded()).map(|before| self.curves(before, request));
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        (!turn.is_superseded()).then(|| Measured { number: turn.number, now, before: before.and_then(Result::ok), ms })
+        (!turn.is_superseded()).then(|| MeasuredCurves {
+            number: turn.number,
+            now,
+            before: before.and_then(Result::ok),
+            ms,
+        })
     }
 
     fn curves(&mut self, shaders: &Arc<ShaderSet>, request: &CurvesRequest) -> Result<Curves, String> {

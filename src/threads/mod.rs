@@ -98,7 +98,7 @@ pub(crate) enum Message {
     /// A summary of the edits that were written to the shader files, or the reason why none were.
     Written(Result<String, String>),
     /// The curves of a pixel's material.
-    Curves(Box<measurer::Measured>),
+    Curves(Box<measurer::MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
     /// The settings of a look file, or the reason why it cannot be used.

@@ -11,7 +11,7 @@ use crate::scene::pick;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{PixelValue, ShaderSet};
 use crate::threads::finder::FindRequest;
-use crate::threads::measurer::{CurvesRequest, Measured};
+use crate::threads::measurer::{CurvesRequest, MeasuredCurves};
 
 /// A click within this many pixels of the pinned one unpins it: the radius of its marker.
 const MARKER: u32 = 6;
@@ -174,10 +174,10 @@ impl Viewer {
     }
 
     /// Takes curves, if they are those that were asked for last.
-    pub(super) fn on_curves(&mut self, measured: Measured) {
+    pub(super) fn on_curves(&mut self, measured: MeasuredCurves) {
         let inspector = &mut self.inspection;
         let Some(asked) = inspector.asked.as_ref().filter(|asked| asked.number == measured.number) else { return };
-        let Measured { now, before, ms, .. } = measured;
+        let MeasuredCurves { now, before, ms, .. } = measured;
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
         let albedo = now.as_ref().ok().and_then(|curves| curves.albedo.first().copied());
         emit(&self.events, &Event::Curves { generation, before: before.is_some(), albedo, ms });

@@ -48,7 +48,7 @@ pub struct Args {
 }
 
 /// The measured lobes and albedo of one surface.
-struct Measured {
+struct MeasuredLobes {
     surface: Surface,
     /// For each roughness, [`LOBE_COLUMNS`] lobes.
     lobes: Vec<Vec<Lobe>>,
@@ -74,8 +74,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     opened.close()
 }
 
-fn measure(meter: &BrdfMeter, surface: Surface, args: &Args) -> Result<Measured, Failure> {
-    let mut measured = Measured { surface, lobes: Vec::new(), albedo: Vec::new() };
+fn measure(meter: &BrdfMeter, surface: Surface, args: &Args) -> Result<MeasuredLobes, Failure> {
+    let mut measured = MeasuredLobes { surface, lobes: Vec::new(), albedo: Vec::new() };
     for roughness in &args.roughness {
         let roughness = (*roughness, *roughness);
         let lobes = Grid { rows: 1, roughness, columns: LOBE_COLUMNS, theta: (args.angle, 0.0), samples: 1 };
@@ -94,7 +94,7 @@ fn sum(lobe: &Lobe) -> [f32; 3] {
     std::array::from_fn(|c| lobe.diffuse[c] + lobe.specular[c] + lobe.multiple[c])
 }
 
-fn draw(opened: &Opened, args: &Args, measured: &[Measured]) -> Result<Canvas, String> {
+fn draw(opened: &Opened, args: &Args, measured: &[MeasuredLobes]) -> Result<Canvas, String> {
     let panels = args.roughness.len() as f32;
     let panel = (WIDTH - 2.0 * MARGIN) / panels;
     let radius = (panel * 0.5 - 26.0).min(240.0);
@@ -175,7 +175,7 @@ fn draw_lobes(canvas: &mut Canvas, disk: HalfDisk, lobes: &[Lobe], angle_deg: f3
     disk.draw_light(canvas, angle_deg);
 }
 
-fn draw_albedo(canvas: &mut Canvas, (left, top): (f32, f32), width: f32, roughness: &[f32], measured: &Measured) {
+fn draw_albedo(canvas: &mut Canvas, (left, top): (f32, f32), width: f32, roughness: &[f32], measured: &MeasuredLobes) {
     canvas.text((left, top), 21.0, Anchor::Left, TEXT, &format!("Albedo of the {}", lower(&title(measured.surface))));
     let values: Vec<[f64; 3]> = measured.albedo.iter().flatten().map(|a| [f64::from(*a); 3]).collect();
     let (_, max) = extremes(&values);

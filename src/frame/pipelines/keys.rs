@@ -10,7 +10,7 @@ use crate::interface::{
     self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES, SPEC_MODE,
     SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
 };
-use crate::shader::annotation::pass::{MODEL, Target};
+use crate::shader::annotation::pass::{MODEL, PassTarget};
 use crate::shader::graph::RenderPhase;
 use crate::shader::{DrawAs, GraphPass};
 
@@ -161,7 +161,7 @@ impl PipelineRequest {
             return materials.map(|material| self.model_pass_key(pass, *material)).collect();
         }
         let format = match pass.desc.to {
-            Target::Image => pass_format(pass.desc.format),
+            PassTarget::Image => pass_format(pass.desc.format),
             _ if pass.phase == RenderPhase::Display => Swapchain::FORMAT,
             _ => self.picture_format(),
         };
@@ -180,7 +180,7 @@ impl PipelineRequest {
         let raster = if pass.desc.blend { Raster::Blended } else { Raster::Solid };
         let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };
         match pass.desc.to {
-            Target::Image => PipelineKey { format: pass_format(pass.desc.format), samples: 1, ..key },
+            PassTarget::Image => PipelineKey { format: pass_format(pass.desc.format), samples: 1, ..key },
             _ => key,
         }
     }

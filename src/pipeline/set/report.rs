@@ -40,12 +40,12 @@ pub struct StageReport {
 }
 
 /// A pipeline of a frame.
-enum Found {
+enum FramePipeline {
     Graphics(PipelineKey, Arc<Pipeline>),
     Compute(Arc<GraphPass>, Arc<ComputePipeline>),
 }
 
-impl Found {
+impl FramePipeline {
     fn compile_info(&self) -> &CompileInfo {
         match self {
             Self::Graphics(_, pipeline) => &pipeline.compile_info,
@@ -119,8 +119,8 @@ impl PipelineSet {
         let Some(next) = next else { return Ok(None) };
         let start = std::time::Instant::now();
         let told = match next {
-            Found::Graphics(key, _) => self.make(key, |desc| Pipeline::statistics(&self.gpu, desc)),
-            Found::Compute(pass, _) => self.ask_about(pass, &request.pass_constants()),
+            FramePipeline::Graphics(key, _) => self.make(key, |desc| Pipeline::statistics(&self.gpu, desc)),
+            FramePipeline::Compute(pass, _) => self.ask_about(pass, &request.pass_constants()),
         };
         // A driver that refuses is not queried again.
         next.compile_info().set_statistics(told.as_ref().ok().cloned().unwrap_or_default());
@@ -134,21 +134,21 @@ impl PipelineSet {
     }
 
     /// The pipelines of `request` that are there, in its order.
-    fn found(&self, request: &PipelineRequest) -> Vec<Found> {
+    fn found(&self, request: &PipelineRequest) -> Vec<FramePipeline> {
         let graphics = lock(&self.graphics);
         // A material may be drawn twice with one pipeline.
         let mut known = HashSet::new();
         let keys = request.keys().filter(|key| known.insert(key.clone()));
         let pipelines = keys.filter_map(|key| {
             let pipeline = graphics.get(&key)?.clone();
-            Some(Found::Graphics(key, pipeline))
+            Some(FramePipeline::Graphics(key, pipeline))
         });
-        let mut found: Vec<Found> = pipelines.collect();
+        let mut found: Vec<FramePipeline> = pipelines.collect();
         let computes = lock(&self.computes);
         let constants = request.pass_constants();
         found.extend(request.passes.iter().filter(|pass| pass.is_compute).filter_map(|pass| {
             let pipeline = computes.get(&(pass.desc.stage.clone(), constants.clone()))?.clone();
-            Some(Found::Compute(pass.clone(), pipeline))
+            Some(FramePipeline::Compute(pass.clone(), pipeline))
         }));
         found
     }

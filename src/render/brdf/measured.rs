@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Memory, one_shot, vk};
 use crate::interface::{MEASURED_MERL, MEASURED_NONE, MEASURED_UTIA};
-use crate::scene::{Measured, MeasuredKind};
+use crate::scene::{MeasuredBrdf, MeasuredKind};
 
 /// The buffer of a measured BRDF: its kind, then its values. Without a BRDF, the kind is `MEASURED_NONE`.
 ///
 /// # Errors
 /// Out of memory.
-pub fn measured_buffer(gpu: &Arc<Gpu>, measured: Option<&Measured>) -> Result<Arc<Buffer>, GpuError> {
+pub fn measured_buffer(gpu: &Arc<Gpu>, measured: Option<&MeasuredBrdf>) -> Result<Arc<Buffer>, GpuError> {
     let kind: u32 = match measured.map(|m| m.kind) {
         None => MEASURED_NONE,
         Some(MeasuredKind::Merl) => MEASURED_MERL,

@@ -68,7 +68,7 @@ impl MeasuredKind {
 
 /// A measured BRDF.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub struct MeasuredBrdf {
     /// The file's name without its extension, which both databases use as the material's name.
     pub name: String,
     /// The file's name without its extension. Both databases use it as the material's name.
@@ -81,7 +81,7 @@ pub struct Measured {
     pub warnings: Vec<String>,
 }
 
-impl Measured {
+impl MeasuredBrdf {
     /// Reads a MERL `.binary` or a UTIA `.bin` file. Never reads more bytes than such a file has.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use glam::{Mat3, Vec3};
 
-use super::{Measured, MeasuredKind};
+use super::{MeasuredBrdf, MeasuredKind};
 
 const MERL_PLANE: usize = 90 * 90 * 180;
 const UTIA_PLANE: usize = 288 * 288;
@@ -43,14 +43,14 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-fn open(name: &str, bytes: &[u8]) -> Measured {
+fn open(name: &str, bytes: &[u8]) -> MeasuredBrdf {
     let folder = tempfile::tempdir().unwrap();
-    Measured::open(&write(folder.path(), name, bytes)).unwrap()
+    MeasuredBrdf::open(&write(folder.path(), name, bytes)).unwrap()
 }
 
 fn refusal(name: &str, bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
-    Measured::open(&write(folder.path(), name, bytes)).unwrap_err().to_string()
+    MeasuredBrdf::open(&write(folder.path(), name, bytes)).unwrap_err().to_string()
 }
 
 /// Overwrites double number `index` of the file's data with `value`.
@@ -60,8 +60,8 @@ fn poke(bytes: &mut [u8], header: usize, index: usize, value: f64) {
 
 /// Encoded once, since each has 35 MB.
 static MERL_BYTES: LazyLock<Vec<u8>> = LazyLock::new(|| MeasuredKind::Merl.encode(analytic));
-static MERL: LazyLock<Measured> = LazyLock::new(|| open("plastic.binary", &MERL_BYTES));
-static UTIA: LazyLock<Measured> = LazyLock::new(|| open("plastic.bin", &MeasuredKind::Utia.encode(analytic)));
+static MERL: LazyLock<MeasuredBrdf> = LazyLock::new(|| open("plastic.binary", &MERL_BYTES));
+static UTIA: LazyLock<MeasuredBrdf> = LazyLock::new(|| open("plastic.bin", &MeasuredKind::Utia.encode(analytic)));
 
 #[test]
 fn merl_gives_back_the_brdf_that_it_was_made_of() {
@@ -231,7 +231,7 @@ fn bad_files_are_refused_with_what_was_found_and_expected() {
     }
 
     let folder = tempfile::tempdir().unwrap();
-    let message = |path: &Path| Measured::open(path).unwrap_err().to_string();
+    let message = |path: &Path| MeasuredBrdf::open(path).unwrap_err().to_string();
     assert!(message(folder.path()).contains("is not a file"));
     assert!(message(&folder.path().join("absent.bin")).contains("cannot be read"));
     // A correct header in a file of a terabyte: refused by its length, not read.

@@ -126,7 +126,7 @@ pub enum Dispatch {
 /// The image that a pass draws to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Target {
+pub enum PassTarget {
     /// An image of its own, with the name of the pass.
     #[default]
     Image,
@@ -181,7 +181,7 @@ pub struct PassDesc {
     /// Whether it is on until the user switches it off.
     pub on: bool,
     /// The image that it draws to.
-    pub to: Target,
+    pub to: PassTarget,
     /// A pass that comes before this pass, besides those whose images it reads.
     pub after: Option<String>,
     /// The workgroups of a compute pass.
@@ -212,19 +212,19 @@ pub struct PassDesc {
 impl PassDesc {
     /// Whether it draws to the picture, so that it has no image of its own.
     pub fn to_picture(&self) -> bool {
-        self.to == Target::Picture
+        self.to == PassTarget::Picture
     }
 
     /// Whether it is one of the built-in steps of the picture: the model, what may replace it, and the steps to the display.
     pub fn is_built_in(&self) -> bool {
-        matches!(self.to, Target::Resolve | Target::Mean | Target::Display)
+        matches!(self.to, PassTarget::Resolve | PassTarget::Mean | PassTarget::Display)
             || self.instead.is_some()
             || self.name == MODEL
     }
 
     /// Whether it draws an image of this name.
     pub fn draws(&self, image: &str) -> bool {
-        self.to == Target::Image && self.images().any(|(name, _)| name == image)
+        self.to == PassTarget::Image && self.images().any(|(name, _)| name == image)
     }
 
     /// The names and formats of its own images, by location; empty if it draws to another target.
@@ -257,7 +257,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
         mips: false,
         keep: false,
         on: true,
-        to: Target::Image,
+        to: PassTarget::Image,
         after: None,
         dispatch: Dispatch::Size,
         model: None,
@@ -304,10 +304,10 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
             "doc" => desc.doc = cursor.value(key)?.1,
             "to" => {
                 let all = [
-                    ("picture", Target::Picture),
-                    ("resolve", Target::Resolve),
-                    ("mean", Target::Mean),
-                    ("display", Target::Display),
+                    ("picture", PassTarget::Picture),
+                    ("resolve", PassTarget::Resolve),
+                    ("mean", PassTarget::Mean),
+                    ("display", PassTarget::Display),
                 ];
                 desc.to = cursor.one_of(key, &all)?;
             }

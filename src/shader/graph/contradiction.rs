@@ -1,12 +1,12 @@
 //! Options of a `//@pass` that contradict each other, or do not apply to its kind of stage.
 
-use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassDesc, PassFormat, PassSize, Target};
+use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassDesc, PassFormat, PassSize, PassTarget};
 use crate::shader::compile::StageKind;
 
 /// The contradictory word of the annotation, and a message.
 pub(super) fn contradiction(desc: &PassDesc, kind: StageKind) -> Option<(&'static str, &'static str)> {
     let is_compute = kind == StageKind::Compute;
-    if desc.to != Target::Image && is_compute {
+    if desc.to != PassTarget::Image && is_compute {
         return Some((
             "to=",
             "a compute pass writes an image of its own; read that in a fragment pass with to=picture",
@@ -19,7 +19,7 @@ pub(super) fn contradiction(desc: &PassDesc, kind: StageKind) -> Option<(&'stati
         ("mips", desc.mips),
         ("keep", desc.keep),
     ];
-    if let Some((word, _)) = given.iter().find(|(_, given)| *given && desc.to != Target::Image) {
+    if let Some((word, _)) = given.iter().find(|(_, given)| *given && desc.to != PassTarget::Image) {
         let message =
             "the picture has its own size and format, so size=, format=, also=, mips and keep do not go with to=";
         return Some((*word, message));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
 use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::message::did_you_mean;
-use crate::shader::annotation::pass::{PassDesc, PassFormat, Target};
+use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
 use crate::shader::annotation::texture::TextureDesc;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
@@ -131,8 +131,8 @@ fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(desc, name, names),
-        "sampler2DMS" if desc.to == Target::Resolve && name == "samples" => Ok(Input::Samples),
-        "sampler2DMS" if desc.to == Target::Resolve => {
+        "sampler2DMS" if desc.to == PassTarget::Resolve && name == "samples" => Ok(Input::Samples),
+        "sampler2DMS" if desc.to == PassTarget::Resolve => {
             let message = format!("the pass `{}` has no `{name}`", desc.name);
             Err((message, "it reads the samples of the picture: uniform sampler2DMS samples;".into()))
         }
@@ -188,10 +188,10 @@ fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>
 /// The images that Specula provides to a pass, by name.
 fn given(desc: &PassDesc) -> &'static [(&'static str, Input)] {
     match desc.to {
-        Target::Resolve => &[],
-        Target::Mean | Target::Display => &[("picture", Input::Picture)],
-        Target::Picture if desc.is_drawn_with_model() => &[("behind", Input::OpaqueScene)],
-        Target::Picture | Target::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],
+        PassTarget::Resolve => &[],
+        PassTarget::Mean | PassTarget::Display => &[("picture", Input::Picture)],
+        PassTarget::Picture if desc.is_drawn_with_model() => &[("behind", Input::OpaqueScene)],
+        PassTarget::Picture | PassTarget::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],
     }
 }
 
@@ -230,13 +230,13 @@ pub fn read_later(name: &str) -> Option<&str> {
 fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
     let find = |name: &str| names.passes.iter().find(|pass| pass.name == name || pass.draws(name));
     if let Some((before, pass)) = read_later(name).and_then(|before| Some((before, find(before)?))) {
-        return Some(match pass.to == Target::Image {
+        return Some(match pass.to == PassTarget::Image {
             true => Ok(Input::Before(before.to_owned())),
             false => Err(not_kept(before)),
         });
     }
     match find(name) {
-        Some(pass) if pass.to != Target::Image => {
+        Some(pass) if pass.to != PassTarget::Image => {
             let message = format!("`{name}` gives what it draws to the picture, so it has no image of its own");
             Some(Err((message, format!("read `picture` in a pass with after={name}"))))
         }
@@ -283,7 +283,7 @@ fn not_kept(name: &str) -> Refusal {
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
     let images = |pass: &PassDesc| -> Vec<String> { pass.images().map(|(name, _)| name.to_owned()).collect() };
-    known.extend(names.passes.iter().filter(|pass| pass.to == Target::Image).flat_map(images));
+    known.extend(names.passes.iter().filter(|pass| pass.to == PassTarget::Image).flat_map(images));
     let kept = names.passes.iter().filter(|pass| pass.keep).flat_map(images);
     known.extend(kept.map(|name| format!("before_{name}")));
     known.extend(names.textures.iter().map(|texture| texture.name.clone()));

@@ -65,7 +65,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::annotation::pass::{MODEL, PassDesc, Target};
+use super::annotation::pass::{MODEL, PassDesc, PassTarget};
 use super::annotation::{Annotations, PATHS_STAGE};
 use super::compile::StageKind;
 use super::contract::Texts;
@@ -395,7 +395,7 @@ impl Graph {
             needed.extend(others.map(|other| other.name()));
         }
         // The surface's images are there for passes that the user may write.
-        let is_offer = |pass: &GraphPass| pass.desc.to == Target::Image && embedded::has(&pass.desc.stage);
+        let is_offer = |pass: &GraphPass| pass.desc.to == PassTarget::Image && embedded::has(&pass.desc.stage);
         let is_internal =
             |pass: &&Arc<GraphPass>| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
         self.passes.iter().filter(is_internal).map(|pass| pass.name().to_owned()).collect()

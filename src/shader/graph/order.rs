@@ -26,7 +26,8 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     if !too_early.is_empty() {
         return Err(too_early);
     }
-    let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
+    let mut order =
+        Order { passes: &passes, index: &index, state: vec![VisitState::New; passes.len()], done: Vec::new() };
     for phase in [
         RenderPhase::BeforeModel,
         RenderPhase::Model,
@@ -210,7 +211,7 @@ fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, 
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+enum VisitState {
     New,
     Open,
     Done,
@@ -219,7 +220,7 @@ enum State {
 struct Order<'a> {
     passes: &'a [GraphPass],
     index: &'a BTreeMap<String, usize>,
-    state: Vec<State>,
+    state: Vec<VisitState>,
     done: Vec<usize>,
 }
 
@@ -227,9 +228,9 @@ impl Order<'_> {
     /// Appends a pass to the order, after all passes that it depends on. `path`: the passes that wait for it.
     fn emit(&mut self, at: usize, path: &mut Vec<usize>) -> Result<(), Box<Diagnostic>> {
         match self.state[at] {
-            State::Done => return Ok(()),
-            State::Open => return Err(self.cycle(at, path)),
-            State::New => self.state[at] = State::Open,
+            VisitState::Done => return Ok(()),
+            VisitState::Open => return Err(self.cycle(at, path)),
+            VisitState::New => self.state[at] = VisitState::Open,
         }
         path.push(at);
         let pass = &self.passes[at];
@@ -240,12 +241,12 @@ impl Order<'_> {
         let writers = (0..self.passes.len()).filter(|other| self.passes[*other].phase == pass.phase);
         for writer in writers.filter(|writer| *writer != at && writes_buffer_of(&self.passes[*writer], pass)) {
             let waits = reached(writer, |at| needs(&self.passes[at], self.index));
-            if waits.iter().all(|need| self.state[*need] != State::Open) {
+            if waits.iter().all(|need| self.state[*need] != VisitState::Open) {
                 self.emit(writer, path)?;
             }
         }
         path.pop();
-        self.state[at] = State::Done;
+        self.state[at] = VisitState::Done;
         self.done.push(at);
         Ok(())
     }

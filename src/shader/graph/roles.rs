@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::{PassStage, RenderPhase};
 use crate::message::did_you_mean;
 use crate::shader::annotation::Annotations;
-use crate::shader::annotation::pass::{MODEL, PassDesc, TONEMAP, Target};
+use crate::shader::annotation::pass::{MODEL, PassDesc, PassTarget, TONEMAP};
 use crate::shader::compile::StageKind;
 use crate::shader::contract::check_fragment_outputs;
 use crate::shader::diagnostic::Diagnostic;
@@ -14,11 +14,11 @@ use crate::shader::diagnostic::Diagnostic;
 /// The phase that an annotation alone determines.
 pub(super) fn phase(desc: &PassDesc) -> RenderPhase {
     match desc.to {
-        Target::Resolve => RenderPhase::Resolve,
-        Target::Mean => RenderPhase::Mean,
-        Target::Display => RenderPhase::Tonemap,
-        Target::Picture if desc.is_drawn_with_model() => RenderPhase::Model,
-        Target::Picture | Target::Image => RenderPhase::Light,
+        PassTarget::Resolve => RenderPhase::Resolve,
+        PassTarget::Mean => RenderPhase::Mean,
+        PassTarget::Display => RenderPhase::Tonemap,
+        PassTarget::Picture if desc.is_drawn_with_model() => RenderPhase::Model,
+        PassTarget::Picture | PassTarget::Image => RenderPhase::Light,
     }
 }
 
@@ -74,7 +74,7 @@ pub(super) fn wrong_outputs(desc: &PassDesc, stage: &PassStage<'_>) -> Vec<Diagn
 /// An error about the first debug mode that accumulates, if no pass draws to the accumulation buffer.
 pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
     let mode = annotations.modes.iter().find(|mode| mode.accumulate)?;
-    if annotations.passes.iter().any(|desc| desc.to == Target::Mean) {
+    if annotations.passes.iter().any(|desc| desc.to == PassTarget::Mean) {
         return None;
     }
     let message = format!("the mode `{}` accumulates, but no stage declares a pass with to=mean", mode.slug);
@@ -107,7 +107,7 @@ fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str,
         MODEL if !draws_model => {
             return Some((name, format!("the pass `{MODEL}` draws the model: draw=model to=picture")));
         }
-        TONEMAP if desc.to != Target::Display => {
+        TONEMAP if desc.to != PassTarget::Display => {
             return Some((name, format!("the pass `{TONEMAP}` brings the picture to the display: to=display")));
         }
         _ => {}
@@ -116,21 +116,21 @@ fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str,
         let message = format!("the pass `{name}` is a step of every picture, so off and when= do not go with it");
         return Some((if desc.on { "when=" } else { "off" }, message));
     }
-    if desc.to == Target::Display && name != TONEMAP {
+    if desc.to == PassTarget::Display && name != TONEMAP {
         let message =
             format!("only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}");
         return Some(("to=", message));
     }
     for (to, message) in [
-        (Target::Mean, "there is another pass with to=mean; one pass makes the mean of all frames"),
-        (Target::Resolve, "there is another pass with to=resolve; one pass makes a color from a pixel's samples"),
+        (PassTarget::Mean, "there is another pass with to=mean; one pass makes the mean of all frames"),
+        (PassTarget::Resolve, "there is another pass with to=resolve; one pass makes a color from a pixel's samples"),
     ] {
         let is_other = |other: &PassDesc| other.to == to && other.name < desc.name;
         if desc.to == to && passes.iter().any(is_other) {
             return Some(("to=", message.into()));
         }
     }
-    let covers = matches!(desc.to, Target::Resolve | Target::Mean | Target::Display);
+    let covers = matches!(desc.to, PassTarget::Resolve | PassTarget::Mean | PassTarget::Display);
     if covers && desc.model.is_some() {
         let message = format!("the pass `{name}` covers the picture, so draw= and instances= do not go with it");
         return Some(("to=", message));

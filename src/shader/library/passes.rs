@@ -7,7 +7,7 @@ use super::beside::{fragment_of, may_be_beside};
 use super::slot::Slot;
 use super::{Change, Library};
 use crate::interface;
-use crate::shader::annotation::pass::{MODEL, PassDesc, Target};
+use crate::shader::annotation::pass::{MODEL, PassDesc, PassTarget};
 use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
@@ -104,7 +104,7 @@ impl Library {
                 let is_switched_off = |name: &String| texts.iter().any(|(_, text)| is_zero(text, name));
                 match !desc.on || desc.when.as_ref().is_some_and(is_switched_off) {
                     true => drop(off.insert(path.clone())),
-                    false if desc.to != Target::Image => {}
+                    false if desc.to != PassTarget::Image => {}
                     false => on.push((path.clone(), desc.images().map(|(name, _)| name.to_owned()).collect())),
                 }
             }

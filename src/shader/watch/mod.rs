@@ -30,7 +30,7 @@ use notify::Event;
 
 use fingerprint::{Fingerprint, fingerprint};
 use notifier::Notifier;
-use state::{State, Touched};
+use state::{Touched, WatchState};
 
 /// A save of one existing, closed file is complete; this delay covers an editor's backup file beside it.
 const SETTLE_SAVE: Duration = Duration::from_millis(2);
@@ -119,7 +119,7 @@ impl Watcher {
             let _ = events.send(Message::Event(event));
         };
         let notifier = Notifier::new(without.map_or(Ok(send), Err));
-        let state = State::new(root.map(Path::to_owned), files, notifier);
+        let state = WatchState::new(root.map(Path::to_owned), files, notifier);
         let thread =
             std::thread::Builder::new().name("specula-watch".to_owned()).spawn(move || run(state, &inbox, on_batch));
         Ok(Self { messages, thread: Some(thread.map_err(WatchError::Thread)?) })
@@ -156,7 +156,7 @@ impl Pending {
     }
 
     /// When to deliver the changes, unless more happens.
-    fn due(&self, state: &State) -> Instant {
+    fn due(&self, state: &WatchState) -> Instant {
         let is_save = self.looked.is_empty() && state.is_save(&self.files);
         (self.last + if is_save { SETTLE_SAVE } else { SETTLE }).min(self.first + SETTLE_CAP)
     }
@@ -176,7 +176,7 @@ impl Pending {
 }
 
 /// Collects events until they settle, then delivers what differs.
-fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Batch)) {
+fn run(mut state: WatchState, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Batch)) {
     let mut pending: Option<Pending> = None;
     let mut looked = Instant::now();
     loop {

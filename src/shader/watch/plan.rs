@@ -12,14 +12,14 @@ use crate::shader::source::directory::{self, Entry};
 #[derive(Debug, Default)]
 pub struct Plan {
     /// Every directory whose entries matter.
-    pub places: BTreeMap<PathBuf, Place>,
+    pub places: BTreeMap<PathBuf, DirectoryRole>,
     /// Every file that exists: its name, and where it is without symbolic links.
     pub files: BTreeMap<PathBuf, PathBuf>,
 }
 
 /// Why a directory matters.
 #[derive(Debug, Default)]
-pub struct Place {
+pub struct DirectoryRole {
     /// The names under which the tree contains the directory: all its entries matter.
     pub tree_names: BTreeSet<PathBuf>,
     /// Entries that paths lead through: for each, the given path, and whether the path ends at this entry.

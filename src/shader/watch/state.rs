@@ -20,7 +20,7 @@ pub struct Touched {
 }
 
 /// The watched tree and files, and their known content.
-pub struct State {
+pub struct WatchState {
     /// As given.
     root: Option<PathBuf>,
     /// As given.
@@ -31,7 +31,7 @@ pub struct State {
     known: BTreeMap<PathBuf, Fingerprint>,
 }
 
-impl State {
+impl WatchState {
     /// Watches `root` and `files`, and records their present content.
     pub fn new(root: Option<PathBuf>, files: &[PathBuf], notifier: Notifier) -> Self {
         let files = files.iter().cloned().collect();

@@ -103,7 +103,7 @@ fn pipes_and_devices_are_written_to() {
 /// Opening a pipe waits for a program that writes to it, and closing a window waits for its readers.
 #[test]
 fn nothing_that_reads_a_file_waits_for_a_pipe() {
-    use specula::scene::{EnvironmentFile, LoadOptions, Measured, load};
+    use specula::scene::{EnvironmentFile, LoadOptions, MeasuredBrdf, load};
     let directory = tempfile::tempdir().unwrap();
     let pipe = directory.path().join("EXERCISE.md");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -112,7 +112,7 @@ fn nothing_that_reads_a_file_waits_for_a_pipe() {
         std::thread::spawn(move || sender.send(fails(&pipe)));
         assert!(failed.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{name} waits")), "{name} was read");
     };
-    refuses("a measured BRDF", |pipe| Measured::open(pipe).is_err());
+    refuses("a measured BRDF", |pipe| MeasuredBrdf::open(pipe).is_err());
     refuses("an environment", |pipe| EnvironmentFile::open(pipe.to_str().unwrap()).is_err());
     refuses("a model", |pipe| load(pipe, &LoadOptions::default()).is_err());
     refuses("a picture", |pipe| specula::comparison::Picture::open(pipe).is_err());

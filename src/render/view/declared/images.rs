@@ -10,7 +10,7 @@ use crate::frame::PipelineRequest;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::{PassFormat, Target};
+use crate::shader::annotation::pass::{PassFormat, PassTarget};
 use crate::shader::graph::{Graph, Input, RenderPhase, TextureKind};
 
 /// An image of a pass, with the one before.
@@ -38,7 +38,7 @@ struct PassImages {
 
 /// The requirements of a frame. If they are unchanged, all images and buffers are kept.
 #[derive(Clone, Default, PartialEq)]
-struct Key {
+struct ImageKey {
     size: (u32, u32),
     picture: vk::Format,
     passes: Vec<Arc<GraphPass>>,
@@ -50,7 +50,7 @@ struct Key {
 /// The images and buffers of all declared passes of a frame.
 #[derive(Default)]
 pub(super) struct Images {
-    key: Key,
+    key: ImageKey,
     /// The request that the key was made of.
     request: Weak<PipelineRequest>,
     /// By the names of the images.
@@ -96,7 +96,7 @@ impl Images {
         if self.key.size == frame.state.size && std::ptr::eq(self.request.as_ptr(), Arc::as_ptr(request)) {
             return Ok(None);
         }
-        let key = Key {
+        let key = ImageKey {
             size: frame.state.size,
             picture: request.picture_format(),
             passes: request.passes.clone(),
@@ -114,9 +114,9 @@ impl Images {
         let (fresh, drawings) = (self.fresh.clone(), self.drawings);
         let mut next = Self { key, request: request_of_key, fresh, drawings, ..Self::default() };
         let describe = |pass: &GraphPass, image: (&str, PassFormat)| PassDesc::new(pass, image, frame.state.size);
-        let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), describe);
+        let slots = lifetimes::shared_images(&request.passes, request.shown_pass.as_deref(), describe);
         let mut shared = BTreeMap::new();
-        for pass in request.passes.iter().filter(|pass| pass.desc.to == Target::Image) {
+        for pass in request.passes.iter().filter(|pass| pass.desc.to == PassTarget::Image) {
             for image in pass.desc.images() {
                 let slot = slots.get(image.0).map(|slot| shared.entry(*slot).or_default());
                 let images = next.images_of(gpu, (image.0, describe(pass, image)), self, slot)?;

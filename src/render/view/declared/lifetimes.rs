@@ -6,11 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::{PassFormat, Target};
+use crate::shader::annotation::pass::{PassFormat, PassTarget};
 use crate::shader::graph::Input;
 
 /// An image of the device while passes are assigned to it.
-struct Slot<D> {
+struct SharedImage<D> {
     desc: D,
     /// Index of the last pass that reads what the newest pass has drawn to it.
     last_read: usize,
@@ -23,7 +23,7 @@ struct Slot<D> {
 /// depends on has changed, or if its pass may leave texels as they were (compute).
 ///
 /// `passes`: those of the frame, in order. `shown`: the image that the frame shows in place of the picture.
-pub(super) fn slots<'a, D: PartialEq>(
+pub(super) fn shared_images<'a, D: PartialEq>(
     passes: &'a [Arc<GraphPass>],
     shown: Option<&str>,
     describe: impl Fn(&'a GraphPass, (&'a str, PassFormat)) -> D,
@@ -40,10 +40,10 @@ pub(super) fn slots<'a, D: PartialEq>(
         }
     }
     last_reads.extend(shown.map(|name| (name, usize::MAX)));
-    let mut slots: Vec<Slot<D>> = Vec::new();
+    let mut shared: Vec<SharedImage<D>> = Vec::new();
     let mut slot_of = BTreeMap::new();
     let mut redrawn = BTreeSet::new();
-    for (index, pass) in passes.iter().enumerate().filter(|(_, pass)| pass.desc.to == Target::Image) {
+    for (index, pass) in passes.iter().enumerate().filter(|(_, pass)| pass.desc.to == PassTarget::Image) {
         if !is_redrawn(pass, &redrawn) {
             continue;
         }
@@ -54,11 +54,11 @@ pub(super) fn slots<'a, D: PartialEq>(
         for image in pass.desc.images().filter(|(name, _)| !outlive.contains(name)) {
             let desc = describe(pass, image);
             let last_read = last_reads.get(image.0).copied().unwrap_or(index);
-            let free = slots.iter().position(|slot| slot.last_read < index && slot.desc == desc);
-            let slot = free.unwrap_or(slots.len());
-            match slots.get_mut(slot) {
+            let free = shared.iter().position(|slot| slot.last_read < index && slot.desc == desc);
+            let slot = free.unwrap_or(shared.len());
+            match shared.get_mut(slot) {
                 Some(taken) => taken.last_read = last_read,
-                None => slots.push(Slot { desc, last_read }),
+                None => shared.push(SharedImage { desc, last_read }),
             }
             slot_of.insert(image.0, slot);
         }

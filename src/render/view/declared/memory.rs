@@ -7,12 +7,12 @@ use super::images::buffer_of;
 use super::lifetimes;
 use crate::frame::PipelineRequest;
 use crate::shader::Diagnostic;
-use crate::shader::annotation::pass::{PassFormat, PassSize, Target};
+use crate::shader::annotation::pass::{PassFormat, PassSize, PassTarget};
 
 /// An error at the line of the first pass with which the images and buffers of `request` take more than `limit` bytes, for a
 /// frame of this size.
 pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) -> Option<Diagnostic> {
-    let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), |pass, image| {
+    let slots = lifetimes::shared_images(&request.passes, request.shown_pass.as_deref(), |pass, image| {
         PassDesc::new(pass, image, size)
     });
     let mut taken = BTreeSet::new();
@@ -20,7 +20,7 @@ pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) ->
     let mut buffers = BTreeMap::new();
     let mut total = 0;
     for pass in &request.passes {
-        for image in pass.desc.images().filter(|_| pass.desc.to == Target::Image) {
+        for image in pass.desc.images().filter(|_| pass.desc.to == PassTarget::Image) {
             let desc = PassDesc::new(pass, image, size);
             let texel = u64::from(image.1.bytes());
             if slots.get(image.0).is_none_or(|slot| taken.insert(*slot)) {

@@ -8,7 +8,7 @@ use super::images::Images;
 use crate::gpu::{Pipeline, ResourceUsage};
 use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::Target;
+use crate::shader::annotation::pass::PassTarget;
 use crate::shader::graph::Input;
 
 /// Everything that an image of a pass depends on.
@@ -35,7 +35,7 @@ impl PassCacheKey {
         context: &PassContext<'_>,
         images: &Images,
     ) -> Option<Self> {
-        if pass.is_compute || pass.desc.to != Target::Image || pass.desc.keep {
+        if pass.is_compute || pass.desc.to != PassTarget::Image || pass.desc.keep {
             return None;
         }
         if pass.desc.images().any(|(name, _)| images.is_shared(name)) {

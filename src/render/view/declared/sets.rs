@@ -6,17 +6,17 @@ use std::sync::Arc;
 use crate::gpu::{DescriptorSet, Encoder, GpuError, Pipeline};
 
 /// Numbers that identify the objects that a set points to. A set keeps them alive, so no other object gets their numbers.
-pub(super) type Key = Vec<usize>;
+pub(super) type SetKey = Vec<usize>;
 
 /// The sets of the last frames.
 #[derive(Default)]
-pub(super) struct Sets(Vec<(Key, Arc<DescriptorSet>)>);
+pub(super) struct Sets(Vec<(SetKey, Arc<DescriptorSet>)>);
 
 impl Sets {
     /// The set of `key`, which `make` creates if the cache lacks it. A cache with `most` sets is cleared before that.
     pub(super) fn get(
         &mut self,
-        key: Key,
+        key: SetKey,
         most: usize,
         make: impl FnOnce() -> Result<Arc<DescriptorSet>, GpuError>,
     ) -> Result<Arc<DescriptorSet>, GpuError> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use gltf::json;
 
-use super::uri::{self, Target};
+use super::uri::{self, UriTarget};
 use crate::regular_file;
 use crate::scene::error::Problem;
 use crate::scene::gltf::place::{out_of_range, place};
@@ -41,8 +41,8 @@ impl<'t> Files<'t> {
     /// Loads the bytes of a URI. `place` is for messages.
     pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
         let named = match uri::parse(uri, place, self.allow_outside)? {
-            Target::Data(bytes) => return Ok(bytes),
-            Target::File(path) => path,
+            UriTarget::Data(bytes) => return Ok(bytes),
+            UriTarget::File(path) => path,
         };
         let Some(folder) = &self.folder else {
             let found = format!("the external file `{}`", named.display());

@@ -6,7 +6,7 @@ use crate::scene::error::Problem;
 
 /// The target of a URI.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Target {
+pub enum UriTarget {
     /// The bytes of a data URI.
     Data(Vec<u8>),
     /// A path as written, percent-decoded, relative to the model's folder unless absolute.
@@ -14,10 +14,10 @@ pub enum Target {
 }
 
 /// Parses a URI. Refuses all schemes except `data:`, and paths out of the model's folder unless `allow_outside`.
-pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<Target, Problem> {
+pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<UriTarget, Problem> {
     if let Some(scheme) = scheme(uri) {
         if scheme.eq_ignore_ascii_case("data") {
-            return decode_data(&uri[scheme.len() + 1..], place).map(Target::Data);
+            return decode_data(&uri[scheme.len() + 1..], place).map(UriTarget::Data);
         }
         return Err(Problem::Scheme { place: place.into(), uri: shorten(uri), scheme: scheme.into() });
     }
@@ -29,7 +29,7 @@ pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<Target, Prob
         let found = "a path that leaves it".to_owned();
         return Err(Problem::Outside { place: place.into(), uri: shorten(&path), found });
     }
-    Ok(Target::File(PathBuf::from(path)))
+    Ok(UriTarget::File(PathBuf::from(path)))
 }
 
 /// The scheme before the colon. A single letter is a Windows drive.
@@ -145,9 +145,9 @@ mod tests {
 
     #[test]
     fn paths_are_percent_decoded() {
-        assert_eq!(parse("a%20b/%C3%A9.bin", "", false).unwrap(), Target::File("a b/\u{e9}.bin".into()));
-        assert_eq!(parse("x/../y.bin", "", false).unwrap(), Target::File("x/../y.bin".into()));
-        assert_eq!(parse("data:text/plain,a%20b", "", false).unwrap(), Target::Data(b"a b".to_vec()));
+        assert_eq!(parse("a%20b/%C3%A9.bin", "", false).unwrap(), UriTarget::File("a b/\u{e9}.bin".into()));
+        assert_eq!(parse("x/../y.bin", "", false).unwrap(), UriTarget::File("x/../y.bin".into()));
+        assert_eq!(parse("data:text/plain,a%20b", "", false).unwrap(), UriTarget::Data(b"a b".to_vec()));
         for bad in ["%", "%4", "%zz", "%ff.bin", ""] {
             assert!(matches!(parse(bad, "", false), Err(Problem::Invalid { .. })), "{bad}");
         }
@@ -159,7 +159,7 @@ mod tests {
         for uri in ["/etc/x", "../x", "a/../../x", "%2e%2e/x", "..\\x", "C:\\x", "C:x", "\\\\server\\x", "a\\..\\..\\x"]
         {
             assert!(matches!(parse(uri, "", false), Err(Problem::Outside { .. })), "{uri}");
-            assert!(matches!(parse(uri, "", true), Ok(Target::File(_))), "{uri}");
+            assert!(matches!(parse(uri, "", true), Ok(UriTarget::File(_))), "{uri}");
         }
         for uri in ["http://x/y.png", "file:///etc/x", "FTP:x", "blob:x"] {
             assert!(matches!(parse(uri, "", true), Err(Problem::Scheme { .. })), "{uri}");
