@@ -18,6 +18,6 @@ pub(super) struct Mouse {
     pub(super) modifiers: ModifiersState,
     /// Time and place of the last press of the left button, for double clicks.
     pub(super) last_press: Option<(Instant, Vec2)>,
-    /// Where the left button went down, while it may still become a click: the mouse has not been dragged.
+    /// Where the left button went down, while the press may still become a click: the mouse has not been dragged.
     pub(super) click: Option<Vec2>,
 }

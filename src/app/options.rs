@@ -22,15 +22,16 @@ pub struct AppOptions {
     pub model: Option<PathBuf>,
     /// Settings to start with.
     pub settings: Settings,
-    /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
+    /// The session state of a window that opens without a model and options. If the window starts with this state, it offers to
+    /// restore the last session.
     pub plain: Option<SessionState>,
-    /// Whether a model that has lights shines by them: the user has not said which lights shine.
+    /// Whether a model that has lights is lit by them: the user has not chosen which lights shine.
     pub follows_lights: bool,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
     pub at: Option<(i32, i32)>,
-    /// Records the session for the process that goes on with it after a loss of the device.
+    /// Persists the session for the process that continues it after a loss of the device.
     pub recorder: Recorder,
     /// Part of the name of the device to use.
     pub device: Option<String>,
@@ -55,7 +56,7 @@ pub enum OtherPicture {
     Tree(PathBuf),
 }
 
-/// Work that needs neither window nor device, and so starts before them.
+/// Work that needs neither window nor device, so it starts before them.
 pub(super) struct Early {
     pub(super) watcher: Option<Watcher>,
     pub(super) reading: Reading,

@@ -60,7 +60,7 @@ use reference_view::ReferenceView;
 use shown_texture::ShownTexture;
 use window_shot::WindowShot;
 
-/// The CPU prepares a frame while the device draws the one before.
+/// The CPU prepares a frame while the device draws the previous one.
 const FRAMES_IN_FLIGHT: usize = 2;
 /// Time until the next attempt at a frame while memory is short.
 const RETRY: Duration = Duration::from_millis(500);
@@ -68,7 +68,7 @@ const RETRY: Duration = Duration::from_millis(500);
 const COVERED: Duration = Duration::from_secs(1);
 /// Time until the next attempt at a frame while the screen releases no image.
 const HIDDEN: Duration = Duration::from_millis(100);
-/// Repaint delays of egui from here on mean that it needs no repaint.
+/// egui needs no repaint if its repaint delay is at least this.
 const NEVER: Duration = Duration::from_secs(3600);
 
 /// A thumbnail on the way from the device.
@@ -93,7 +93,7 @@ pub(super) struct Screen {
     egui: egui::Context,
     pub(super) panels: Panels,
     input: egui_winit::State,
-    /// Events that came while egui had yet to move the focus, in their order.
+    /// Events that wait until egui has moved the focus, in their order.
     waiting: VecDeque<WindowEvent>,
     /// Textures of egui to upload, and those to free because no later frame uses them.
     textures: egui::TexturesDelta,
@@ -106,22 +106,22 @@ pub(super) struct Screen {
     shortage: Option<GpuError>,
     /// The picture of each frame slot's last frame, until its loops are known to have ended.
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
-    /// The attempt number of each of these pictures, see [`Viewer::record`].
+    /// The attempt number of each of these frames, see [`Viewer::record`].
     attempts: [Option<u64>; FRAMES_IN_FLIGHT],
     /// Whether each of these frames has also drawn another picture, in which a loop may not have ended.
     has_others: [bool; FRAMES_IN_FLIGHT],
     /// Whether another frame must follow at once.
     redraws: bool,
-    /// No thumbnails of versions are drawn: memory is short.
+    /// Whether no thumbnails of versions are drawn, because memory is short.
     lacks_thumbnails: bool,
-    /// The last picture in which a loop did not end.
+    /// The last frame in which a loop did not end.
     endless: Option<Arc<FrameState>>,
     /// How many more frames are drawn only to learn whether the loops have ended.
     checks: usize,
     /// The picture that the user compares with, while there is one.
     reference: Option<ReferenceView>,
     error_map: ErrorMap,
-    /// The picture of the window that is on its way from the device.
+    /// The capture of the window that is in flight.
     window_shot: Option<WindowShot>,
     /// The targets of the selection's outline, while there is a selection.
     outline: Option<Outline>,
@@ -148,7 +148,7 @@ pub(super) struct Screen {
     due: Option<Instant>,
     /// Whether other windows cover this one.
     pub(super) is_covered: bool,
-    /// The CPU's times of the frame that is being made.
+    /// The CPU times of the current frame.
     cpu: CpuTimes,
     /// CPU time of the driver to present it. A software device copies the pixels then, which is no work of the window's.
     present_ms: f64,
@@ -224,7 +224,7 @@ impl Screen {
         })
     }
 
-    /// Offers the window to screen readers. Nothing is made for them until one comes.
+    /// Registers the window with screen readers. The accessibility tree is built once one connects.
     pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, sender: &MessageSender) {
         self.input.init_accesskit(event_loop, window, sender.proxy());
     }
@@ -262,11 +262,8 @@ impl Screen {
         self.last.as_ref().map(|frame| frame.state.camera)
     }
 
-    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the
-    /// last picture stays, the viewer says so, and the next frame tries again.
-    ///
-    /// # Errors
-    /// A device error other than out of memory.
+    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the last frame
+    /// stays, the viewer reports it, and the next frame tries again.
     pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         self.present_ms = 0.0;
         let clock = CpuClock::start();
@@ -297,8 +294,7 @@ impl Screen {
         wait
     }
 
-    /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory
-    /// is an error.
+    /// Draws a frame. Without memory for the targets of a new frame it draws the last one; any other lack of memory is an error.
     fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
             viewer.fail_waiting("the window is minimized, so nothing is drawn");

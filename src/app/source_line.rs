@@ -16,9 +16,9 @@ pub(super) struct SourceLine {
     pub(super) text: Arc<str>,
     /// Name and type of each variable that the line can use.
     pub(super) variables: Vec<(String, String)>,
-    /// The line before any of its numbers is dragged.
+    /// The line before any of its numbers was dragged.
     pub(super) before: String,
-    /// The numbers, and the values that are to replace them.
+    /// The numbers, and the values that replace them.
     pub(super) numbers: Vec<(Literal, f64)>,
 }
 

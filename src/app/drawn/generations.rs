@@ -17,7 +17,7 @@ use crate::pipeline::PipelineSet;
 /// What draws a version.
 struct Generation {
     set: Arc<PipelineSet>,
-    /// Its last complete picture. `None` while it is the newest version, and after the model has changed.
+    /// Its last good frame. `None` while it is the newest version, and after the model has changed.
     picture: Option<LastComplete>,
 }
 
@@ -42,14 +42,14 @@ impl Generations {
         self.keep(versions);
     }
 
-    /// Takes the set with the stages that were compiled later.
+    /// Accepts the set with the stages that were compiled later.
     pub(in crate::app) fn complete(&mut self, set: &Arc<PipelineSet>) {
         if let Some(generation) = self.0.get_mut(&set.shaders.generation) {
             generation.set = set.clone();
         }
     }
 
-    /// Keeps the last picture of a version that a newer one replaces.
+    /// Keeps the last frame of a version that a newer one replaces.
     pub(in crate::app) fn retire(&mut self, picture: LastComplete) {
         if let Some(generation) = self.0.get_mut(&picture.frame.state.shaders.generation) {
             generation.picture = Some(picture);
@@ -63,7 +63,7 @@ impl Generations {
         }
     }
 
-    /// Releases the pictures, which hold the model and its light on the device.
+    /// Releases the frames, which hold the model and its light on the device.
     pub(in crate::app) fn drop_pictures(&mut self) {
         self.0.values_mut().for_each(|generation| generation.picture = None);
     }

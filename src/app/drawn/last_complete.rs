@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::render::{BoundFrame, View};
 use crate::settings::Settings;
 
-/// The last complete picture and its inputs. The window draws it until the next picture is complete.
+/// The last good frame and its inputs. The window draws it until the next one is complete.
 #[derive(Clone)]
 pub(in crate::app) struct LastComplete {
     pub(in crate::app) settings: Arc<Settings>,

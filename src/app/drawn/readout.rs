@@ -24,14 +24,14 @@ fn texts(mode: &Mode, picture: &PixelValue, exact: Option<Option<PixelValue>>) -
     match exact {
         Some(Some(number)) if mode.numbers.is_some() => [number.text(mode).trim().to_owned(), String::new()],
         Some(None) if mode.numbers.is_some() => ["…".to_owned(), String::new()],
-        // At an edge, the picture has a mean of several surfaces.
+        // At an edge, the pixel is an average of several surfaces.
         Some(Some(exact)) if picture.value[3] >= 1.0 && exact.value[3] >= 1.0 => exact.parts_in_picture(mode),
         _ => picture.parts_in_picture(mode),
     }
 }
 
 /// The title over the picture: the mode on screen and the selected mode that is being built. The final picture has no title.
-/// `paths` is the number of random paths per pixel so far in an accumulating mode.
+/// `paths` is the number of paths per pixel so far in an accumulating mode.
 pub(in crate::app) fn title(shown: &Mode, set: Option<&Mode>, paths: Option<u32>) -> Option<String> {
     match (set.filter(|set| set.slug != shown.slug), paths) {
         (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),

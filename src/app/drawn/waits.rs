@@ -2,17 +2,17 @@
 
 use crate::render::Missing;
 
-/// The work of other threads that the picture waits for.
+/// What the picture waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Waits {
-    /// Pipelines. Until then, the last picture stays.
+    /// Pipelines. Until then, the last frame stays.
     Pipelines,
-    /// The light of the environment or the BRDF tables. Until then, the picture has the light of before.
+    /// The light of the environment or the BRDF tables. Until then, the picture has the previous light.
     Light,
 }
 
 impl Waits {
-    /// The work that a state with these missing resources waits for.
+    /// What a state with these missing resources waits for.
     pub(in crate::app) fn of(missing: &Missing) -> Option<Self> {
         match missing {
             missing if missing.pipelines => Some(Self::Pipelines),

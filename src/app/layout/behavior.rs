@@ -11,7 +11,7 @@ use egui_tiles::{
 use crate::app::state::arrangement::Panel;
 use crate::app::widgets::theme::{ACCENT, EDGE, PANEL, QUIET};
 
-/// How tiles become simpler after a change. A tile with one tab keeps it.
+/// Simplifies tiles after a change. A tile with a single tab keeps it.
 pub(super) const SIMPLIFY: SimplificationOptions = SimplificationOptions {
     prune_empty_tabs: true,
     prune_empty_containers: true,
@@ -28,7 +28,7 @@ pub(super) const GAP: f32 = 2.0;
 pub(super) const TAB_BAR: f32 = 24.0;
 /// Space at both sides of a tab's title, in points: the least in a narrow tile, and the most.
 const MARGIN: std::ops::RangeInclusive<f32> = 3.0..=8.0;
-/// Points that a cut title keeps at least.
+/// Smallest width of a truncated title, in points.
 const LEAST_TITLE: f32 = 8.0;
 
 /// The tiles in one frame.
@@ -40,7 +40,7 @@ pub(super) struct Dock<'a> {
     pub(super) is_edited: bool,
     /// Whether the user has moved a tile.
     pub(super) is_dropped: bool,
-    /// Whether another tab has come to the front.
+    /// Whether another tab was selected.
     pub(super) is_selected: bool,
     /// The panel that the user has closed.
     pub(super) closed: Option<Panel>,
@@ -52,7 +52,7 @@ pub(super) struct Dock<'a> {
 pub(super) struct TabTitles {
     /// Space at both sides of a title, in points.
     margin: f32,
-    /// The titles that are cut.
+    /// The titles that are truncated.
     cut: Vec<(TileId, Arc<Galley>)>,
 }
 
@@ -90,7 +90,7 @@ impl TabTitles {
         Self { margin, cut: cut.collect() }
     }
 
-    /// The title of a tab, if it is cut.
+    /// The title of a tab, if it is truncated.
     fn cut(&self, id: TileId) -> Option<&Arc<Galley>> {
         self.cut.iter().find(|(tile, _)| *tile == id).map(|(_, galley)| galley)
     }

@@ -28,7 +28,7 @@ pub(super) struct Fit {
     lengths: HashMap<TileId, f32>,
     /// The lengths in the current window.
     given: HashMap<TileId, f32>,
-    /// The size of the window that they are for.
+    /// The window size for which they were computed.
     size: Option<Vec2>,
     /// The side that a narrow window hides.
     hidden: Side,
@@ -54,7 +54,7 @@ impl Fit {
         self.invalidate();
     }
 
-    /// Gives the picture the points that a new size of the window adds or takes, so that the panels keep theirs.
+    /// Gives the picture all points that a new window size adds or takes, so that the panels keep their sizes.
     pub(super) fn apply(&mut self, tree: &mut Tree<Panel>, size: Vec2) {
         if self.size == Some(size) {
             return;
@@ -125,7 +125,7 @@ impl Fit {
         self.lengths.retain(|child, _| tiles.get(*child).is_some());
     }
 
-    /// The tree with lengths in points as shares, as [`Fit::apply`] expects them of a tree that has not been laid out.
+    /// The tree with lengths in points instead of shares, as [`Fit::apply`] expects for a tree that has not been laid out.
     pub(super) fn measured(&self, tree: &Tree<Panel>) -> Tree<Panel> {
         let mut measured = tree.clone();
         for (id, tile) in tree.tiles.iter() {

@@ -20,7 +20,7 @@ use repair::{COLUMN, repair};
 pub(super) struct Layout {
     tree: Tree<Panel>,
     fit: Fit,
-    /// The arrangement that the user made, while a preset is shown.
+    /// The user's own arrangement, while a preset is shown.
     own: Option<Tree<Panel>>,
     /// Whether the user has changed the tiles since a preset was chosen.
     is_own: bool,
@@ -32,11 +32,11 @@ pub(super) struct Layout {
     free: Rect,
     /// Whether the light theme is shown.
     is_light: bool,
-    /// Whether this arrangement belongs to an exercise or a single file, so the next window does not get it.
+    /// Whether this arrangement is temporary (for an exercise or a single file), so that the next window does not get it.
     is_temporary: bool,
     /// The preset that was chosen last.
     preset: Preset,
-    /// The arrangement before a temporary one, whether the user had made it, and the preset before.
+    /// The arrangement before a temporary one, whether the user had customized it, and the preset before.
     before: Option<(Tree<Panel>, bool, Preset)>,
 }
 
@@ -82,7 +82,8 @@ impl Layout {
         (self.is_temporary, self.before) = (is_temporary, before);
     }
 
-    /// Shows a preset until the user chooses another arrangement, or [`Self::arrange_as_before`]. The next window is arranged as before.
+    /// Shows a preset until the user chooses another arrangement, or until [`Self::arrange_as_before`]. It is not stored for the
+    /// next window.
     pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
         let before = self.before.take();
         let before = before.unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own, self.preset));
@@ -98,7 +99,7 @@ impl Layout {
         *self = Self { own, is_own, is_changed: true, is_light: self.is_light, preset, ..Self::of_tree(tree) };
     }
 
-    /// Whether there is an arrangement of the user's to go back to.
+    /// Whether there is an own arrangement of the user to restore.
     pub(super) fn has_own(&self) -> bool {
         self.own.is_some()
     }
@@ -111,7 +112,7 @@ impl Layout {
         }
     }
 
-    /// The side of the picture whose panels the window is too narrow for.
+    /// The side of the picture whose panels do not fit into the window.
     pub(super) fn hidden_side(&self) -> Option<&'static str> {
         self.fit.hidden_side(&self.tree)
     }
@@ -132,8 +133,7 @@ impl Layout {
         self.is_light = is_light;
     }
 
-    /// Notes a change by the user, who then has an arrangement of her own. One that she has already stays as it is while she changes
-    /// a preset.
+    /// Marks the layout as customized. An existing own arrangement stays while the user changes a preset.
     fn edited(&mut self) {
         self.is_changed = true;
         self.is_own |= self.own.is_none();
@@ -237,7 +237,7 @@ impl Layout {
         self.free
     }
 
-    /// The content of the file: this arrangement, or the one before it if it is temporary. The theme is stored in both cases.
+    /// The content of the file: this arrangement, or the previous one if this is temporary. The theme is stored in both cases.
     fn stored(&self) -> store::Stored {
         let Self { is_light, is_own, preset, .. } = *self;
         if !self.is_temporary {
@@ -253,8 +253,7 @@ impl Layout {
         }
     }
 
-    /// Stores a changed arrangement, once its tiles have their sizes. A drag changes them in each frame, and only its end is worth
-    /// a file.
+    /// Stores a changed arrangement, once its tiles have their sizes. A drag changes them in each frame; only its end is stored.
     fn store(&mut self, ui: &Ui) {
         if !self.is_changed || ui.input(|input| input.pointer.any_down()) {
             self.is_settled = false;

@@ -56,7 +56,7 @@ impl Preset {
 /// Groups of tabs, one above the other, with their shares of the height.
 fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
     let rows = groups.iter().map(|(panels, share)| {
-        // An exercise wants a column of its own.
+        // An exercise needs a column of its own.
         let is_shown = |panel: &&Panel| **panel != Panel::Learn || panels.len() == 1;
         let shown = panels.iter().filter(is_shown).filter(|panel| panel.is_in_presets());
         let panes = shown.map(|panel| tiles.insert_pane(*panel)).collect();

@@ -6,7 +6,7 @@ use egui_tiles::{Container, LinearDir, Tile, TileId, Tree};
 use super::fit::path_to_picture;
 use crate::app::state::arrangement::Panel;
 
-/// Width of a column of panels that has none to take it from.
+/// Width of a column of panels that no other column determines.
 pub(super) const COLUMN: f32 = 318.0;
 
 /// Repairs the tree.
@@ -73,7 +73,7 @@ fn give_tabs(tree: &mut Tree<Panel>) {
     }
 }
 
-/// Gives a tile that was dropped beside others the mean of their sizes. Without a share it would be a point wide.
+/// Gives a tile that was dropped beside others their average size. Without a share it would be a point wide.
 fn give_shares(tree: &mut Tree<Panel>) {
     for tile in tree.tiles.tiles_mut() {
         let Tile::Container(Container::Linear(linear)) = tile else { continue };

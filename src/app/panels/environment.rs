@@ -35,7 +35,7 @@ pub(super) fn show(
 
 /// What the bake does, or how long it took.
 fn baked(ui: &mut Ui, is_lit: bool, progress: Option<&(f32, String)>, report: &BakeReport) {
-    // A row of the same height in every state, so that the rows below keep their place.
+    // A row of constant height, so that the rows below keep their place.
     ui.allocate_ui(egui::vec2(ui.available_width(), 16.0), |ui| {
         ui.set_min_height(16.0);
         if let Some((done, next)) = progress {

@@ -24,8 +24,8 @@ pub(super) struct ModesState {
     scrolled_to: String,
 }
 
-/// Shows the modes. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data are
-/// folded away. Returns whether a mode that the user adds has no place beside the others.
+/// Shows the modes. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data
+/// are folded away. Returns whether a mode that the user adds does not fit beside the others.
 pub(super) fn show(
     ui: &mut Ui,
     shaders: Option<&ShaderSet>,
@@ -53,7 +53,7 @@ pub(super) fn show(
     if found.is_empty() {
         words.no_match(ui, "mode");
     }
-    // A search shows modes without data too, and the selected mode is never folded away.
+    // A search also shows modes without data, and the selected mode is never folded away.
     let has_data = |mode: &Mode| mode.has_data(features) || !words.is_empty() || *current == mode.slug;
     let clicked = egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let (columns, size) = tile::columns(ui.available_width());
@@ -95,7 +95,7 @@ fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState) {
     });
 }
 
-/// The button that shows the selected mode alone again.
+/// The button that returns to the selected mode alone.
 fn side_by_side(ui: &mut Ui, grid: &mut Grid) {
     let text = format!("{}  {} modes side by side", icon::SQUARES_FOUR, grid.modes().len());
     let close = egui::Button::new(RichText::new(text).small()).right_text(icon::X);
@@ -143,7 +143,7 @@ impl<'m> List<'_, 'm> {
             self.scrolled_to.clone_from(&mode.slug);
             response.scroll_to_me(None);
         }
-        // Random paths take seconds on a software device.
+        // A path-traced frame takes seconds on a software device.
         if response.hovered() && !mode.accumulate && !mode.traces {
             self.gallery.hover(&mode.slug);
         }
@@ -192,7 +192,7 @@ fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize
     found
 }
 
-/// The text that a search looks into.
+/// The text that a search matches.
 pub(super) fn text_of(mode: &Mode) -> String {
     format!("{} {} {} {} {}", mode.name, mode.slug, mode.group, mode.words, mode.doc)
 }

@@ -20,8 +20,8 @@ use crate::shader::{Constant, Parameter, ShaderSet};
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;
 
-/// Shows the panel: all constants and parameters apart from those of passes, which stand with them. With `is_of_file`, the shaders are
-/// a single file without a model, and only what that file and those beside it declare is shown.
+/// Shows the panel: all constants and parameters except those of passes, which the passes panel shows. With `is_of_file`, the
+/// shaders are a single file without a model, and only what that file and those beside it declare is shown.
 pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_file: bool) {
     let is_wanted = |parameter: &&Parameter| {
         let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_
     if constants.is_empty() && parameters.is_empty() {
         words.no_match(ui, "parameter");
     }
-    // Without a group first, then group by group in the order in which the tree names them.
+    // First those without a group, then group by group in the tree's order.
     let mut groups = vec![""];
     let named = parameters.iter().map(|p| p.group.as_str()).chain(constants.iter().map(|c| c.group.as_str()));
     named.for_each(|group| {
@@ -217,7 +217,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
         (_, [number]) => ShaderValue::Float(*number),
         _ => ShaderValue::Vector(numbers),
     };
-    // The color picker works with f32, which rounds numbers that nobody has changed.
+    // The color picker works with f32, which rounds numbers that the user has not changed.
     let is_new = numbers != before && (!parameter.color || response.changed());
     (is_new.then(|| value(numbers)), response)
 }
@@ -225,7 +225,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
 /// A number for each component, side by side.
 fn edit_vector(ui: &mut Ui, parameter: &Parameter, numbers: &mut [f64]) -> Response {
     let mut scale = component(parameter);
-    // The unit stands in the hover text of the row, since the numbers are narrow.
+    // The unit is in the hover text of the row, since the numbers are narrow.
     scale.suffix.clear();
     ui.spacing_mut().item_spacing.x = 3.0;
     let count = numbers.len().max(1) as f32;

@@ -37,7 +37,7 @@ pub(super) fn show(
             show_parameters(ui, of_effect(shaders, pass), &pass.desc.label, settings, shown);
         }
     };
-    // A shader without a model covers what the others draw.
+    // A shader without a model covers what the other passes draw.
     let is_covered = words.is_empty() && added.iter().any(|pass| pass.covers());
     added.into_iter().for_each(|pass| show_effect(ui, pass, settings, &mut shown));
     let mut show_others = |ui: &mut Ui| {
@@ -68,7 +68,7 @@ pub(super) fn show(
     }
 }
 
-/// The entries of the panel: the passes and switches that have the words of the search, or whose parameters do.
+/// The entries of the panel: the passes and switches that match the search, or whose parameters do.
 #[derive(Debug, Default)]
 struct Found<'a> {
     /// Effects of the user.

@@ -14,7 +14,7 @@ pub(in crate::app) struct Readings {
     pub(in crate::app) value: Option<Readout>,
     /// Title over the picture.
     pub(in crate::app) title: Option<String>,
-    /// Contents of the legend; `None` before the first picture.
+    /// Contents of the legend; `None` before the first frame.
     pub(in crate::app) legend: Option<LegendOf>,
 }
 

@@ -15,13 +15,13 @@ use crate::shader::{Diagnostic, Severity};
 /// Height in points.
 pub(super) const HEIGHT: f32 = 24.0;
 
-/// A narrower bar does not tell of the stage, in points.
+/// Width of the bar below which it does not show the stage, in points.
 const ROOM_FOR_STAGE: f32 = 700.0;
 
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
-    /// The work that has delayed the picture for longer than the bar keeps silent about.
+    /// What has delayed the picture for longer than the status bar waits before it shows a reason.
     pub(super) waits: Option<Waits>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
     let bar = egui::Panel::bottom("status").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            // The right end first, so that a long name of a device takes no room from the reload.
+            // The right end first, so that a long device name takes no room from the reload.
             if let Some(ms) = status.frame_ms {
                 let text = RichText::new(format!("{ms:6.2} ms GPU")).monospace().small().color(QUIET);
                 ui.label(text).on_hover_text(format!(
@@ -77,7 +77,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
     }
 }
 
-/// The numbers of a stage with their change: `pbr.frag 4,469 words -212 · 96 registers -8`.
+/// The statistics of a stage with their changes: `pbr.frag 4,469 words -212 · 96 registers -8`.
 fn stage(ui: &mut Ui, row: &StageRow) {
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.label(RichText::new(&row.path).small().color(QUIET)).on_hover_text("The stage that draws the picture");

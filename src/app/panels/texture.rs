@@ -36,7 +36,7 @@ const CHANNELS: [(&str, &str); 6] = [
 pub(in crate::app) struct TextureState {
     /// Current request; `None` while the panel is not visible.
     pub(in crate::app) request: Option<TextureRequest>,
-    /// The picture that the screen has drawn, and the part of it that shows the texture.
+    /// The preview that the screen has drawn, and the part of it that shows the texture.
     pub(in crate::app) shown: Option<(egui::TextureId, Rect)>,
     source: Option<TextureSource>,
     /// The texture that was selected in the scene in the last frame.
@@ -75,7 +75,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
     let model = scene.model();
     let all = textures(model);
     let selected = if let Selected::Texture(source) = viewer.selected { Some(source) } else { None };
-    // A texture that the user chose in the list since then stays.
+    // A texture that the user has chosen in the list since then stays.
     if std::mem::replace(&mut state.selected, selected) != selected && selected.is_some() {
         (state.source, state.level, state.scale, state.middle) = (selected, None, None, [0.5; 2]);
     }

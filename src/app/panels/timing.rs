@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device
     memory(ui, state.memory.read(&viewer.gpu));
 }
 
-/// Describes the frame time cost of the last edit in a sentence.
+/// Describes the cost of the last edit in frame time, in a sentence.
 fn cost(ui: &mut Ui, viewer: &Viewer) {
     let Some(cost) = viewer.timing.cost() else {
         let text = "The cost of your next edit will appear here";
@@ -58,7 +58,7 @@ fn cost(ui: &mut Ui, viewer: &Viewer) {
     ));
 }
 
-/// The CPU's time of the last frames.
+/// The CPU time of the last frames.
 fn cpu(ui: &mut Ui, viewer: &Viewer) {
     graph::cpu(ui, &viewer.timing, UI_LIMIT_MS);
     let Some(last) = viewer.timing.frames().back() else { return };

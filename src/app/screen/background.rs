@@ -16,9 +16,9 @@ pub(super) struct Background {
     pub(super) frames: Frames,
     /// The commands of the next one, if there are any.
     pub(super) encoder: Option<Encoder>,
-    /// Whether the results of the last submission have not been taken.
+    /// Whether the results of the last submission have not been collected.
     pub(super) is_unread: bool,
-    /// Whether results were taken that no frame has shown.
+    /// Whether collected results have not been shown in a frame.
     pub(super) is_unseen: bool,
 }
 

@@ -6,10 +6,10 @@ use super::Screen;
 use crate::app::viewer::Viewer;
 use crate::gpu::GpuError;
 
-/// Time between two looks at whether the device has run a submission. No driver sends an event then.
+/// Polling interval for a submission's end, for which drivers send no event.
 const POLL: Duration = Duration::from_millis(2);
 
-/// How long a software device goes on between frames. Showing a thumbnail takes it longer than drawing one.
+/// How long a software device may continue between frames. Showing a thumbnail takes it longer than drawing one.
 const UNSEEN: Duration = Duration::from_millis(200);
 
 /// The next step of the window.
@@ -23,10 +23,7 @@ pub(in crate::app) enum Next {
 }
 
 impl Screen {
-    /// Draws more between two frames, once the device has run what was drawn last, or says that a frame is due.
-    ///
-    /// # Errors
-    /// A device error other than out of memory.
+    /// Draws more between two frames, once the device has run the last submission, or reports that a frame is due.
     pub(in crate::app) fn go_on(&mut self, viewer: &mut Viewer) -> Result<Next, GpuError> {
         let now = Instant::now();
         let left = |due: Option<Instant>| due.map(|due| due.saturating_duration_since(now));
@@ -44,17 +41,17 @@ impl Screen {
         Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
     }
 
-    /// When the results that no frame has shown are due.
+    /// When a frame is due that shows new results.
     fn shows_at(&self) -> Option<Instant> {
         self.background.is_unseen.then(|| self.last_frame + UNSEEN)
     }
 
-    /// The time until the device is asked again about what it draws between frames; `None` if it draws nothing.
+    /// The time until the next poll of the device; `None` if it draws nothing between frames.
     fn time_to_poll(&self) -> Option<Duration> {
         (!self.background.is_finished()).then_some(POLL)
     }
 
-    /// Takes the results of what was drawn between frames, if it is finished. Returns whether there are any.
+    /// Collects the results of the last submission, if it is finished. Returns whether there are any.
     fn take_background(&mut self, viewer: &mut Viewer) -> bool {
         self.take_thumbnail(viewer);
         self.inspector.take(&self.background, viewer);
@@ -66,7 +63,7 @@ impl Screen {
         is_new
     }
 
-    /// Takes the results for the frame that begins.
+    /// Collects the results for the frame that begins.
     pub(super) fn show_background(&mut self, viewer: &mut Viewer) {
         self.take_background(viewer);
         self.background.is_unseen = false;

@@ -10,8 +10,8 @@ use crate::render::{BoundFrame, Output, Redraw};
 use crate::threads::Side;
 
 impl Screen {
-    /// Copies the picture and the reference if both are the same as in the last frame, and not measured yet. Returns whether another
-    /// frame is needed.
+    /// Copies the picture and the reference if both are unchanged since the last frame and have not been measured. Returns
+    /// whether another frame is needed.
     pub(super) fn measure_error(&mut self, viewer: &mut Viewer, live: Option<&BoundFrame>) -> Result<bool, GpuError> {
         let wanted = viewer.compare.is_on() && !viewer.compare.is_held;
         let Some((reference, live)) = self.reference.as_ref().filter(|_| wanted).zip(live) else {
@@ -26,7 +26,7 @@ impl Screen {
         let is = |other: &Option<Pair>| other.as_ref().is_some_and(|other| other.is_same(&pair));
         let (rests, is_known) = (is(&self.error_map.last), is(&self.error_map.measured));
         if !is_known {
-            // The last measurement is that of other pictures.
+            // The last measurement belongs to other pictures.
             (viewer.compare.difference, viewer.compare.measuring) = (None, None);
             self.error_map.copied = None;
         }

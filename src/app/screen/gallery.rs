@@ -41,7 +41,7 @@ pub(super) struct Gallery {
     asked: HashSet<String>,
     /// How many were drawn since the gallery was last up to date.
     drawn: usize,
-    /// No thumbnails are drawn until something changes: memory is short.
+    /// Whether drawing is suspended until something changes, because memory is short.
     failed: bool,
 }
 
@@ -72,11 +72,8 @@ impl Gallery {
         self.failed = true;
     }
 
-    /// Draws thumbnails that are in sight and out of date, if the picture rests. Returns the time until the next frame is needed; `None`
-    /// if all are done. A lack of memory is no error.
-    ///
-    /// # Errors
-    /// The device is lost.
+    /// Draws visible thumbnails that are outdated, if the picture is idle. Returns the time until the next frame is needed;
+    /// `None` if all are done. A lack of memory is not an error.
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
@@ -101,7 +98,7 @@ impl Gallery {
             return Ok(None);
         }
         let is_stale = |mode: &&Mode| state.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
-        // All modes are split, not those in sight alone, so that scrolling needs no other pipelines.
+        // All modes are split into sets, not only the visible ones, so that scrolling needs no other pipelines.
         let features = viewer.session.features();
         let is_seen = |mode: &&Mode| mode.has_data(features) || state.visible.contains(&mode.slug);
         let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));

@@ -12,7 +12,7 @@ use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{Output, Redraw, View};
 
 impl Screen {
-    /// Divides the picture's part of the window among the modes of the grid. The selected mode is drawn as ever, in its own place.
+    /// Splits the viewport into grid cells. The selected mode takes its cell through the normal path.
     pub(super) fn arrange_grid(&mut self, viewer: &Viewer) {
         let modes = viewer.grid.modes();
         let selected = &viewer.session.settings.mode;
@@ -35,7 +35,7 @@ impl Screen {
         self.wanted = others.into_iter().map(|(mode, rect)| (mode.clone(), *rect)).collect();
     }
 
-    /// Brings the cells up to date. Without memory, the grid ends.
+    /// Updates the cells. Without memory, the grid ends.
     pub(super) fn prepare_grid(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
         let wanted = std::mem::take(&mut self.wanted);
         let prepared = wanted.into_iter().try_for_each(|(mode, rect)| self.prepare_cell(viewer, mode, rect));

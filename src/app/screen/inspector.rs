@@ -45,7 +45,7 @@ pub(super) struct PixelReader {
     texels: Option<(u64, TexelReadback)>,
     /// The pixel under the mouse when it was last over the picture.
     under_mouse: Option<[u32; 2]>,
-    /// Nothing is drawn until something changes: memory is short, or a loop did not end.
+    /// Whether drawing is suspended until something changes: memory is short, or a loop did not end.
     stopped: bool,
 }
 
@@ -79,11 +79,8 @@ impl PixelReader {
         }
     }
 
-    /// Draws modes that are out of date, if the picture rests. Returns the time until the next frame is needed; `None` if all are drawn and
-    /// read. A lack of memory is no error.
-    ///
-    /// # Errors
-    /// The device is lost.
+    /// Draws outdated modes, if the picture is idle. Returns the time until the next frame is needed; `None` if all are drawn and
+    /// read. A lack of memory is not an error.
     pub(super) fn draw(
         &mut self,
         background: &mut Background,

@@ -4,7 +4,7 @@ use super::{FRAMES_IN_FLIGHT, Screen};
 use crate::app::viewer::Viewer;
 
 impl Screen {
-    /// Tells the viewer whether the loops of the finished frames have ended, the older frame first.
+    /// Reports to the viewer whether the loops of the finished frames have ended, the older frame first.
     pub(super) fn check_loops(&mut self, viewer: &mut Viewer) {
         // `begin` has waited for the current slot, whose frame is the oldest.
         for newer in 0..FRAMES_IN_FLIGHT {
@@ -15,7 +15,7 @@ impl Screen {
             let Some(state) = self.unchecked[slot].take() else { continue };
             let has_others = std::mem::take(&mut self.has_others[slot]);
             if self.frames.endless_loop(slot).is_some() && has_others {
-                // It may be a loop of another picture. The picture is drawn again, alone.
+                // The loop may belong to another picture, so the picture is drawn again, alone.
                 self.end_others(viewer);
                 continue;
             }
@@ -44,8 +44,8 @@ impl Screen {
         self.redraws = true;
     }
 
-    /// Whether to draw one more frame, in which [`Self::check_loops`] checks the frames before. If nothing else
-    /// happens, at most as many frames follow as there are slots, so an idle window comes to rest.
+    /// Whether to draw one more frame, in which [`Self::check_loops`] checks the previous ones. Without other events, at most as
+    /// many frames follow as there are slots, so the window becomes idle.
     pub(super) fn awaits_loops(&mut self) -> bool {
         let awaits = (0..FRAMES_IN_FLIGHT).any(|slot| self.unchecked[slot].is_some() && self.frames.has_loops(slot));
         self.checks = match (awaits, self.checks) {

@@ -39,7 +39,7 @@ pub(super) struct ErrorMap {
 }
 
 impl ErrorMap {
-    /// Whether pictures are still on the way from the device.
+    /// Whether copies are still in flight.
     pub(super) fn awaits_copies(&self) -> bool {
         self.copied.is_some()
     }

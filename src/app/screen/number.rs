@@ -29,7 +29,7 @@ pub(super) struct Pointed {
 }
 
 impl Pointed {
-    /// A pixel of a picture. `None` if the pixel drawn alone would not have the value that the picture shows: random paths take many
+    /// A pixel of a frame. `None` if the pixel drawn alone would have another value than in the frame: path tracing takes many
     /// frames, lines and layers are blended, and passes may follow the model.
     pub(super) fn new(state: &FrameState, at: (u32, u32)) -> Option<Self> {
         let mode = state.mode()?;
@@ -44,12 +44,12 @@ impl Pointed {
     }
 }
 
-/// How far the number of the pixel is.
+/// The state of reading the pixel's number.
 #[derive(Default)]
 enum Progress {
     #[default]
     Missing,
-    /// On the way from the device, at this place of its set.
+    /// In flight from the device, at this place of its set.
     Drawn(usize),
     Read(PixelValue),
     /// The model has no data for the mode, memory is short, or a loop did not end.
@@ -94,11 +94,8 @@ impl NumberReader {
         }
     }
 
-    /// Draws the pixel under the mouse, `pointed`, if its number is out of date and the picture rests. Returns the time until the next
-    /// frame is needed.
-    ///
-    /// # Errors
-    /// The device is lost.
+    /// Draws the pixel under the mouse, `pointed`, if its number is outdated and the picture is idle. Returns the time until the
+    /// next frame is needed.
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
@@ -130,7 +127,7 @@ impl NumberReader {
         let place = |set: &Vec<_>| set.iter().position(|mode: &&Mode| mode.slug == pointed.mode);
         let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
         let sets = if pointed.is_number {
-            // The set that the inspector draws, so that both need the same pipelines.
+            // The set that the inspector draws, so that both use the same pipelines.
             mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu))
         } else {
             // A pipeline of one mode is built in a fraction of the time.
@@ -142,7 +139,7 @@ impl NumberReader {
         };
         let drawn = shown.bind(viewer, &shaders, vec![set], &mut self.asked).and_then(|bound| {
             let BoundSets { ready, missing, is_new } = bound;
-            // The open inspector asks for it, too.
+            // The open inspector requests it, too.
             let is_asked = viewer.inspection.is_visible && viewer.inspection.reading.is_some();
             if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new && !is_asked) {
                 viewer.threads.worker.build_inspected(pipelines, missing);

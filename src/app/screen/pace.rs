@@ -9,8 +9,8 @@ use crate::gpu::GpuError;
 use crate::render::{BoundFrame, View};
 
 impl Screen {
-    /// Whether another frame must follow at once: a picture improves or moves, a result is on its way from the device, a command waits
-    /// for its answer, or the clock runs.
+    /// Whether another frame must follow at once: the picture improves or is animated, a result is in flight, a command waits for
+    /// its answer, or the clock runs.
     pub(super) fn has_more(&self, viewer: &Viewer, frame: Option<&BoundFrame>) -> bool {
         let moving = self.reference.as_ref().filter(|reference| !reference.is_still());
         let reference = moving.map(|reference| (&reference.view, &reference.frame));
@@ -46,7 +46,7 @@ impl Screen {
         }
         // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
-        // A frame with an older picture does not tell what the newest one takes.
+        // A frame with an older picture does not show the time of the newest one.
         let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
         Ok(!viewer.times_next_frame())

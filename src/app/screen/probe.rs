@@ -45,18 +45,18 @@ impl Screen {
         }
     }
 
-    /// Asks for the value under the mouse, from the picture or from the reference, whichever is there.
+    /// Requests the value under the mouse, from the picture or from the reference, whichever is shown there.
     pub(super) fn place_probe(&mut self) {
         let at = self.mouse.over.then(|| self.mouse_pixel()).flatten();
         let cell = if self.mouse.over { self.mouse_cell() } else { None };
         for (index, other) in self.cells.iter_mut().enumerate() {
-            // The value of a cell without a picture would never come.
+            // A cell without a frame would never deliver a value.
             other.view.probe = cell.filter(|(of, _)| *of == index && other.shown.is_some()).map(|(_, at)| at);
         }
         let of_reference = at.is_some_and(|at| self.is_in_reference(at));
         self.view.probe = at.filter(|_| !of_reference);
         if let Some(reference) = &mut self.reference {
-            // Stored colors have no value behind them.
+            // LDR colors of a file have no raw value.
             reference.view.probe = at.filter(|_| of_reference && !reference.is_stored());
         }
     }

@@ -53,7 +53,7 @@ impl Screen {
         at: (u32, u32),
     ) -> Result<(), GpuError> {
         let Some(reference) = &mut self.reference else { return Ok(()) };
-        // Both pictures have one range, or an edit that doubles a value would change nothing.
+        // Both pictures share one range, or an edit that doubles a value would not be visible.
         let live = self.last.as_ref().map(|live| &live.state);
         let is_same_mode = live.is_some_and(|live| live.pipelines.mode == reference.frame.state.pipelines.mode);
         reference.view.follow_limits(is_same_mode.then(|| self.view.limits()));

@@ -15,7 +15,7 @@ pub(super) struct ReferenceView {
     pub(super) image: Arc<Image>,
     /// The frame that was drawn last.
     pub(super) frame: BoundFrame,
-    /// The picture from a file that takes its place, with its number.
+    /// The picture from a file that replaces it, with its number.
     pub(super) still: Option<(u64, Arc<Still>)>,
     /// The part of the width that shows it, from the left, 0..1.
     pub(super) part: f32,
@@ -56,7 +56,7 @@ impl ReferenceView {
 
     /// Draws the reference to its image.
     fn draw(&mut self, encoder: &mut Encoder, slot: usize) -> Result<(), GpuError> {
-        // A file's light takes the place of the picture that is drawn, so no mean of it is needed.
+        // A file's light replaces the rendered frame, so its accumulation is not needed.
         let redraw = if self.is_still() { Redraw::ToneMap } else { Redraw::IfChanged };
         let Self { view, image, frame, .. } = self;
         let output = Output { image, before: Use::Undefined, at: (0, 0) };

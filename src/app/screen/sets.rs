@@ -12,15 +12,15 @@ use crate::render::{BoundFrame, GpuEnvironment};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet};
 
-/// The time without a change after which thumbnails are drawn.
+/// How long nothing must change before thumbnails are drawn.
 const REST: Duration = Duration::from_millis(150);
-/// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
+/// The same delay on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
 const REST_ON_CPU: Duration = Duration::from_millis(500);
 
 /// Everything that the sets show. The mode in the settings makes no difference.
 pub(super) struct Shown {
     settings: Arc<Settings>,
-    /// Address of the shaders: generations may count from 1 again.
+    /// Address of the shaders: generation numbers may restart at 1.
     shaders: usize,
     scene: Scene,
     revisions: Revisions,
@@ -36,7 +36,7 @@ pub(super) struct Shown {
 pub(super) struct BoundSets<'a> {
     pub(super) ready: Vec<(Vec<&'a Mode>, BoundFrame)>,
     pub(super) missing: VecDeque<Arc<PipelineRequest>>,
-    /// Whether the worker has not been asked for all of the missing pipelines.
+    /// Whether the worker still has to be asked for some of the missing pipelines.
     pub(super) is_new: bool,
 }
 
@@ -87,7 +87,7 @@ impl Shown {
     }
 }
 
-/// The time until the picture has rested long enough since its last change.
+/// The time until the picture has been idle for long enough.
 pub(super) fn time_to_rest(viewer: &Viewer, since: Option<Instant>) -> Option<Duration> {
     let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
     since.and_then(|since| rest.checked_sub(since.elapsed())).filter(|left| !left.is_zero())

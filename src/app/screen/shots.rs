@@ -58,7 +58,7 @@ impl Screen {
         Ok(readback.map(|readback| readback.finish()))
     }
 
-    /// Takes the pictures that are asked for, as they are on screen. A lack of memory costs only them.
+    /// Takes the requested captures of what is on screen. A lack of memory fails only them.
     pub(super) fn take_shots(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
         if self.view.lacks_limits(frame) {
             return Ok(());
@@ -78,7 +78,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Copies the finished image of the window, if that is asked for, and hands it over to be presented.
+    /// Copies the finished image of the window, if requested, and passes it on to be presented.
     pub(super) fn record_window_shot(
         &mut self,
         encoder: &mut Encoder,

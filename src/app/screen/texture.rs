@@ -11,8 +11,8 @@ use crate::render::BoundFrame;
 const SIDES: (u32, u32) = (256, 2048);
 
 impl Screen {
-    /// Makes room for the picture that the panel asks for in this frame, before egui draws it. SYNC: waits for the frames in flight
-    /// when the panel grows beyond the last image.
+    /// Makes room for the preview that the panel requests in this frame, before egui draws it. SYNC: waits for the frames in
+    /// flight when the panel grows beyond the last image.
     pub(super) fn prepare_texture(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
         let Some(request) = &self.panels.docked.texture.request else { return Ok(()) };
         let side = request.size.0.max(request.size.1).next_power_of_two().clamp(SIDES.0, SIDES.1);
@@ -41,7 +41,7 @@ impl Screen {
         let Some(request) = self.panels.docked.texture.request.clone() else { return Ok(()) };
         let Some(tools) = viewer.tools() else { return Ok(()) };
         let Some(image) = self.texture.image.as_ref() else {
-            // The next frame begins with one.
+            // The next frame starts with one.
             self.redraws = self.shortage.is_none();
             return Ok(());
         };

@@ -8,7 +8,7 @@ use crate::gpu::{GpuError, Use};
 use crate::render::{Output, Redraw, View};
 
 impl Screen {
-    /// Draws the next missing thumbnail, unless an edit is on its way.
+    /// Draws the next missing thumbnail, unless an edit is under way.
     pub(super) fn record_thumbnail(&mut self, viewer: &Viewer) -> Result<(), GpuError> {
         self.lacks_thumbnails &= viewer.workspace.sight.timeline;
         if self.thumbnail.is_some() || self.lacks_thumbnails || viewer.awaits_edit() {
@@ -32,7 +32,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Gives a thumbnail that is finished to its version.
+    /// Stores a finished thumbnail in its version.
     pub(super) fn take_thumbnail(&mut self, viewer: &mut Viewer) {
         let is_finished = |_: &mut PendingThumbnail| self.background.is_finished();
         let Some(PendingThumbnail { number, readback }) = self.thumbnail.take_if(is_finished) else { return };

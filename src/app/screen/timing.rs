@@ -7,7 +7,7 @@ use crate::frame::FrameState;
 use crate::render::{BoundFrame, Redraw};
 
 impl Screen {
-    /// Takes the times of the newest frame that the device has finished.
+    /// Collects the times of the newest frame that the device has finished.
     pub(super) fn take_times(&self, viewer: &mut Viewer) {
         let Some(ms) = self.frames.last_device_ms() else { return };
         let (passes, counts) = (self.frames.pass_times(), self.frames.draw_counts());
@@ -16,7 +16,8 @@ impl Screen {
         viewer.timing.finished(&DeviceTimes { serial, ms, passes, counts, compiles_in_frame });
     }
 
-    /// How much of the picture to draw. While the panel Timing is open, new shaders get a few frames more than they need, to be measured.
+    /// How much of the frame to draw. While the panel Timing is open, new shaders get a few more frames than they need, to be
+    /// measured.
     pub(super) fn redraw(viewer: &mut Viewer, frame: Option<&BoundFrame>) -> Redraw {
         let Some(state) = frame.map(|frame| &frame.state) else { return Redraw::IfChanged };
         let is_measurable = viewer.workspace.sight.timing && viewer.is_settled() && !state.pipelines.accumulates;
@@ -26,7 +27,7 @@ impl Screen {
         }
     }
 
-    /// Notes the frame that has just been submitted.
+    /// Records the frame that has just been submitted.
     pub(super) fn note_frame(&self, viewer: &mut Viewer, frame: Option<&BoundFrame>) {
         if let Some(frame) = frame {
             viewer.timing.submitted(self.frames.submitted(), shown(&frame.state), self.cpu);
@@ -34,7 +35,7 @@ impl Screen {
     }
 }
 
-/// Returns the inputs of a picture that decide whether its times can be compared.
+/// Returns the inputs that decide whether times of frames can be compared.
 fn shown(state: &FrameState) -> Shown {
     Shown {
         generation: state.shaders.generation,

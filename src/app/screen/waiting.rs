@@ -7,8 +7,8 @@ use winit::event::WindowEvent;
 use super::Screen;
 
 impl Screen {
-    /// Keeps a key for after the next frame if egui has yet to take one that moves the focus, and what happens behind such a
-    /// key. Returns an event that need not wait.
+    /// Defers a key until after the next frame if egui has yet to process one that moves the focus, and all events that follow
+    /// such a key. Returns an event that need not wait.
     pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {
         let waits = match &event {
             WindowEvent::KeyboardInput { .. } | WindowEvent::Ime(_) | WindowEvent::ModifiersChanged(_) => {
@@ -25,19 +25,19 @@ impl Screen {
         if !waits {
             return Some(event);
         }
-        // A key that is held down repeats faster than slow frames come, and must not go on behind its release.
+        // A held key repeats faster than slow frames come, and must not continue after its release.
         if !matches!(&event, WindowEvent::KeyboardInput { event, .. } if event.repeat) {
             self.waiting.push_back(event);
         }
         None
     }
 
-    /// The next event that need wait no longer.
+    /// The next deferred event that can be handled.
     pub(in crate::app) fn next_waiting(&mut self) -> Option<WindowEvent> {
         if self.moves_focus() { None } else { self.waiting.pop_front() }
     }
 
-    /// Whether the events that egui takes with the next frame move the focus of the keyboard.
+    /// Whether the events that egui processes with the next frame move the keyboard focus.
     fn moves_focus(&self) -> bool {
         let moves = |event: &Event| match event {
             Event::PointerButton { pressed, .. } => *pressed,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::app::control::Shot;
 use crate::gpu::Buffer;
 
-/// A picture of the window on its way from the device.
+/// A capture of the window in flight.
 pub(super) struct WindowShot {
     /// The frame that it was copied with.
     pub(super) slot: usize,

@@ -34,12 +34,12 @@ impl Panel {
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
     ];
 
-    /// Whether a preset opens the panel. The others open when they are asked for.
+    /// Whether a preset opens the panel. The others open on request.
     pub(in crate::app) fn is_in_presets(self) -> bool {
         self != Self::Texture
     }
 
-    /// Words for what the panel does, by which it is found.
+    /// Keywords for the search.
     pub(in crate::app) fn words(self) -> &'static str {
         match self {
             Self::Viewport => "picture",
@@ -99,7 +99,7 @@ pub(in crate::app) enum Preset {
     Compare,
     /// An exercise beside the picture.
     Learn,
-    /// For a shader without a model, which opens it: clock, passes and shaders.
+    /// For a single shader without a model, which opens this preset: clock, passes and shaders.
     Toy,
 }
 

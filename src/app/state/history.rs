@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use crate::settings::Settings;
 
-/// Most steps that are kept.
+/// Most undo steps that are kept.
 const STEPS: usize = 100;
 
-/// The settings before and after each change, apart from the camera, the mode and what orbits by itself.
+/// The settings before and after each change, except the camera, the mode and the orbiting lights.
 #[derive(Default)]
 pub(in crate::app) struct History {
     past: Vec<Arc<Settings>>,
@@ -17,7 +17,8 @@ pub(in crate::app) struct History {
 }
 
 impl History {
-    /// Records the settings of a frame as a step if they have changed. `is_held`: a control is being dragged, so the step goes on.
+    /// Records the settings of a frame as an undo step if they have changed. `is_held`: a control is being dragged, so the
+    /// current step is extended.
     pub(in crate::app) fn record(&mut self, now: &Arc<Settings>, is_held: bool) {
         let Some(last) = &self.last else {
             self.last = Some(now.clone());
@@ -31,13 +32,13 @@ impl History {
         self.future.clear();
     }
 
-    /// Takes the last step back. Returns whether there was one.
+    /// Undoes the last step. Returns whether there was one.
     pub(in crate::app) fn undo(&mut self, now: &mut Settings) -> bool {
         self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.past, &mut self.future, &mut self.last, now)
     }
 
-    /// Takes the last undo back. Returns whether there was one.
+    /// Redoes the last undone step. Returns whether there was one.
     pub(in crate::app) fn redo(&mut self, now: &mut Settings) -> bool {
         self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.future, &mut self.past, &mut self.last, now)
@@ -91,7 +92,7 @@ mod tests {
         assert!(!history.undo(&mut now) && now.view.ev == 0.0, "nothing is left");
         assert!(history.redo(&mut now) && history.redo(&mut now) && now.view.ev == 2.0);
         assert!(!history.redo(&mut now));
-        // A change after an undo is a new future.
+        // A change after an undo discards the undone steps.
         assert!(history.undo(&mut now));
         now.view.ev = 5.0;
         record(&mut history, &now, false);
@@ -126,7 +127,7 @@ mod tests {
         assert!(history.undo(&mut now));
         assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "d"));
         assert_eq!(now.lights.orbit[0].azimuth, azimuth);
-        // The step before is that the lights began to orbit.
+        // The previous step is that the lights began to orbit.
         assert!(history.undo(&mut now) && now.lights.spin == 0.0);
         assert!(!history.undo(&mut now));
     }

@@ -20,7 +20,7 @@ const MOST: usize = 16;
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Stored {
-    /// Whether a window goes on with the last session by itself.
+    /// Whether a window restores the last session by itself.
     always: bool,
     /// The newest first. One that another version has written may not be readable.
     sessions: Vec<Value>,
@@ -59,7 +59,7 @@ impl LastSession {
 /// Earlier sessions.
 #[derive(Default)]
 pub(in crate::app) struct LastSessions {
-    /// Whether a window goes on with the last session by itself.
+    /// Whether a window restores the last session by itself.
     always: bool,
     /// The last session in the working directory.
     pub(in crate::app) here: Option<LastSession>,
@@ -77,27 +77,27 @@ impl LastSessions {
         self.always
     }
 
-    /// Stores whether a window goes on with the last session by itself.
+    /// Stores whether windows restore the last session by themselves.
     pub(in crate::app) fn set_always(&mut self, always: bool) {
         self.always = always;
         state::change(FILE, |stored: &mut Stored| stored.always = always);
     }
 }
 
-/// The work of the last session of this directory, if the user wants windows to go on with it by themselves.
+/// The state of the last session of this directory, if the user wants windows to restore it by themselves.
 pub fn session_to_restore() -> Option<SessionState> {
     let sessions = LastSessions::restored();
     sessions.here.filter(|_| sessions.always).map(|session| session.work)
 }
 
-/// Remembers the work of a session that ends.
+/// Stores the state of a session that ends.
 pub(in crate::app) fn remember(work: &SessionState) {
     let Ok(directory) = std::env::current_dir() else { return };
     let session = LastSession { at: Local::now().timestamp(), work: absolute(work.clone()), directory };
     state::change(FILE, |stored: &mut Stored| insert(stored, session));
 }
 
-/// The work with absolute paths of files. Names of built-in models and environments stay.
+/// The state with absolute paths of files. Names of built-in models and environments stay.
 fn absolute(mut work: SessionState) -> SessionState {
     let of = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     work.model = work.model.map(|model| if model.exists() { of(&model) } else { model });
@@ -113,7 +113,7 @@ fn absolute(mut work: SessionState) -> SessionState {
 fn insert(stored: &mut Stored, session: LastSession) {
     let of_directory = |value: &Value| value["directory"].as_str().map(PathBuf::from);
     stored.sessions.retain(|old| of_directory(old).is_some_and(|directory| directory != session.directory));
-    // A path that is no text is not stored.
+    // Paths that are not UTF-8 are skipped.
     stored.sessions.splice(0..0, serde_json::to_value(session));
     stored.sessions.truncate(MOST);
 }
@@ -127,7 +127,7 @@ fn load() -> Stored {
     state::load(FILE).map(|text| parse(&text)).unwrap_or_default()
 }
 
-/// A text that cannot be read counts as none.
+/// A file that cannot be read counts as empty.
 fn parse(text: &str) -> Stored {
     serde_json::from_str(text).unwrap_or_default()
 }

@@ -16,7 +16,7 @@ pub(in crate::app) struct ModelStatus {
     pub(in crate::app) load_ms: f64,
     /// Whether the warnings of the model are shown over the picture.
     pub(in crate::app) shows_warnings: bool,
-    /// Whether the camera stays where it is when the model that loads is another.
+    /// Whether the camera keeps its position when another model finishes loading.
     pub(in crate::app) keeps_camera: bool,
 }
 

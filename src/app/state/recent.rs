@@ -28,7 +28,7 @@ pub(in crate::app) struct Recent {
 }
 
 impl Recent {
-    /// The files of the last run that are still there.
+    /// The files of the last run that still exist.
     pub(in crate::app) fn restored() -> Self {
         state::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
     }
@@ -49,7 +49,7 @@ impl Recent {
         }
     }
 
-    /// Puts a file that has been opened first, and stores the list.
+    /// Moves an opened file to the front, and stores the list.
     pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
         if self.insert(kind, path) {
             state::change(FILE, |stored: &mut Self| _ = stored.insert(kind, path));
@@ -80,7 +80,7 @@ impl Recent {
     }
 }
 
-/// The stored files that exist. A text that cannot be read counts as none.
+/// The stored files that exist. A text that cannot be read counts as an empty list.
 fn parse(text: &str) -> Option<Recent> {
     let mut recent: Recent = serde_json::from_str(text).ok()?;
     for kind in [Kind::Model, Kind::Environment, Kind::Tree] {

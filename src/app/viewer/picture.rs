@@ -17,12 +17,9 @@ use crate::shader::expression;
 use crate::threads::worker::Snapshot;
 
 impl Viewer {
-    /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture
-    /// with the current camera. Requests the missing resources from the threads. `None` before the first shaders.
-    /// `prepare` allocates the targets; a picture for which that fails does not count as shown.
-    ///
-    /// # Errors
-    /// Out of memory.
+    /// The frame to draw: the one that the settings describe if it is complete, otherwise the last good frame with the current
+    /// camera. Requests the missing resources from the threads. `None` before the first shaders. `prepare` allocates the targets;
+    /// a frame for which that fails does not count as shown.
     pub(in crate::app) fn next_frame(
         &mut self,
         size: (u32, u32),
@@ -32,7 +29,7 @@ impl Viewer {
         let Some(preview) = preview else {
             return self.frame_of_settings(size, prepare);
         };
-        // A preview is no setting: it is not recorded, and ends when the mouse leaves the mode.
+        // Hover previews are transient: not recorded, and dropped when the pointer leaves.
         let selected = std::mem::replace(&mut self.session.settings.mode, preview);
         let frame = self.frame_of_settings(size, prepare);
         self.session.settings.mode = selected;
@@ -52,7 +49,7 @@ impl Viewer {
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         self.follow_settings(&state);
         (self.clock, self.is_complete, self.shows_settings) = (clock, false, false);
-        // The first picture of a model does not wait for its environment.
+        // The first frame of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene().is_none());
         let (frame, missing) = self.resources.bind(&state, is_first)?;
         let lacks_nothing = self.request_missing(missing, &state);
@@ -76,10 +73,8 @@ impl Viewer {
         Ok(interim)
     }
 
-    /// The picture of another mode, drawn beside the selected one. Until what it needs is there, it is `last` with the camera of now.
-    ///
-    /// # Errors
-    /// Out of memory.
+    /// The frame of another mode, drawn beside the selected one. Until its resources are there, it is `last` with the current
+    /// camera.
     pub(in crate::app) fn frame_of_mode(
         &mut self,
         mode: &str,
@@ -95,7 +90,7 @@ impl Viewer {
         if let Some(frame) = frame {
             return Ok(Some(LastComplete { settings, frame }));
         }
-        // The picture comes first.
+        // The main picture comes first.
         if self.is_complete
             && !state.pipelines.needs_pending(&state.shaders)
             && missing.pipelines
@@ -109,7 +104,7 @@ impl Viewer {
         }))
     }
 
-    /// Adds the shaders on screen to the versions if they are new, and keeps the last picture of those before.
+    /// Adds the shaders on screen to the versions if they are new, and keeps the last frame of the previous ones.
     fn keep_version(&mut self, last: Option<LastComplete>) {
         let generation = self.shown_generation();
         let has_model = self.shown.as_ref().is_some_and(|shown| shown.scene().is_some());
@@ -130,8 +125,8 @@ impl Viewer {
         }
     }
 
-    /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow
-    /// the current settings, since they need no new resources. All else is unchanged.
+    /// The last good frame at this size and time. While the model is the same, camera and orbiting lights follow the current
+    /// settings, since they need no new resources. Everything else is unchanged.
     pub(super) fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
         let same_model = match (shown.scene(), self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.loaded(), model),
@@ -149,7 +144,7 @@ impl Viewer {
         let newest = self.shown_generation();
         // The thumbnail of the newest version waits until its lighting is complete.
         let shown = self.shown.as_ref().filter(|shown| self.is_settled() && shown.scene().is_some());
-        // A watched expression is no look of the version.
+        // Do not use a watched expression as the version's thumbnail.
         let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
         let lacks = self.versions.without_thumbnail();
         if !self.workspace.sight.timeline {
@@ -171,7 +166,7 @@ impl Viewer {
         self.watch_expression();
     }
 
-    /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
+    /// Requests the resources that a state lacks from the threads. Returns whether it is complete.
     fn request_missing(&mut self, missing: Missing, state: &FrameState) -> bool {
         let Some(set) = self.resources.pipelines() else { return false };
         let is_empty = missing.is_empty();
@@ -188,7 +183,7 @@ impl Viewer {
         is_empty
     }
 
-    /// The work that the picture waits for, and for how long it has waited.
+    /// What the picture waits for, and for how long.
     pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
         self.waits.map(|(waits, since)| (waits, since.elapsed()))
     }
@@ -211,7 +206,7 @@ impl Viewer {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
     }
 
-    /// The title over the picture, see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
+    /// The title over the picture, see [`title`]. `frames` is the number of accumulated frames.
     pub(in crate::app) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
         let request = &shown.pipelines;

@@ -10,8 +10,8 @@ use crate::frame::FrameState;
 use crate::recovery::Geometry;
 
 impl Viewer {
-    /// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns
-    /// the attempt's number, unless the frame shows the last complete picture.
+    /// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns the
+    /// attempt's number, unless the frame is the fallback.
     pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
         let work = self.session_state();
         let geometry =

@@ -10,7 +10,7 @@ impl Viewer {
         let Some(state) = self.shown.as_ref().map(|shown| shown.frame.state.clone()) else { return };
         let is_settled = self.is_settled();
         let Some(set) = self.resources.pipelines() else { return };
-        // Until the newest shaders are on screen, the table tells of those that are.
+        // Until the newest shaders are on screen, the table describes the current ones.
         if set.shaders.generation != state.shaders.generation {
             return;
         }
@@ -38,13 +38,13 @@ impl Viewer {
         self.errors().next().is_some()
     }
 
-    /// The errors of the shaders. A watched expression that does not compile is none.
+    /// The errors of the shaders. A watched expression that does not compile does not count.
     pub(in crate::app) fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
         let is_error = |found: &&Diagnostic| found.severity == Severity::Error && !is_about_expression(found);
         self.session.diagnostics.iter().filter(is_error)
     }
 
-    /// Takes note that what is known of the stages has changed.
+    /// Marks the statistics of the stages as changed.
     pub(super) fn stages_changed(&mut self) {
         self.stages.invalidate();
     }

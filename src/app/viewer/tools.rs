@@ -6,7 +6,7 @@ use super::Viewer;
 use crate::render::tools::Tools;
 
 impl Viewer {
-    /// The pipelines. The first call has a thread make them; until then there are none.
+    /// The pipelines. The first call starts building them on a thread; until then there are none.
     pub(in crate::app) fn tools(&mut self) -> Option<Arc<Tools>> {
         if !std::mem::replace(&mut self.tools.is_asked, true) {
             let (gpu, layouts, compiler) = (self.gpu.clone(), self.resources.layouts().clone(), self.compiler.clone());
@@ -15,7 +15,7 @@ impl Viewer {
         self.tools.made.clone()
     }
 
-    /// Takes the pipelines, or says why there are none.
+    /// Accepts the pipelines, or reports why there are none.
     pub(super) fn on_tools(&mut self, tools: Result<Arc<Tools>, String>) {
         match tools {
             Ok(tools) => self.tools.made = Some(tools),

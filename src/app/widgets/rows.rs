@@ -27,7 +27,7 @@ const INDENT: f32 = 10.0;
 const CONTROL: f32 = 150.0;
 /// Width of the number at the right of a slider, with its unit.
 const VALUE: f32 = 72.0;
-/// Seconds for which a row says why a text was refused.
+/// Seconds for which a row shows why a text was rejected.
 const REFUSAL_S: f64 = 4.0;
 /// A slider shorter than this is left out: the number is dragged instead.
 const SHORTEST: f32 = 36.0;
@@ -60,7 +60,7 @@ impl Row<'_> {
     ) -> bool {
         ui.horizontal(|ui| {
             let title = self.title(ui);
-            // So that the control can be read aloud.
+            // So that screen readers can read the control's name.
             let response = control(ui).labelled_by(title.id);
             response.on_hover_ui(|ui| self.about(ui));
             let mut resets = self.is_changed && title.double_clicked();
@@ -125,13 +125,13 @@ fn name_width(row: f32, gap: f32) -> f32 {
     (row - CONTROL - gap).min(SHARE * row).max(NAME)
 }
 
-/// An option of the command line. The font of the other texts shows two hyphens as one dash.
+/// An option of the command line. The font of other texts renders two hyphens as one dash.
 pub(in crate::app) fn option_text(option: &str) -> RichText {
     small_mono(option)
 }
 
-/// A text in one line that ends with an ellipsis where there is no room, for a widget that has a hover text: egui's own hover text
-/// would stand beside it.
+/// A text in one line that is truncated with an ellipsis, for a widget that has a hover text: egui's own hover text would appear
+/// beside it.
 pub(in crate::app) fn elided(text: impl Into<egui::WidgetText>) -> Label {
     Label::new(text).truncate().show_tooltip_when_elided(false)
 }
@@ -301,7 +301,7 @@ pub(in crate::app) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: 
     response
 }
 
-/// Says for a while, beside the number, why a text was refused.
+/// Shows beside the number, for a while, why a text was rejected.
 fn refusal(response: &Response, refused: Option<String>) {
     let (egui, id) = (&response.ctx, response.id.with("refused"));
     let now = egui.input(|input| input.time);
@@ -338,7 +338,7 @@ pub(in crate::app) fn check(ui: &mut Ui, on: &mut bool) -> Response {
 
 /// A color picker for linear RGB.
 pub(in crate::app) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
-    // The picker rounds the color that it is given, also while nobody uses it.
+    // The picker rounds its color even while it is not used.
     let mut edited = *linear;
     let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
     if response.changed() {

@@ -55,8 +55,8 @@ const fn opaque(hex: u32) -> Color32 {
 pub(in crate::app) const PANEL: Tone = Tone::new(0x181b1f, 0xf5f6f8);
 /// Between the panels, and behind their tabs.
 pub(in crate::app) const EDGE: Tone = Tone::new(0x121417, 0xdfe3e8);
-/// The bars above and below the panels. The renderer of egui blends the edges of shapes so that a light button on the light [`EDGE`]
-/// has a white rim.
+/// The bars above and below the panels. egui's renderer blends the edges of shapes such that a light button on the light [`EDGE`]
+/// gets a white rim.
 pub(in crate::app) const BAR: Tone = Tone::new(0x121417, 0xf5f6f8);
 /// Buttons, fields and what lies above a panel.
 pub(in crate::app) const RAISED: Tone = Tone::new(0x282d33, 0xe3e7ec);
@@ -139,7 +139,7 @@ pub(in crate::app) fn small_mono(text: impl Into<String>) -> RichText {
 
 /// Hides the hover texts of the panels in this frame, as an open menu does.
 pub(in crate::app) fn hide_hover_texts(egui: &egui::Context) {
-    // A popup without a place: it counts as open, and draws nothing.
+    // A popup that is never placed: it counts as open, and draws nothing.
     let id = Id::new("no hover texts");
     Popup::new(id, egui.clone(), PopupAnchor::PointerFixed, LayerId::background()).show(|_| ());
 }

@@ -13,7 +13,7 @@ pub(in crate::app) struct PictureFile {
     pub(in crate::app) number: u64,
     /// The newest scaled picture, with the number of the request that made it.
     pub(in crate::app) still: Option<(u64, Arc<Still>)>,
-    /// [`Self::number`] and the size that `still` was made of, or that a failed scaling asked for.
+    /// [`Self::number`] and the size for which `still` was made, or for which scaling failed.
     pub(in crate::app) scaled: Option<(u64, (u32, u32))>,
     /// The number of the scaling that is under way.
     pub(in crate::app) scaling: Option<u64>,
@@ -40,7 +40,7 @@ impl PictureFile {
         (size != self.picture.size()).then_some(size)
     }
 
-    /// How it is shown, in sentences; empty for one that is shown as it is.
+    /// How it is adapted for display, in sentences; empty if it is shown unchanged.
     pub(in crate::app) fn note(&self) -> String {
         let (width, height) = self.picture.size();
         let scaled = self.scaled_size().map(|(to_width, to_height)| {

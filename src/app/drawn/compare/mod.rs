@@ -33,7 +33,7 @@ pub(in crate::app) struct Compare {
     pub(in crate::app) measuring: Option<u64>,
     /// The difference of both.
     pub(in crate::app) difference: Option<Difference>,
-    /// Whether the map of the difference covers the picture.
+    /// Whether the difference map covers the picture.
     pub(in crate::app) shows_map: bool,
 }
 
@@ -73,7 +73,7 @@ pub(in crate::app) enum Opening {
 pub(in crate::app) struct Reference {
     /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
     pub(in crate::app) frame: BoundFrame,
-    /// The picture from a file, with the number of the request that made it.
+    /// The picture from a file, with the number of its request.
     pub(in crate::app) still: Option<(u64, Arc<Still>)>,
     /// The part of the width that shows it, from the left, 0..1.
     pub(in crate::app) part: f32,
@@ -136,7 +136,7 @@ impl Compare {
         self.number
     }
 
-    /// How a picture from a file is shown, if not as it is.
+    /// How a picture from a file is adapted for display, if at all.
     pub(in crate::app) fn note(&self) -> Option<String> {
         match &self.with {
             Some(With::File(file)) => Some(file.note()).filter(|note| !note.is_empty()),
@@ -161,8 +161,8 @@ impl Compare {
         }
     }
 
-    /// Whether a file that is dropped on the window becomes the other picture: a PNG or JPEG while pictures are compared, and light
-    /// while a picture from a file is. Otherwise such files are a look and an environment.
+    /// Whether a file that is dropped on the window becomes the other picture: a PNG or JPEG while pictures are compared, and
+    /// light while a picture from a file is. Otherwise such files are a look and an environment.
     pub(in crate::app) fn takes(&self, path: &Path) -> bool {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match ending.as_str() {

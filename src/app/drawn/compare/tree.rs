@@ -16,9 +16,9 @@ pub(in crate::app) struct TreePicture {
     pub(in crate::app) set: Option<Arc<PipelineSet>>,
     /// Whether its files have errors.
     pub(in crate::app) has_errors: bool,
-    /// Its last picture from the thread, whose light is its own.
+    /// Its last frame from the thread, with its own light.
     pub(in crate::app) like: Option<LastComplete>,
-    /// The picture that the thread was asked for last.
+    /// The frame that the thread was last asked for.
     pub(in crate::app) asked: Option<LastAsked>,
 }
 
@@ -30,7 +30,7 @@ pub(in crate::app) struct LastAsked {
 }
 
 impl LastAsked {
-    /// Whether a picture needs the same resources.
+    /// Whether a frame needs the same resources.
     pub(in crate::app) fn has_needs_of(&self, state: &FrameState) -> bool {
         let asked = &*self.state;
         Arc::ptr_eq(&asked.shaders, &state.shaders)

@@ -15,7 +15,7 @@ const TALL: f32 = 160.0;
 /// Controls of a plot.
 const MOVE: &str = "Drag moves the plot, Ctrl+wheel zooms, a double click shows all";
 
-/// The modes of properties that the curves leave out, with the value that glTF gives them where a material does not.
+/// The modes of properties that the curves ignore, with glTF's default values.
 const LEFT_OUT: [(&str, &str, f32); 9] = [
     ("clearcoat", "clearcoat", 0.0),
     ("sheen-color", "sheen", 0.0),
@@ -88,7 +88,7 @@ pub(super) fn show(
     }
 }
 
-/// Why there is nothing to measure.
+/// The reason why there is nothing to measure.
 fn why_not(reading: &Reading, light: u32) -> String {
     let missing = ["position", "shading-normal", "base-color", "metallic", "roughness"];
     let missing: Vec<&str> = missing.into_iter().filter(|slug| reading.numbers(slug).is_none()).collect();
@@ -99,7 +99,7 @@ fn why_not(reading: &Reading, light: u32) -> String {
     }
 }
 
-/// The material and the angles, and what the curves leave out.
+/// The material and the angles, and the ignored properties.
 fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Reading, light: u32) {
     let [r, g, b] = material.base_color;
     let Material { metallic, roughness, .. } = material;
@@ -125,7 +125,7 @@ fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Re
     }
 }
 
-/// The properties of the pixel's material that the curves do not have.
+/// The properties of the pixel's material that the curves ignore.
 fn left_out(reading: &Reading) -> Vec<&'static str> {
     let differs = |slug: &str, default: f32| {
         let numbers = reading.numbers(slug);

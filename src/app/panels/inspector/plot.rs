@@ -13,7 +13,7 @@ pub(super) const GRID: Color32 = Color32::from_gray(52);
 const TALL: f32 = 150.0;
 /// Height of the charts, points.
 const LOW: f32 = 110.0;
-/// Dashes of the values before the last edit.
+/// Dashes of the curves before the last edit.
 const DASHED: LineStyle = LineStyle::Dashed { length: 5.0 };
 
 /// A part of a lobe: its name, color and meaning.
@@ -52,7 +52,7 @@ pub(super) const PARTS: [Part; 4] = [
     },
 ];
 
-/// The values now, and those before the last edit.
+/// The current values, and those before the last edit.
 pub(super) struct Pair<'a, T: ?Sized> {
     pub(super) now: &'a T,
     pub(super) before: Option<&'a T>,
@@ -91,7 +91,7 @@ pub(super) fn polar(ui: &mut Ui, curves: &Pair<'_, Curves>, of: &Material, direc
     values_of_lobe(&shown.response, curves, at);
 }
 
-/// A plot without what the inspector does not use: numbers come as a hover text, and the wheel scrolls the panel.
+/// A plot without egui_plot's interactions: values come as a hover text, and the wheel scrolls the panel.
 fn plain<'a>(name: &str, height: f32) -> Plot<'a> {
     let plot = Plot::new(name).height(height).allow_scroll(false).show_background(false);
     plot.label_formatter(|_| None).show_x(false).show_y(false).show_crosshair(false)
@@ -133,7 +133,7 @@ fn arrows(plot: &mut PlotUi<'_>, rim: f64, of: &Material, directions: &Direction
         plot.arrows(Arrows::new(name, vec![from], vec![to]).color(color).tip_length(7.0).allow_hover(false));
         note(plot, place(deg, at * rim), Align2::CENTER_CENTER, name.to_owned(), color);
     };
-    // The names lie at different distances, since both directions may be on one side.
+    // The names are at different distances, since both directions may be on one side.
     arrow(-f64::from(of.light_deg), WARNING.color(), ("light", 0.8), true);
     let name = if directions.is_in_plane() { "eye" } else { "eye (out of plane)" };
     arrow(f64::from(directions.in_plane_deg().clamp(-90.0, 90.0)), ACCENT.color(), (name, 0.5), false);
@@ -205,7 +205,7 @@ fn channels(plot: &mut PlotUi<'_>, values: &[[f32; 3]], is_dashed: bool) {
     }
 }
 
-/// Draws a line through points. Those that are not finite interrupt it.
+/// Draws a line through points. Non-finite points interrupt it.
 fn curve(plot: &mut PlotUi<'_>, name: &str, color: Color32, points: &[[f64; 2]], is_dashed: bool) {
     let (width, style) = if is_dashed { (1.2, DASHED) } else { (1.6, LineStyle::Solid) };
     for part in points.split(|[x, y]| !x.is_finite() || !y.is_finite()) {
@@ -216,7 +216,7 @@ fn curve(plot: &mut PlotUi<'_>, name: &str, color: Color32, points: &[[f64; 2]],
     }
 }
 
-/// A small text of a plot.
+/// A small label in a plot.
 fn note(plot: &mut PlotUi<'_>, [x, y]: [f64; 2], anchor: Align2, text: String, color: Color32) {
     let text = RichText::new(text).font(small_font());
     plot.text(Text::new("", PlotPoint::new(x, y), text).color(color).anchor(anchor).allow_hover(false));
@@ -227,7 +227,7 @@ pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// A number in few characters, for the scale of a plot.
+/// A short number, for the axis of a plot.
 fn short(number: f64) -> String {
     match number.abs() {
         magnitude if magnitude >= 100.0 => format!("{number:.0}"),

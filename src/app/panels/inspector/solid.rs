@@ -11,7 +11,7 @@ use crate::measure::Hemisphere;
 
 /// Angle of the view above the horizon, degrees, at most and at least.
 const ELEVATION: (f32, f32) = (18.0, 55.0);
-/// The view stands beside the eye, so that the arrow of the eye is no point, degrees.
+/// Camera offset in degrees, so that the arrow towards the eye is not seen end-on.
 const ASIDE: f32 = 40.0;
 
 /// A view of the lobe: the normal is up.

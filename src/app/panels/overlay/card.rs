@@ -12,7 +12,7 @@ const MARGIN: f32 = 12.0;
 const PADDING: f32 = 12.0;
 
 /// A text that wraps where a card would be wider than `width` with its margins. An area keeps its first size, and so would wrap a
-/// longer text by the width of the text before it.
+/// longer text at the width of the previous text.
 pub(super) fn wrapped(ui: &Ui, text: &str, font: FontId, color: Color32, width: f32) -> Arc<Galley> {
     let width = (width - 2.0 * (MARGIN + PADDING + 1.0)).max(80.0);
     ui.painter().layout(text.to_owned(), font, color, width)

@@ -12,7 +12,7 @@ use crate::app::drawn::compare::Difference;
 use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{PICTURE_ACCENT, small_font};
 
-/// Width of the strip that the mouse takes hold of, in points.
+/// Width of the draggable strip, in points.
 const GRIP: f32 = 16.0;
 /// Radius of the mark in its middle, in points.
 const MARK: f32 = 9.0;
@@ -38,7 +38,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, shown: &mut ShownM
     let response = area.show(egui, |ui| ui.allocate_response(strip.size(), Sense::drag())).inner;
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.drag_stopped()) {
         compare.wipe = ((at.x - picture.min.x) / picture.width().max(1.0)).clamp(0.0, 1.0);
-        // The next press finds the strip where the last frame had it.
+        // The next press finds the strip where it was in the last frame.
         egui.request_repaint();
     }
     let is_active = response.hovered() || response.dragged();

@@ -19,7 +19,7 @@ const SMALLEST: f32 = 0.3;
 /// Points of a drag that double the distance.
 const DOUBLE: f32 = 120.0;
 
-/// Most marks of a file's lights beside that of the selected one.
+/// Most lights of a file that have a mark, besides the selected one.
 const MOST_MARKS: usize = 64;
 
 /// State of the light handles: the drag in progress, and where earlier drags have left handles.
@@ -52,8 +52,8 @@ impl Gizmo {
     }
 }
 
-/// A handle that was dropped. At a light outside of the picture, a handle comes nearer to the center than the light, so a drag that turns
-/// the light would otherwise let its handle jump when it ends.
+/// A handle that was dropped. A light outside of the picture has its handle nearer to the center, so the handle would jump at the
+/// end of a drag that turns the light.
 struct Kept {
     light: LightId,
     /// Distance of the light then, in radii of the model.
@@ -111,7 +111,7 @@ impl Frame {
         (clip.w > 0.0).then(|| self.rect.min + vec2(x, y) * self.rect.size())
     }
 
-    /// Whether the picture has room for a handle at a point.
+    /// Whether there is room for a handle at a point of the picture.
     fn shows(&self, point: Vec3) -> bool {
         self.project(point).is_some_and(|at| self.rect.shrink(MARGIN).contains(at))
     }
@@ -130,8 +130,8 @@ impl Frame {
         seen
     }
 
-    /// The direction from the model's center to the point of a sphere around it that a point of the window shows. Beside the sphere it
-    /// is that of its edge.
+    /// The direction from the model's center to the point of a sphere around it that lies under a point of the window. Beside the
+    /// sphere, that of its silhouette.
     fn direction_at(&self, at: Pos2, radius: f32, is_near: bool) -> Vec3 {
         let scale = vec2(self.size.0 as f32, self.size.1 as f32) / self.rect.size();
         let pixel = (at - self.rect.min) * scale;
@@ -185,7 +185,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, gizmo: &mut Gizmo,
     }
 }
 
-/// Shows the handle of a light and moves the light by it. Returns whether the user takes hold of it.
+/// Shows the handle of a light and moves the light with it. Returns whether the user grabs it.
 fn handle(
     egui: &egui::Context,
     painter: &Painter,
@@ -268,7 +268,7 @@ fn outline(painter: &Painter, frame: &Frame, lights: &LightSettings, color: Colo
     }
 }
 
-/// The lights of the file that have a mark: the selected one, and the first of the others if they shine.
+/// The lights of the file that have a mark: the selected one, and the first of the others if they are on.
 fn marks(source: LightSource, count: usize, selected: LightId) -> Vec<usize> {
     let is_selected = |index: &usize| selected == LightId::Model(*index);
     let shining = (0..count).filter(|index| source == LightSource::Model && !is_selected(index)).take(MOST_MARKS);

@@ -37,7 +37,7 @@ pub(super) fn show(egui: &egui::Context, (session, grid): (&Session, &Grid), gal
     }
     for (slug, (_, rect)) in grid.modes().iter().zip(rects) {
         let is_selected = *slug == session.settings.mode;
-        // The selected one previews the mode that the mouse rests on.
+        // The selected mode previews the one that the mouse rests on.
         let slug = gallery.preview().filter(|_| is_selected).unwrap_or(slug);
         let name = shaders.modes.iter().find(|mode| mode.slug == slug).map_or(slug, |mode| &mode.name);
         let text = painter.layout_no_wrap(name.to_owned(), small_font(), STRONG.color());

@@ -71,7 +71,7 @@ impl Axis {
 }
 
 impl Legend<'_> {
-    /// Whether the legend has more to say than the value under the mouse.
+    /// Whether the legend shows more than the value under the mouse.
     pub(super) fn is_whole(&self, view: &ViewSettings, state: &LegendState) -> bool {
         // The final picture needs no explanation.
         let is_plain = self.of.mode.slug == "final" && view.channels == Channels::Rgb && self.of.limits.is_none();
@@ -137,7 +137,7 @@ fn heading(ui: &mut Ui, legend: &Legend<'_>, width: f32) {
     ui.label(title).on_hover_text(&legend.of.mode.doc);
 }
 
-/// The color bar between its limits, and what decides them.
+/// The color bar between its limits, and how these are determined.
 fn range(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings) {
     match legend.shown() {
         Some((low, high)) => {
@@ -248,7 +248,7 @@ fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &m
     }
 }
 
-/// How often each value occurs.
+/// The histogram of the values.
 fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut LegendState) {
     let (rect, response) = ui.allocate_exact_size(HISTOGRAM, Sense::hover());
     let painter = ui.painter_at(rect);
@@ -271,7 +271,7 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
             .enumerate()
             .collect(),
     };
-    // Values at the ends are beyond them, and would leave no height to the others.
+    // Values beyond the ends are counted there, and would leave no height to the others.
     let most = shown.iter().flat_map(|(channel, _)| &counts[*channel][1..BINS - 1]).max().copied().unwrap_or(0).max(1);
     for (channel, color) in &shown {
         let color = color.gamma_multiply(if shown.len() > 1 { 0.6 } else { 1.0 });

@@ -19,7 +19,7 @@ pub(super) enum Action {
     Toggle,
     Select(Selected),
     LookThrough(usize),
-    /// Draws what settings call by this name, or hides it.
+    /// Draws or hides what settings refer to by this name.
     Show(String, bool),
 }
 
@@ -27,7 +27,7 @@ pub(super) enum Action {
 pub(super) struct State {
     pub(super) is_drawn: bool,
     pub(super) is_selected: bool,
-    /// Whether a search has found it, so that it has no level.
+    /// Whether it is a search result, which is shown without a level.
     pub(super) is_found: bool,
 }
 

@@ -42,7 +42,7 @@ pub(super) struct Tree {
     rows: Vec<Row>,
     /// The scene of the last frame, and whether each of its nodes, or something below it, is drawn.
     drawn: Option<(Scene, Vec<bool>)>,
-    /// Whether other rows are folded than when the rows were made.
+    /// Whether folding has changed since the rows were made.
     is_changed: bool,
     /// Inputs of the cached rows: the model and the search text.
     made_of: Option<(Arc<Model>, String)>,
@@ -65,7 +65,7 @@ impl Tree {
         }
     }
 
-    /// Makes the rows again if the model or the search is another one.
+    /// Makes the rows again if the model or the search differs.
     pub(super) fn update(&mut self, scene: &Scene, search: &str) {
         if self.drawn.as_ref().is_none_or(|(before, _)| before != scene) {
             self.drawn = Some((scene.clone(), drawn_nodes(scene)));

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, log: &ShaderLog) {
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, edits.len(), |ui, range| {
         for edit in &edits[range] {
             let at = edit.at.format("%H:%M:%S");
-            // A narrow column cuts the end off, and the times are what one looks for.
+            // A narrow column truncates the end, and the times matter most.
             let text = RichText::new(format!("{at}  {}  {}", edit.times(), reached(&edit.reload))).monospace().small();
             let text = if edit.reload.ok { text } else { text.color(ERROR) };
             let (_, _, mut hover) = lines(&edit.reload);

@@ -46,12 +46,12 @@ pub(in crate::app) struct Inspection {
     pub(in crate::app) is_visible: bool,
     /// The pixel that the user has clicked.
     pub(in crate::app) pin: Option<[u32; 2]>,
-    /// Whether a message has said that the panel reads pixels.
+    /// Whether the message that the panel reads pixels was shown.
     pub(in crate::app) was_mentioned: bool,
     /// Whether the pixel under the mouse is shown while none is pinned.
     pub(in crate::app) follows: bool,
     pub(in crate::app) page: Page,
-    /// The newest values, also while newer ones are being read.
+    /// The newest values; they stay while newer ones are being read.
     pub(in crate::app) reading: Option<Reading>,
     /// Inputs of the newest request for curves.
     pub(in crate::app) asked: Option<Asked>,
@@ -61,7 +61,7 @@ pub(in crate::app) struct Inspection {
 }
 
 impl Inspection {
-    /// Learns that the search has failed. The same search would fail again, so it is not repeated.
+    /// Records that the search has failed. The same search would fail again, so it is not repeated.
     pub(in crate::app) fn fail_search(&mut self) {
         if let Some(search) = &mut self.search_not_finite {
             let found = Err("the search failed".to_owned());
@@ -69,12 +69,12 @@ impl Inspection {
         }
     }
 
-    /// Whether a pixel is pinned, and the user sees it.
+    /// Whether a pixel is pinned, and visible.
     pub(in crate::app) fn is_pinned(&self) -> bool {
         self.is_visible && self.pin.is_some()
     }
 
-    /// Unpins the pixel. Its values go, unless the pixel under the mouse takes its place.
+    /// Unpins the pixel. Its values are dropped, unless the pixel under the mouse replaces it.
     pub(in crate::app) fn unpin(&mut self) {
         (self.pin, self.search_not_finite) = (None, None);
         if !self.follows {
@@ -90,7 +90,7 @@ pub(in crate::app) struct NotFiniteSearch {
     pub(in crate::app) number: u64,
     /// Slug of the mode.
     pub(in crate::app) mode: String,
-    /// The result; none while the search goes on.
+    /// The result; `None` while the search runs.
     pub(in crate::app) found: Option<NotFinite>,
 }
 
@@ -127,7 +127,7 @@ impl Reading {
         modes.iter().filter_map(|mode| Some((mode.slug.clone(), self.value(&mode.slug)?.json(mode))))
     }
 
-    /// Whether the value of a mode is that of an earlier picture.
+    /// Whether the value of a mode belongs to an earlier frame.
     pub(in crate::app) fn is_old(&self, slug: &str) -> bool {
         self.values.get(slug).is_none_or(|(_, picture)| *picture != self.picture)
     }
@@ -140,7 +140,7 @@ impl Reading {
         (coverage > 0.0).then(|| [r, g, b].map(|number| number / coverage))
     }
 
-    /// Whether the model covers the pixel. Only modes that draw no background tell.
+    /// Whether the model covers the pixel. Only modes that draw no background show that.
     pub(in crate::app) fn is_hit(&self) -> bool {
         const WITHOUT_BACKGROUND: [&str; 3] = ["position", "depth", "shading-normal"];
         let covers = |value: PixelValue| value.value[3] > 0.0 || value.no_data || value.not_finite;
@@ -152,7 +152,7 @@ impl Reading {
         self.directions_to(self.light_of(light)?)
     }
 
-    /// Index of the light that is meant: of all (0), the one nearest to the normal.
+    /// The selected light; 0 selects, of all lights, the one nearest to the normal.
     pub(in crate::app) fn light_of(&self, light: u32) -> Option<usize> {
         if light > 0 {
             return Some(light as usize - 1);
@@ -180,15 +180,15 @@ impl Reading {
     }
 }
 
-/// Inputs of curves. While they are the same, the curves are.
+/// Inputs of curves. Equal inputs give equal curves.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::app) struct Asked {
     /// Number of the request.
     pub(in crate::app) number: u64,
     pub(in crate::app) material: Material,
-    /// Addresses of the shaders: generations may count from 1 again.
+    /// Addresses of the shaders: generation numbers may restart at 1.
     pub(in crate::app) shaders: [usize; 2],
-    /// The author's constants and parameters, as they are compared.
+    /// The author's constants and parameters, in a comparable form.
     pub(in crate::app) settings: String,
 }
 

@@ -14,7 +14,7 @@ pub(in crate::app) const NO_FOLDER: &str = "These shaders are not in a folder on
 /// Changes of the shaders that are under way.
 #[derive(Default)]
 pub(in crate::app) struct Edits {
-    /// The expression that the worker knows of.
+    /// The expression that the worker knows.
     pub(in crate::app) watched: ExpressionSettings,
     /// Numbers of a line that are dragged.
     pub(in crate::app) draft: Option<Draft>,
@@ -55,7 +55,7 @@ impl Edits {
         Self { watched: watched.clone(), ..Self::default() }
     }
 
-    /// Forgets numbers that are dragged, and the version that is shown: another tree is opened.
+    /// Drops dragged numbers and the shown version, because another tree is opened.
     pub(in crate::app) fn forget_draft(&mut self) {
         (self.draft, self.restored) = (None, None);
     }
@@ -80,7 +80,7 @@ pub(in crate::app) struct Restored {
 
 impl Restored {
     /// Whether these shaders have a text that neither the version nor its restoring explains: a file was saved. Shaders that were
-    /// under way when the version was chosen have the texts of before.
+    /// being compiled when the version was chosen have the previous texts.
     pub(in crate::app) fn is_edited(&self, shaders: &ShaderSet) -> bool {
         let known = || [Some(&self.shown), Some(&self.files), self.shown_before.as_ref()].into_iter().flatten();
         let is_known = |path, text| known().any(|texts| texts.get(path) == Some(text));

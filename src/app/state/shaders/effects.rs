@@ -2,7 +2,7 @@
 
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, embedded};
 
-/// Whether the pass is one of the tree that Specula comes with.
+/// Whether the pass belongs to the tree that Specula comes with.
 pub(in crate::app) fn is_shipped(pass: &GraphPass) -> bool {
     embedded::has(&pass.desc.stage)
 }

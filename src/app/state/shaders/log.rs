@@ -30,12 +30,12 @@ impl Edit {
     }
 }
 
-/// The changed files without folders, and the stages that a reload has reached: `ndf.glsl -> pbr.frag`.
+/// The changed files without folders, and the stages that a reload has compiled: `ndf.glsl -> pbr.frag`.
 pub(in crate::app) fn reached(reload: &ReloadEvent) -> String {
     let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
     let changed: Vec<String> = reload.changed.iter().map(name).collect();
     match (changed.as_slice(), reload.stages.as_slice()) {
-        // A save that repairs a failed one compiles nothing if the text is the last good one again.
+        // A save that repairs a failed one compiles nothing if it restores the last good text.
         ([], []) => "repaired: back to the last version that compiled".to_owned(),
         ([], stages) => format!("start -> {}", in_short(stages)),
         (changed, stages) => format!("{} -> {}", changed.join(" "), in_short(stages)),
@@ -64,7 +64,7 @@ pub(in crate::app) fn lines(last: &ReloadEvent) -> (String, String, String) {
 #[derive(Default)]
 pub(in crate::app) struct ShaderLog {
     edits: VecDeque<Edit>,
-    /// Time to compile each stage, the last time that it was, in milliseconds.
+    /// Latest compile time of each stage, in milliseconds.
     compile_ms: BTreeMap<String, f64>,
     /// Stages whose last text does not compile.
     failed: BTreeSet<String>,
@@ -73,7 +73,7 @@ pub(in crate::app) struct ShaderLog {
 }
 
 impl ShaderLog {
-    /// Notes what a reload has compiled. `is_good`: nothing of the edit is wrong.
+    /// Records what a reload has compiled. `is_good`: the edit has no errors.
     pub(in crate::app) fn compiled(&mut self, report: &Report, is_good: bool) {
         self.compile_ms.extend(report.stages.iter().cloned());
         let is_again = |stage: &String| report.stages.iter().any(|(compiled, _)| compiled == stage);
@@ -82,7 +82,7 @@ impl ShaderLog {
         self.waiting.clone_from(&report.waiting);
     }
 
-    /// Notes a finished reload.
+    /// Records a finished reload.
     pub(in crate::app) fn finished(&mut self, reload: &ReloadEvent) {
         if self.edits.front().is_some_and(|last| last.reload.generation > reload.generation) {
             // Another tree, or the worker has started again.
@@ -92,7 +92,7 @@ impl ShaderLog {
         self.edits.truncate(MOST);
     }
 
-    /// Notes the stages that were compiled after the picture was on screen.
+    /// Records the stages that were compiled after the picture was on screen.
     pub(in crate::app) fn completed(&mut self, event: &CompletedEvent) {
         let of = self.edits.iter_mut().find(|edit| edit.reload.ok && edit.reload.generation == event.generation);
         if let Some(edit) = of {
@@ -141,7 +141,7 @@ mod tests {
         assert!(log.has_failed("a.frag") && log.has_failed("b.frag") && !log.is_waiting("x.glsl"));
         log.compiled(&report(&["a.frag"], &[], &[]), false);
         assert!(!log.has_failed("a.frag") && log.has_failed("b.frag"));
-        // The last good text again compiles nothing.
+        // Restoring the last good text compiles nothing.
         log.compiled(&report(&[], &[], &[]), true);
         assert!(!log.has_failed("b.frag"));
         assert_eq!((log.compile_ms("a.frag"), log.compile_ms("c.frag")), (Some(2.0), None));

@@ -15,7 +15,7 @@ pub(in crate::app) enum StageState {
     Failed,
     /// It draws the picture.
     OnScreen,
-    /// It is still to be compiled.
+    /// It is not compiled yet.
     Pending,
     /// It bakes light or tables when they are needed.
     Bakes,
@@ -42,16 +42,16 @@ impl StageState {
 pub(in crate::app) struct StageRow {
     pub(in crate::app) path: String,
     pub(in crate::app) state: StageState,
-    /// Time to compile it, the last time that it was, in milliseconds.
+    /// Its latest compile time, in milliseconds.
     pub(in crate::app) compile_ms: Option<f64>,
     pub(in crate::app) now: StageReport,
-    /// The same in the version before.
+    /// Its compile time in the previous version.
     pub(in crate::app) before: Option<StageReport>,
-    /// Its numbers in a line.
+    /// Its statistics in a line.
     pub(in crate::app) figures: Vec<Figure>,
 }
 
-/// The table. It is made anew only when the shaders, the picture, or what is known of them changes.
+/// Cached table; rebuilt only when the shaders, the frame or the statistics change.
 #[derive(Default)]
 pub(in crate::app) struct StageTable {
     rows: Vec<StageRow>,
@@ -71,17 +71,17 @@ impl StageTable {
         self.rows.iter().find(|row| row.path == self.main)
     }
 
-    /// Whether the table is of other shaders or another picture.
+    /// Whether the table belongs to other shaders or another frame.
     pub(in crate::app) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &Arc<PipelineRequest>) -> bool {
         !self.made_of.as_ref().is_some_and(|(of, known)| Arc::ptr_eq(of, set) && known == request)
     }
 
-    /// Marks what is known of the stages as changed.
+    /// Marks the statistics of the stages as changed.
     pub(in crate::app) fn invalidate(&mut self) {
         self.made_of = None;
     }
 
-    /// Makes the table of a set. `before` is the version before.
+    /// Builds the table of a set. `before` is the previous version.
     pub(in crate::app) fn update(
         &mut self,
         set: &Arc<PipelineSet>,

@@ -22,8 +22,8 @@ pub(in crate::app) struct ShaderStatus {
     pub(in crate::app) last: Option<ReloadEvent>,
     /// Log of the last edits.
     pub(in crate::app) log: ShaderLog,
-    /// Whether to ask the driver about the machine code of each picture.
+    /// Whether to query the driver's statistics of each frame.
     pub(in crate::app) asks_driver: bool,
-    /// The picture that the driver was last asked about.
+    /// The frame that the driver was last queried about.
     pub(in crate::app) told: Option<Arc<PipelineRequest>>,
 }

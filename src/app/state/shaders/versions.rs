@@ -36,11 +36,11 @@ pub(in crate::app) struct Version {
     pub(in crate::app) shaders: Arc<ShaderSet>,
     /// Whether a loop did not end in its picture.
     is_cut_short: bool,
-    /// Whether the files have other texts: numbers are dragged, or it is an older version again. The next version takes its place.
+    /// Whether the files have other texts: numbers are dragged, or an older version is shown again. The next version replaces it.
     is_draft: bool,
     /// The older version that it is again.
     again: Option<u64>,
-    /// Its texts compared with those of the version before.
+    /// The difference of its texts from the previous version.
     difference: OnceCell<Vec<Line>>,
 }
 
@@ -96,7 +96,7 @@ impl Versions {
         if ends_draft {
             self.list.pop_back();
         }
-        // Another watched expression is no version: the texts of the tree are the same.
+        // Watching another expression does not create a version; the sources are unchanged.
         let may_be_same = ends_draft || reload.changed.is_empty();
         let is_same = |last: &&mut Version| may_be_same && last.shaders.texts == shaders.texts;
         if let Some(last) = self.list.back_mut().filter(is_same) {
@@ -125,7 +125,7 @@ impl Versions {
         }
     }
 
-    /// Takes the times of a version's first frame. Those of the first frame with another watched expression are not the version's.
+    /// Records the times of a version's first frame. Those of the first frame with another watched expression do not count.
     pub(in crate::app) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
         if let Some(version) = self.get_mut(number).filter(|version| version.reload.first_frame_ms == 0.0) {
             (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
@@ -146,7 +146,7 @@ impl Versions {
         }
     }
 
-    /// Marks a version in which a loop did not end. It is not shown again, since it would keep the device as long again.
+    /// Marks a version in which a loop did not end. It is not drawn again, since it would block the device again.
     pub(in crate::app) fn cut_short(&mut self, number: u64) {
         if let Some(version) = self.get_mut(number) {
             version.is_cut_short = true;
@@ -160,7 +160,7 @@ impl Versions {
         }
     }
 
-    /// Whether a version is the one of these shaders: numbers may start again.
+    /// Whether a version is the one of these shaders: generation numbers may restart.
     pub(in crate::app) fn has(&self, shaders: &Arc<ShaderSet>) -> bool {
         self.list.iter().any(|version| Arc::ptr_eq(&version.shaders, shaders))
     }

@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 
 use super::sample::{Sample, Shown};
 
-/// Frames of each side that count, the newest.
+/// Newest frames of each side that count.
 const FRAMES: usize = 16;
-/// Changes smaller than this part of the time before, and than these milliseconds, are noise.
+/// Changes smaller than this fraction of the previous time, and than these milliseconds, are noise.
 const NOISE: f64 = 0.05;
 const NOISE_MS: f64 = 0.02;
 
@@ -35,7 +35,7 @@ pub(in crate::app) struct Cost {
     pub(in crate::app) generations: [u64; 2],
     /// The frame, then each pass.
     pub(in crate::app) rows: Vec<CostRow>,
-    /// How many frames the medians are of.
+    /// How many frames the medians are computed from.
     pub(in crate::app) frames: [usize; 2],
 }
 
@@ -51,18 +51,18 @@ impl Cost {
 /// Collects the frames before and after an edit.
 #[derive(Default)]
 pub(in crate::app) struct Tracker {
-    /// Whether the device compiles in the first frame of new shaders, whose time then says nothing about the shaders.
+    /// Whether the device compiles in the first frame of new shaders, so that its time does not characterize the shaders.
     pub(in crate::app) compiles_in_frame: bool,
     before: Vec<Sample>,
     after: VecDeque<Sample>,
 }
 
 impl Tracker {
-    /// Takes a frame that drew the picture. `earlier`: those before it.
+    /// Records a frame that drew the model. `earlier`: the frames before it.
     pub(in crate::app) fn take(&mut self, sample: &Sample, earlier: &VecDeque<Sample>) {
         let newest = earlier.back().map(|last| &last.shown);
         if newest.is_some_and(|last| last.generation < sample.shown.generation) {
-            // The frames before the edit that show the same.
+            // The frames before the edit with equal inputs.
             let is_before = |old: &&Sample| {
                 Some(old.shown.generation) == newest.map(|last| last.generation) && old.shown.is_like(&sample.shown)
             };
@@ -75,7 +75,7 @@ impl Tracker {
         let is_like = |shown: &Shown| shown.is_like(&sample.shown) && shown.generation < sample.shown.generation;
         if self.before.first().is_some_and(|before| is_like(&before.shown)) {
             self.after.push_back(sample.clone());
-            // The oldest are the nearest to the edit, and the first may be the slow one that a driver compiles in.
+            // The oldest are the nearest to the edit, and the first may be the slow one in which a driver compiles.
             self.after.truncate(FRAMES + 1);
         }
     }
@@ -89,7 +89,7 @@ impl Tracker {
             let [before, after] = sides.map(|samples| median_of(samples));
             CostRow { name: name.to_owned(), before, after }
         };
-        // A frame that keeps images of passes takes less than one that draws them.
+        // A frame that reuses images of passes takes less than one that draws them.
         let is_alike = |sample: &&Sample| kept(sample).eq(kept(first));
         let [before_ms, after_ms] =
             sides.map(|samples| median(samples.iter().filter(is_alike).map(|sample| sample.device_ms)));
@@ -116,13 +116,13 @@ impl Tracker {
     }
 }
 
-/// The time of a pass in a frame that draws it; `None` if the frame keeps its image.
+/// The time of a pass in a frame that draws it; `None` if the frame reuses its image.
 fn drawn_ms(sample: &Sample, name: &str) -> Option<f64> {
     let is_kept = sample.passes.iter().any(|pass| pass.name == name && pass.kept);
     sample.pass_ms(name).filter(|_| !is_kept)
 }
 
-/// The names of the passes whose images a frame keeps.
+/// The names of the passes whose images a frame reuses.
 fn kept(sample: &Sample) -> impl Iterator<Item = &str> {
     sample.passes.iter().filter(|pass| pass.kept).map(|pass| pass.name.as_str())
 }
@@ -193,7 +193,7 @@ mod tests {
         let roughness = |generation| Shown { mode: "roughness".into(), ..shown(generation) };
         draw(&mut timing, &roughness(2), &[("model", 9.0)]);
         assert_eq!(timing.cost(), None);
-        // A look at another mode later leaves the cost of the edit as it was.
+        // Looking at another mode later keeps the cost of the edit.
         draw(&mut timing, &roughness(3), &[("model", 7.0)]);
         draw(&mut timing, &shown(3), &[("model", 1.0)]);
         let cost = timing.cost().unwrap();

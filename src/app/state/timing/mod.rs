@@ -54,7 +54,7 @@ pub(in crate::app) struct Timing {
 }
 
 impl Timing {
-    /// Notes a frame that goes to the device.
+    /// Records a submitted frame.
     pub(in crate::app) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
         self.submitted.push_back((serial, shown, cpu));
         if self.submitted.len() > 8 {
@@ -73,7 +73,7 @@ impl Timing {
         push(&mut self.cpu_ms, cpu_ms, SUMMARIZED);
     }
 
-    /// Takes the times of a finished frame, once.
+    /// Collects the times of a finished frame, once.
     pub(in crate::app) fn finished(&mut self, times: &DeviceTimes<'_>) {
         let Some(at) = self.submitted.iter().position(|(serial, ..)| *serial == times.serial) else { return };
         let Some((_, shown, cpu)) = self.submitted.drain(..=at).next_back() else { return };
@@ -121,8 +121,8 @@ impl Timing {
         self.cpu_ms.back().copied()
     }
 
-    /// Whether to draw the picture once more although it is the same, because too few frames tell what new shaders take. Each call
-    /// counts as a frame.
+    /// Whether to draw the model again although nothing has changed, because too few frames measure new shaders. Each call counts
+    /// as a frame.
     pub(in crate::app) fn wants_frame(&mut self, shown: &Shown) -> bool {
         if self.extra.as_ref().is_none_or(|(of, _)| of != shown) {
             self.extra = Some((shown.clone(), 0));
@@ -157,7 +157,7 @@ pub(in crate::app) mod tests {
         draw_on(timing, false, shown, times);
     }
 
-    /// The same on a device that compiles in the first frame, or does not.
+    /// Such a frame on a device that compiles in the first frame, or does not.
     pub(in crate::app) fn draw_on(timing: &mut Timing, compiles_in_frame: bool, shown: &Shown, times: &[(&str, f64)]) {
         let serial = timing.drawn + 1;
         let cpu = CpuTimes { ui_ms: serial as f64, record_ms: 1.0 };
@@ -179,11 +179,11 @@ pub(in crate::app) mod tests {
         draw(&mut timing, &shown(1), &[("model", 6.0), ("tone map", 1.0), ("ui", 1.0)]);
         draw(&mut timing, &shown(1), &[("tone map", 0.5), ("ui", 0.5)]);
         assert_eq!((timing.frame_ms(), timing.pictures().len(), timing.frames().len()), (Some(8.0), 1, 3));
-        // A pass that is off is gone, and one that covers the model is a picture as well.
+        // A pass that is off is absent, and one that covers the model draws a picture as well.
         draw(&mut timing, &shown(1), &[("image", 4.0), ("ui", 1.0)]);
         let last = timing.pictures().back().unwrap();
         assert_eq!((last.device_ms, last.pass_ms("image"), last.pass_ms("model")), (5.0, Some(4.0), None));
-        // A frame with an older picture beside the newest tells nothing about either.
+        // A frame that also draws an older picture measures neither.
         draw(&mut timing, &shown(1), &[("model", 4.0), ("compare", 4.0), ("ui", 1.0)]);
         assert_eq!(timing.frame_ms(), Some(5.0));
     }

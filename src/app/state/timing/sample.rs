@@ -2,7 +2,7 @@
 
 use crate::gpu::{DrawCounts, PassTime};
 
-/// Passes that a frame has even if the picture stays.
+/// Passes that a frame runs even if the picture is unchanged.
 const NOT_OF_PICTURE: [&str; 4] = ["tone map", "ui", "outline", "texture"];
 
 /// Inputs of a frame. Times can be compared between frames with equal inputs.
@@ -46,7 +46,7 @@ pub(in crate::app) struct Sample {
 }
 
 impl Sample {
-    /// The time of a pass; `None` if the frame has none of this name. A pass that was kept took none.
+    /// The time of a pass; `None` if the frame has none of this name. A reused pass took none.
     pub(in crate::app) fn pass_ms(&self, name: &str) -> Option<f64> {
         let mut of_name = self.passes.iter().filter(|pass| pass.name == name).map(|pass| pass.ms).peekable();
         of_name.peek()?;

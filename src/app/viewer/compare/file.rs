@@ -23,7 +23,7 @@ impl Viewer {
         self.threads.wait(move || Some(Message::PictureRead(number, Picture::open(&path).map(Arc::new))));
     }
 
-    /// Takes a picture that was read.
+    /// Accepts a picture that was read.
     pub(in crate::app::viewer) fn on_picture_read(&mut self, number: u64, read: Result<Arc<Picture>, String>) {
         let path = match &self.compare.opening {
             Some(Opening::File(opening, path)) if *opening == number => path.clone(),
@@ -32,7 +32,7 @@ impl Viewer {
         self.compare.opening = None;
         match (read, &mut self.compare.with) {
             (Ok(picture), Some(With::File(file))) if file.path == path => {
-                // The old one stays on screen until this one is scaled.
+                // The previous one stays on screen until this one is scaled.
                 (file.picture, file.number) = (picture, number);
             }
             (Ok(picture), _) => self.compare.set(Some(With::File(PictureFile::new(number, path, picture)))),
@@ -66,7 +66,7 @@ impl Viewer {
         file.still.clone().filter(|(_, still)| still.size() == size)
     }
 
-    /// Takes a picture that was scaled.
+    /// Accepts a picture that was scaled.
     pub(in crate::app::viewer) fn on_picture_fits(&mut self, number: u64, still: Result<Arc<Still>, String>) {
         let next = self.compare.number + 1;
         let Some(With::File(file)) = &mut self.compare.with else { return };

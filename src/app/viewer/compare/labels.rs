@@ -103,7 +103,7 @@ fn differences(kept: &Shown<'_>, now: &Shown<'_>) -> [String; 2] {
     parts.map(|parts| if parts.is_empty() { now.mode.to_owned() } else { parts.join(", ") })
 }
 
-/// The settings by their paths, without those that the names of a picture or of its parts tell and without the camera, which a kept
+/// The settings by their paths, except those that the names of a picture or of its parts show and the camera, which a kept
 /// picture follows.
 fn leaves(settings: &Settings) -> BTreeMap<String, String> {
     let mut out = BTreeMap::new();
@@ -128,7 +128,7 @@ fn collect(path: &str, value: &Value, out: &mut BTreeMap<String, String>) {
 fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
-        // Settings are single floats, whose digits as doubles say nothing.
+        // Settings are single floats, whose digits as doubles are meaningless.
         Value::Number(number) if number.is_f64() => (number.as_f64().unwrap_or_default() as f32).to_string(),
         Value::Array(items) => items.iter().map(text).collect::<Vec<_>>().join(","),
         other => other.to_string(),

@@ -36,7 +36,7 @@ impl Viewer {
         Ok(TreePicture { name, tree, set: None, has_errors: false, like: None, asked: None })
     }
 
-    /// The settings, the model and the targets of now.
+    /// The current settings, model and targets.
     fn snapshot(&self) -> Snapshot {
         let settings = self.session.shared_settings();
         let target = target(&self.gpu, &settings);
@@ -44,7 +44,7 @@ impl Viewer {
         Snapshot { scene: self.session.scene(), settings, target, suns }
     }
 
-    /// Takes what the thread of a second tree has done.
+    /// Accepts what the thread of a second tree has done.
     pub(in crate::app::viewer) fn on_second_tree(&mut self, number: u64, message: SecondTreeMessage) {
         match message {
             SecondTreeMessage::Compiled(set, diagnostics) => self.on_second_tree_compiled(number, set, &diagnostics),
@@ -54,7 +54,7 @@ impl Viewer {
                     (Ok(frame), Some(asked)) if Arc::ptr_eq(&frame.state, &asked.state) => {
                         tree.like = Some(LastComplete { settings: asked.snapshot.settings.clone(), frame: *frame });
                     }
-                    // The picture that was asked for since follows.
+                    // The frame that was requested since then follows.
                     (Ok(_), _) => {}
                     (Err(message), _) => {
                         let message = format!("{}: {message}", tree.name);
@@ -102,7 +102,7 @@ impl Viewer {
         }
     }
 
-    /// The picture of the second tree with the settings of now, as soon as the thread has what it needs.
+    /// Renders the second tree with the current settings once its resources are ready.
     pub(super) fn picture_of_tree(&mut self, live: &BoundFrame) -> Result<Option<BoundFrame>, GpuError> {
         let Some(With::Tree(tree)) = &self.compare.with else { return Ok(None) };
         let Some(set) = tree.set.clone() else { return Ok(None) };
@@ -112,7 +112,7 @@ impl Viewer {
         if !is_pending && let Some(frame) = self.resources.bind_older(&set, &state, like.as_ref())? {
             return Ok(Some(frame));
         }
-        // The picture comes first, and its light is likely to be the second tree's as well.
+        // The main picture comes first, and its light is likely to be the second tree's as well.
         let snapshot = (self.is_complete && !is_pending).then(|| {
             let mut snapshot = self.snapshot();
             // The mouse may preview a mode.
