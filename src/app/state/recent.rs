@@ -52,7 +52,10 @@ impl Recent {
     /// Moves an opened file to the front, and stores the list.
     pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
         if self.insert(kind, path) {
-            state::change(FILE, |stored: &mut Self| _ = stored.insert(kind, path));
+            state::change(FILE, |stored: &mut Self| {
+                stored.drop_missing();
+                stored.insert(kind, path);
+            });
         }
     }
 
@@ -63,6 +66,15 @@ impl Recent {
         if list.contains(&path) && !path.exists() {
             list.retain(|known| *known != path);
             state::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
+        }
+    }
+
+    /// Leaves out files that no longer exist.
+    fn drop_missing(&mut self) {
+        for kind in [Kind::Model, Kind::Environment, Kind::Tree] {
+            let list = self.of_mut(kind);
+            list.retain(|path| path.exists());
+            list.truncate(MOST);
         }
     }
 
@@ -83,11 +95,7 @@ impl Recent {
 /// The stored files that exist. A text that cannot be read counts as an empty list.
 fn parse(text: &str) -> Option<Recent> {
     let mut recent: Recent = serde_json::from_str(text).ok()?;
-    for kind in [Kind::Model, Kind::Environment, Kind::Tree] {
-        let list = recent.of_mut(kind);
-        list.retain(|path| path.exists());
-        list.truncate(MOST);
-    }
+    recent.drop_missing();
     Some(recent)
 }
 
