@@ -1,7 +1,9 @@
 //! Image-based light: environments baked on the device.
 //!
-//!     name or file -> bytes and their hash -> decoded -> cube map -> mip levels -> irradiance
-//!       -> samples of the specular lobe -> specular levels;  sheen levels          each part is looked up on disk first
+//! ```text
+//! name or file -> bytes and their hash -> decoded -> cube map -> mip levels -> irradiance
+//!   -> samples of the specular lobe -> specular levels;  sheen levels          each part is looked up on disk first
+//! ```
 //!
 //! | stage in `ibl/` | makes | size |
 //! |---|---|---|
