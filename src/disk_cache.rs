@@ -1,10 +1,7 @@
-//! Results on disk that take long to make: what bakes compute, and the driver's pipelines.
+//! Results on disk that take long to make, in a folder for each kind: what bakes compute, compiled stages, the driver's pipelines.
 //!
-//! A baked entry is named by a hash of all its inputs, so it is never stale.
-//!
-//! The cache is `baked/` in `$SPECULA_CACHE`, or in `specula` of the user's cache folder. A name is the hash of all
-//! inputs, SPIR-V and sizes included, so an entry is never stale; an entry ends in a hash of itself, so a damaged one
-//! counts as absent. Beyond 512 MiB the oldest entries are removed.
+//! The folders are in `$SPECULA_CACHE`, or in `specula` of the user's cache folder. A name is the hash of all inputs of an entry, so an
+//! entry is never stale; it ends in a hash of itself, so a damaged one counts as absent. Beyond 512 MiB the oldest of a folder are removed.
 
 use std::ffi::OsStr;
 use std::io::Write as _;
@@ -13,19 +10,14 @@ use std::time::{Duration, SystemTime};
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use crate::gpu::PipelineStore;
-
-/// Size of the cache in bytes. Beyond it, the oldest entries are deleted.
+/// Size of a folder in bytes. Beyond it, the oldest entries are deleted.
 const MOST_BYTES: u64 = 512 << 20;
 const BAKED: &str = "baked";
-const PIPELINES: &str = "pipelines";
 const ENDING: &str = "bake";
 /// Ends the names of files that are being written.
 const PART: &str = "part";
 /// The process that has begun to write a file longer ago has ended without finishing it.
 const LONGEST_WRITE: Duration = Duration::from_secs(3600);
-/// Largest pipeline cache of a driver in bytes. Beyond this, after some hundred edits, it is not stored.
-const MOST_PIPELINE_BYTES: usize = 32 << 20;
 /// Bytes of the checksum at the end of a file: XXH3 of the rest.
 const CHECKSUM: u64 = 8;
 
@@ -53,18 +45,22 @@ fn file(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("{key}.{ENDING}"))
 }
 
-/// Loads an entry of exactly `size` bytes. An entry of another size, or with a wrong checksum, counts as absent.
-pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
-    contains(key, size).then(|| read(&folder(BAKED)?, key)).flatten().filter(|bytes| bytes.len() as u64 == size)
+/// An entry of the folder `name`. One with a wrong checksum counts as absent.
+pub(crate) fn read(name: &str, key: &str) -> Option<Vec<u8>> {
+    read_from(&folder(name)?, key)
 }
 
-/// An entry of any size, if its checksum is right.
-fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
+fn read_from(folder: &Path, key: &str) -> Option<Vec<u8>> {
     let mut bytes = std::fs::read(file(folder, key)).ok()?;
     let end = bytes.len().checked_sub(CHECKSUM as usize)?;
     let is_whole = bytes[end..] == xxh3_64(&bytes[..end]).to_le_bytes();
     bytes.truncate(end);
     is_whole.then_some(bytes)
+}
+
+/// A baked entry of exactly `size` bytes.
+pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
+    contains(key, size).then(|| read(BAKED, key)).flatten().filter(|bytes| bytes.len() as u64 == size)
 }
 
 /// Whether [`load`] will find an entry of this size, unless it is damaged.
@@ -73,30 +69,16 @@ pub(crate) fn contains(key: &str, size: u64) -> bool {
     metadata.is_some_and(|metadata| metadata.len() == size + CHECKSUM)
 }
 
-/// Stores an entry. A failure costs only time, so it is logged and not reported.
+/// Stores a baked entry.
 pub(crate) fn store(key: &str, bytes: &[u8]) {
     store_in(BAKED, key, bytes);
 }
 
-fn store_in(folder_name: &str, key: &str, bytes: &[u8]) {
-    let Some(folder) = folder(folder_name) else { return };
+/// Stores an entry in the folder `name`. A failure costs only time, so it is traced and not reported.
+pub(crate) fn store_in(name: &str, key: &str, bytes: &[u8]) {
+    let Some(folder) = folder(name) else { return };
     if let Err(error) = write(&folder, key, bytes) {
         tracing::debug!("{}: the cache was not written: {error}", folder.display());
-    }
-}
-
-/// Stores a driver's pipelines as one entry for each driver.
-pub struct Pipelines;
-
-impl PipelineStore for Pipelines {
-    fn load(&self, driver: &[u8]) -> Option<Vec<u8>> {
-        read(&folder(PIPELINES)?, &key(&[driver]))
-    }
-
-    fn store(&self, driver: &[u8], data: &[u8]) {
-        if data.len() <= MOST_PIPELINE_BYTES {
-            store_in(PIPELINES, &key(&[driver]), data);
-        }
     }
 }
 
@@ -153,7 +135,7 @@ mod tests {
         let old = std::fs::File::create(in_folder("old.1.part")).unwrap();
         old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
         write(folder.path(), "key", b"bytes").unwrap();
-        assert_eq!(read(folder.path(), "key").unwrap(), b"bytes");
+        assert_eq!(read_from(folder.path(), "key").unwrap(), b"bytes");
         assert!(in_folder("new.2.part").exists(), "another process may be writing it");
         assert!(!in_folder("old.1.part").exists(), "an ended process has left it");
     }

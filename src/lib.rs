@@ -35,7 +35,7 @@ pub mod capture;
 pub mod comparison;
 pub mod control;
 pub mod cpu_clock;
-pub mod disk_cache;
+mod disk_cache;
 pub mod events;
 pub mod file_kind;
 pub mod frame;

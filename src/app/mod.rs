@@ -35,7 +35,6 @@ use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
 use crate::control::Asked;
-use crate::disk_cache;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
 use crate::threads::worker::WorkerMessage;
@@ -129,7 +128,7 @@ impl App {
             validation: options.validation,
             display: Some(display.as_raw()),
             // After a loss, the stored pipelines are suspected, too.
-            pipelines: (!options.recorder.is_safe_mode()).then_some(&disk_cache::Pipelines as &dyn PipelineStore),
+            pipelines: (!options.recorder.is_safe_mode()).then_some(&DiskPipelines as &dyn PipelineStore),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
         let mut screen = Screen::new(&gpu, &layouts, &window)?;

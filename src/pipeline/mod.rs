@@ -2,6 +2,7 @@
 
 mod bounds;
 mod change;
+mod disk;
 mod limits;
 mod reload;
 mod set;
@@ -9,6 +10,7 @@ mod textures;
 
 pub use bounds::endless_loop;
 pub use change::{Figure, all_statistics, figures, grouped};
+pub use disk::DiskPipelines;
 pub use limits::beyond_limits;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;

@@ -1,6 +1,7 @@
 //! The integration tests, in one binary: it links the library once, and all tests of the process share one device, one compiler and the
 //! compiled shader tree. Run a part of them by its path: `scripts/test light::baked`.
 
+mod architecture;
 mod commands;
 mod light;
 mod passes;

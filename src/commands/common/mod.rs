@@ -10,10 +10,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use clap::ValueEnum;
-use specula::disk_cache::Pipelines;
 use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
+use specula::pipeline::DiskPipelines;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
@@ -244,7 +244,7 @@ impl Common {
 
     /// Opens the device without a window.
     pub fn gpu(&self) -> Result<Arc<Gpu>, Failure> {
-        open_gpu(self.device.as_deref(), self.validate, self.timeout, Some(&Pipelines))
+        open_gpu(self.device.as_deref(), self.validate, self.timeout, Some(&DiskPipelines))
     }
 
     /// The same without the pipelines of earlier runs, so that every pipeline takes the time that an edit takes.

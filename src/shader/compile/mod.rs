@@ -4,6 +4,7 @@ mod balance;
 mod hooks;
 pub mod include;
 pub mod log;
+pub mod module_cache;
 mod names;
 mod unbound;
 mod uniform;

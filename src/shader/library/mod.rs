@@ -40,7 +40,7 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{Source, TreePath};
 use beside::fragment_of;
 use link::Linked;
-use slot::{Built, Done, Slot, build};
+use slot::{Done, Slot, Start, build};
 use watched::{View, Watched};
 
 pub use slot::Stage;
@@ -48,8 +48,8 @@ pub use slot::Stage;
 /// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Anything: the first update, and the reload key. Every stage is compiled as a whole. A stage whose module comes
-    /// out unchanged remains the same object.
+    /// Anything: the first update, which takes modules from disk where it can, and the reload key, which compiles every stage as a
+    /// whole. A stage whose module comes out unchanged remains the same object.
     All,
     /// These files.
     Paths(BTreeSet<TreePath>),
@@ -319,14 +319,14 @@ impl Library {
         superseded: impl Fn() -> bool + Sync,
     ) {
         let (compiler, cache) = (&self.compiler, &self.cache);
-        let bases: Vec<Option<&Built>> =
-            stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole && !self.is_whole)).collect();
+        let start_of = |(index, _): &(usize, TreePath)| self.slots[*index].start(is_whole || self.is_whole);
+        let starts: Vec<Start<'_>> = stages.iter().map(start_of).collect();
         let compiled: Vec<(usize, Done)> = stages
             .par_iter()
-            .zip(bases)
+            .zip(starts)
             .filter(|_| !superseded())
-            .map(|((index, path), base)| {
-                let build = || view.explained(path, build(compiler, view.of(path), cache, path, base));
+            .map(|((index, path), start)| {
+                let build = || view.explained(path, build(compiler, view.of(path), cache, path, start));
                 (*index, view.refused(path).unwrap_or_else(build))
             })
             .collect();

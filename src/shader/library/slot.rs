@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
 use crate::interface::SET_PASS;
-use crate::shader::compile::{Compiler, StageKind};
+use crate::shader::compile::{Compiler, StageKind, module_cache};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::incremental::{FileCache, Files, Rebuilt, rebuild};
@@ -195,8 +195,17 @@ impl Slot {
         self.current.as_ref().is_none_or(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))
     }
 
+    /// What the next compilation starts from. If `is_whole`, it takes nothing from an earlier one.
+    pub fn start(&self, is_whole: bool) -> Start<'_> {
+        match self.base() {
+            _ if self.current.is_none() && self.good.is_none() => Start::Disk,
+            Some(base) if !is_whole => Start::Base(base),
+            _ => Start::Text,
+        }
+    }
+
     /// The newest result that an edit can be compiled against.
-    pub fn base(&self) -> Option<&Built> {
+    fn base(&self) -> Option<&Built> {
         let current = self.current.as_ref().and_then(|outcome| outcome.as_ref().ok());
         // A compilation of the changed functions would not repeat the warnings of the others.
         current.or(self.good.as_ref()).filter(|built| built.warnings.is_empty())
@@ -267,18 +276,31 @@ pub(super) struct Done {
     pub ms: Option<f64>,
 }
 
-/// Compiles, reflects and checks one stage. If there is a `base`, an earlier result, and the text differs from its text
-/// only in functions, compiles only these.
+/// What the compilation of a stage can start from.
+#[derive(Clone, Copy)]
+pub(super) enum Start<'a> {
+    /// The text alone.
+    Text,
+    /// The module that an earlier process compiled of the same text, if it is on disk.
+    Disk,
+    /// An earlier result. If the text differs from its text only in functions, only these are compiled.
+    Base(&'a Built),
+}
+
+/// Compiles, reflects and checks one stage.
 pub(super) fn build(
     compiler: &Compiler,
     snapshot: &Snapshot<'_>,
     cache: &FileCache,
     path: &TreePath,
-    base: Option<&Built>,
+    from: Start<'_>,
 ) -> Done {
     let start = Instant::now();
-    // The linker does not know what the capabilities of a mesh pipeline depend on.
-    let base = base.filter(|base| !base.stage.kind.is_of_mesh_pipeline());
+    let base = match from {
+        // The linker does not know what the capabilities of a mesh pipeline depend on.
+        Start::Base(base) if !base.stage.kind.is_of_mesh_pipeline() => Some(base),
+        _ => None,
+    };
     let files = base.and_then(|base| cache.files(snapshot, &base.stage.dependencies));
     let rebuilt = base.zip(files.as_ref()).and_then(|(base, files)| {
         let old = (base.stage.spirv.as_slice(), base.files.as_ref()?);
@@ -291,7 +313,14 @@ pub(super) fn build(
         }
         Some((base, Rebuilt::Linked(spirv))) => (Ok(spirv), base.stage.dependencies.clone(), Vec::new()),
         None => {
-            let compiled = compiler.compile(snapshot, path);
+            let is_start = matches!(from, Start::Disk);
+            let compiled = is_start.then(|| module_cache::load(snapshot, path)).flatten().unwrap_or_else(|| {
+                let compiled = compiler.compile(snapshot, path);
+                if is_start {
+                    module_cache::store(snapshot, path, &compiled);
+                }
+                compiled
+            });
             (compiled.result, compiled.dependencies, compiled.warnings)
         }
     };
