@@ -5,7 +5,7 @@
 //! wrong. `SPECULA_LONG=1` runs all rows in every built-in environment at every roughness, by split sum and by samples, and
 //! prints the worst of each.
 
-use crate::support::{Session, assert_validated, glb, load, ready, settings};
+use crate::support::{Session, assert_validated, glb, is_long, load, ready, settings};
 use specula::render::Capture;
 
 const METAL: f64 = 1.0;
@@ -120,10 +120,6 @@ impl Worst {
             *self = Self { error, place };
         }
     }
-}
-
-fn is_long() -> bool {
-    std::env::var_os("SPECULA_LONG").is_some()
 }
 
 /// Every built-in environment at every roughness.

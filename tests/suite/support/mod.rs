@@ -48,6 +48,11 @@ pub fn assert_validated() {
     assert!(messages.is_empty(), "validation layers:\n{}", messages.join("\n"));
 }
 
+/// Whether this is a long run (`SPECULA_LONG=1`), by hand: more steps, graphs and rows than a run of all tests can have.
+pub fn is_long() -> bool {
+    std::env::var_os("SPECULA_LONG").is_some_and(|value| value == "1")
+}
+
 /// A shader tree of its own in a temporary folder.
 pub struct Tree {
     directory: TempDir,

@@ -7,7 +7,7 @@ use image::RgbaImage;
 use super::controls::{TILES, choose, drag_slider};
 use crate::support::process::PATIENCE;
 use crate::support::window::Viewer;
-use crate::support::{Tree, glb};
+use crate::support::{Tree, glb, is_long};
 
 const TONEMAP: &str = "tonemap.frag";
 /// The window's width, pixels.
@@ -17,7 +17,7 @@ const SLACK_KIB: u64 = 16 * 1024;
 
 /// How many times as many steps as in an ordinary run.
 fn factor() -> usize {
-    if std::env::var_os("SPECULA_LONG").is_some_and(|value| value == "1") { 10 } else { 1 }
+    if is_long() { 10 } else { 1 }
 }
 
 /// Repeats `step` so many times, and compares what the program holds after a fifth of them with what it holds in the end.

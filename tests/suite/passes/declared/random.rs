@@ -1,10 +1,7 @@
 //! Random graphs of passes.
 
 use super::{pass, sequence, sphere};
-use crate::support::{SIZE, assert_same, assert_validated, lines, ready};
-
-/// Number of graphs.
-const GRAPHS: usize = 300;
+use crate::support::{SIZE, assert_same, assert_validated, is_long, lines, ready};
 
 /// A small generator of pseudo-random numbers: xorshift32 (Marsaglia 2003, "Xorshift RNGs").
 struct Random(u32);
@@ -116,7 +113,8 @@ fn random_graphs_are_drawn_without_a_message() {
     let mut random = Random(0x9e37_79b9);
     let mut session = sphere(&[]);
     let mut drawn = 0;
-    for graph in 0..GRAPHS {
+    let graphs = if is_long() { 300 } else { 40 };
+    for graph in 0..graphs {
         session.set(["view.msaa=1", "view.msaa=4"][random.below(2) as usize]);
         let files = random_graph(&mut random);
         for (file, text) in &files {
@@ -153,6 +151,6 @@ fn random_graphs_are_drawn_without_a_message() {
         }
         ready(&session.changed(&names));
     }
-    assert_eq!(drawn, 2 * GRAPHS);
+    assert_eq!(drawn, 2 * graphs);
     assert_validated();
 }
