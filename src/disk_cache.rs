@@ -6,6 +6,7 @@
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, SystemTime};
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
@@ -85,7 +86,10 @@ pub(crate) fn store_in(name: &str, key: &str, bytes: &[u8]) {
 fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     // Another process may read the entry at the same time, so it must appear complete.
-    let temporary = folder.join(format!("{key}.{}.{PART}", std::process::id()));
+    // Two threads may write the same entry.
+    static WRITES: AtomicU64 = AtomicU64::new(0);
+    let number = WRITES.fetch_add(1, Ordering::Relaxed);
+    let temporary = folder.join(format!("{key}.{}-{number}.{PART}", std::process::id()));
     let mut file_of_part = std::fs::File::create(&temporary)?;
     file_of_part.write_all(bytes)?;
     file_of_part.write_all(&xxh3_64(bytes).to_le_bytes())?;
