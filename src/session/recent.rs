@@ -12,7 +12,7 @@ const MOST: usize = 10;
 /// The newest shaders, and those of an earlier version or a second tree.
 const MOST_SHADERS: usize = 2;
 
-/// What the last frames were made of and showed.
+/// The inputs and states of the last frames.
 #[derive(Clone, Default)]
 pub(super) struct Recent {
     pub(super) settings: RecentSettings,

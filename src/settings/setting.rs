@@ -8,7 +8,7 @@ use super::value::Value;
 pub struct Setting {
     /// Path for `--set`, as `lights.orbit.0.strength`.
     pub path: String,
-    /// What was declared with its field.
+    /// The entry that was declared with its field.
     pub entry: &'static Entry,
     /// Kind of value: a number, three numbers, a name, ...
     pub takes: &'static str,

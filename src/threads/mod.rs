@@ -267,7 +267,7 @@ pub(crate) struct Threads {
     device_threads: Vec<JoinHandle<()>>,
     /// The queue and the thread of captures, which starts with the first.
     capturer: Option<(Sender<Capture>, Option<JoinHandle<()>>)>,
-    /// What cancels each capture that has not ended.
+    /// Cancels each capture that has not ended.
     captures: Vec<Weak<AtomicBool>>,
     sender: MessageSender,
 }

@@ -14,7 +14,7 @@ use super::last_complete::LastComplete;
 use crate::app::state::shaders::versions::Versions;
 use crate::pipeline::PipelineSet;
 
-/// What draws a version.
+/// The pipelines of a version, and its last picture.
 struct Generation {
     set: Arc<PipelineSet>,
     /// Its last good frame. `None` while it is the newest version, and after the model has changed.

@@ -1,8 +1,8 @@
-//! What a picture waits for.
+//! The reasons for which a picture is not complete yet.
 
 use crate::render::Missing;
 
-/// What the picture waits for.
+/// A reason for which the picture is not complete yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Waits {
     /// Pipelines. Until then, the last frame stays.
@@ -12,7 +12,7 @@ pub(in crate::app) enum Waits {
 }
 
 impl Waits {
-    /// What a state with these missing resources waits for.
+    /// The reason of a state that lacks these resources.
     pub(in crate::app) fn of(missing: &Missing) -> Option<Self> {
         match missing {
             missing if missing.pipelines => Some(Self::Pipelines),

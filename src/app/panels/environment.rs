@@ -33,7 +33,7 @@ pub(super) fn show(
     });
 }
 
-/// What the bake does, or how long it took.
+/// The progress of the bake, or how long it took.
 fn baked(ui: &mut Ui, is_lit: bool, progress: Option<&(f32, String)>, report: &BakeReport) {
     // A row of constant height, so that the rows below keep their place.
     ui.allocate_ui(egui::vec2(ui.available_width(), 16.0), |ui| {

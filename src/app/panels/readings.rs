@@ -1,4 +1,4 @@
-//! What the panels show of the picture under the mouse.
+//! Values of the picture under the mouse, for panels.
 
 use std::sync::Arc;
 

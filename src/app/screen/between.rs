@@ -1,4 +1,4 @@
-//! What is drawn between frames: thumbnails and values of pixels.
+//! Draws thumbnails and values of pixels between frames.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What panels are asked to do in the next frame, and what of them the last frame has shown.
+//! Requests to panels for the next frame, and the panels that the last frame has shown.
 
 use super::arrangement::{Panel, Preset};
 
@@ -41,7 +41,7 @@ pub(in crate::app) enum PanelRequest {
     FollowSelection,
 }
 
-/// What the last frame has shown. What nobody sees is neither drawn nor measured.
+/// The panels and rows that the last frame has shown. Values that nobody sees are neither drawn nor measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::app) struct Sight {
     /// Whether the panel with the exercise was in sight.

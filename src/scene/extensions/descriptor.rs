@@ -1,4 +1,4 @@
-//! What a material extension of glTF is to the rest of the program: one descriptor each.
+//! Describes a material extension of glTF to the rest of the program: one descriptor each.
 
 use crate::scene::error::Problem;
 use crate::scene::gltf::materials::reader::Reader;

@@ -80,7 +80,7 @@ pub fn assigns(tokens: &[Token<'_>], at: usize) -> bool {
     tokens[at].text == "=" && !compares && !is_doubled()
 }
 
-/// What the next token is part of.
+/// The kind of line that the next token is part of.
 #[derive(Clone, Copy, PartialEq)]
 enum Context {
     /// A line of which only white space and comments have been read.

@@ -1,7 +1,7 @@
 //! The operations of SPIR-V that Specula reads, with what the words of their instructions are (SPIR-V specification, section 3.52).
 //! A test compares them with the grammar that Khronos publishes.
 
-/// What the operations of a group have in common.
+/// Properties that the operations of a group share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Sources, names and lines, which a driver does not need.

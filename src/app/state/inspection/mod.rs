@@ -39,7 +39,7 @@ impl Page {
     }
 }
 
-/// What is known of the inspected pixel. Nothing is read or measured while its panel is out of sight.
+/// The values that are known of the inspected pixel. Nothing is read or measured while its panel is out of sight.
 #[derive(Default)]
 pub(in crate::app) struct Inspection {
     /// Whether the panel is in sight in this frame.

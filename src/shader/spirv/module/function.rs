@@ -1,4 +1,4 @@
-//! What the words of a module say about its functions and blocks.
+//! The functions and blocks of a module, read from its words.
 
 use super::instruction::{Block, Function, Id};
 use super::words::Module;

@@ -13,7 +13,7 @@ const MOST_IDS: usize = 4_194_303;
 const VERSION: usize = 1;
 const BOUND: usize = 3;
 
-/// What is known of an id.
+/// The properties of an id.
 #[derive(Clone, Copy, Debug, Default)]
 struct Definition {
     /// Its type, if it is a value.
