@@ -30,7 +30,7 @@ macro_rules! settings {
             ) {
                 let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
                 $({
-                    #[allow(unused_imports)]
+                    #[allow(unused_imports, reason = "an entry may have neither a condition nor a unit")]
                     use $crate::settings::entry::{When::*, unit::*};
                     static ENTRY: $crate::settings::entry::Entry =
                         $crate::settings::entry::Entry::new(concat!($($doc),+))$($(.$option($($argument)*))+)?;
