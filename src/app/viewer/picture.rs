@@ -58,7 +58,9 @@ impl Viewer {
         if let Some(frame) = frame {
             prepare(&frame)?;
             let generation = state.shaders.generation;
-            if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
+            // A reload is reported first.
+            let settles = is_complete && state.scene.is_some() && self.first_frame.is_none();
+            if settles && self.settled.replace(generation) != Some(generation) {
                 emit(&self.events, &Event::Settled { generation });
                 self.check_exercise();
             }

@@ -9,18 +9,12 @@ const PASS: &str = "passes/swap.frag";
 const TEXT: &str = "//@pass swap to=picture\n#version 460\n#include \"pass.glsl\"\nuniform sampler2D picture;\n\
     void main() { color = texture(picture, uv).gbra; }\n";
 
-/// Waits until a good reload is on screen with all of its stages. If no stage is left for later, `settled` comes first.
+/// Waits until a good reload is on screen with all of its stages. No stage is left for later, and the reload is still reported before it
+/// settles.
 #[track_caller]
 fn shown(viewer: &mut Viewer) -> Value {
-    let (mut reload, mut settled) = (Value::Null, Value::Null);
-    viewer.running.until("reload and settled", |event| {
-        match event["event"].as_str() {
-            Some("reload") if event["ok"] == true => reload = event.clone(),
-            Some("settled") => settled = event.clone(),
-            _ => {}
-        }
-        reload.is_object() && reload["generation"] == settled["generation"]
-    });
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
     reload
 }
 
