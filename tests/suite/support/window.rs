@@ -6,6 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use image::RgbaImage;
+use serde_json::Value;
 use tempfile::TempDir;
 
 use super::process::{Finished, PATIENCE, Running, finish, specula};
@@ -197,7 +198,7 @@ impl Viewer {
 
     /// Waits until the program has started again after a loss, with a new window. Returns the event about the loss.
     #[track_caller]
-    pub fn restarted(&mut self) -> serde_json::Value {
+    pub fn restarted(&mut self) -> Value {
         let event = self.running.event("restarted");
         self.running.event("window");
         self.find_window();
@@ -243,15 +244,19 @@ impl Viewer {
         geometry.lines().filter(|line| !line.starts_with("WINDOW=")).collect::<Vec<_>>().join(" ")
     }
 
-    /// Waits for the model and for the environment, which appear in either order.
+    /// Waits for the model and for the environment, which appear in either order. Returns the event about the environment.
     #[track_caller]
-    pub fn ready_and_baked(&mut self) {
-        let (mut ready, mut baked) = (false, false);
+    pub fn ready_and_baked(&mut self) -> Value {
+        let (mut ready, mut bake) = (false, Value::Null);
         self.running.until("model and environment", |event| {
-            ready |= event["event"] == "ready";
-            baked |= event["event"] == "bake";
-            ready && baked
+            match event["event"].as_str() {
+                Some("ready") => ready = true,
+                Some("bake") => bake = event.clone(),
+                _ => {}
+            }
+            ready && bake.is_object()
         });
+        bake
     }
 
     /// Presses and releases a key.
