@@ -1,11 +1,8 @@
-//! Maps texels of an equirectangular image to directions, and integrates over all texels.
+//! Maps texels of an equirectangular image to directions and solid angles.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec2, Vec3};
-use rayon::prelude::*;
-
-use super::Environment;
 
 /// World direction (unit, +Y up) of a point of an equirectangular image. `u` runs from the left edge, `v` from the top,
 /// both 0..1. The center column (u = 0.5) looks down -Z, u = 0.75 looks down +X, v = 0 is +Y.
@@ -54,30 +51,4 @@ impl TexelDirections {
 pub(super) fn texel_solid_angle(y: usize, width: usize, height: usize) -> f64 {
     let cos_theta = |edge: usize| (edge as f64 / height as f64 * PI).cos();
     (cos_theta(y) - cos_theta(y + 1)) * TAU / width as f64
-}
-
-impl Environment {
-    /// Mean radiance over the sphere, linear RGB, weighted by solid angle.
-    pub fn mean_radiance(&self) -> Vec3 {
-        (self.integrate(|_| 1.0) / (4.0 * PI)).as_vec3()
-    }
-
-    /// Irradiance of a surface with the unit normal `n`, linear RGB: the integral of radiance times cos(theta) over the
-    /// hemisphere. Sums over every texel, as a reference for faster methods.
-    pub fn irradiance(&self, n: Vec3) -> Vec3 {
-        self.integrate(|direction| f64::from(direction.dot(n).max(0.0))).as_vec3()
-    }
-
-    /// Integral of radiance times `weight` over the sphere.
-    fn integrate(&self, weight: impl Fn(Vec3) -> f64 + Sync) -> DVec3 {
-        let (width, height) = (self.width as usize, self.height as usize);
-        let directions = TexelDirections::new(width, height);
-        let sums = self.pixels.par_chunks_exact(width.max(1)).enumerate().map(|(y, row)| {
-            let texels = row.iter().zip(directions.row(y));
-            let sum: DVec3 = texels.map(|(&[r, g, b, _], at)| Vec3::new(r, g, b).as_dvec3() * weight(at)).sum();
-            sum * texel_solid_angle(y, width, height)
-        });
-        // Collecting the rows before summing gives the same bits for any number of threads.
-        sums.collect::<Vec<_>>().into_iter().sum()
-    }
 }

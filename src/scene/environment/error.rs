@@ -53,8 +53,8 @@ pub enum EnvironmentProblem {
     /// A size outside the limits.
     #[error(
         "has {width}x{height} pixels, expected 1x1 to {}x{}. Scale it to a size in between; 2048x1024 is plenty.",
-        super::MAX_WIDTH,
-        super::MAX_HEIGHT
+        super::decoded::MAX_WIDTH,
+        super::decoded::MAX_HEIGHT
     )]
     Size {
         /// Columns according to the header.

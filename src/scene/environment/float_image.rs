@@ -4,20 +4,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
 
+use super::decoded::Decoded;
 use super::error::EnvironmentProblem as Problem;
-use super::{Environment, MAX_HEIGHT, MAX_WIDTH, open_exr, radiance};
-
-/// A decoded image, rows from top to bottom. Its values are not validated yet.
-pub struct Decoded {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// RGB and an alpha of 1.
-    pub pixels: Vec<[f32; 4]>,
-    /// Conversions that the file's author may not expect.
-    pub warnings: Vec<String>,
-}
+use super::panorama::peak;
+use super::{Environment, open_exr, radiance};
 
 /// Decodes a file; its content determines the format. The caller sets the name.
 pub fn decode(bytes: &[u8]) -> Result<Environment, Problem> {
@@ -46,20 +36,6 @@ fn another_format(bytes: &[u8]) -> Problem {
     }
 }
 
-/// Refuses a size outside the limits, or one that `available` bytes cannot hold, before anything is allocated.
-/// `least_bytes` is the smallest possible size of such an image in this format.
-pub fn check_size(width: u64, height: u64, least_bytes: u64, available: usize) -> Result<(u32, u32), Problem> {
-    let in_bounds = |size: u64, most: u32| u32::try_from(size).ok().filter(|size| (1..=most).contains(size));
-    let (Some(columns), Some(rows)) = (in_bounds(width, MAX_WIDTH), in_bounds(height, MAX_HEIGHT)) else {
-        return Err(Problem::Size { width, height });
-    };
-    let found = available as u64;
-    if found < least_bytes {
-        return Err(Problem::TooShort { width: columns, height: rows, expected: least_bytes, found });
-    }
-    Ok((columns, rows))
-}
-
 /// Validates every value, since later stages integrate and would spread a single NaN everywhere.
 fn finish(decoded: Decoded) -> Result<Environment, Problem> {
     let Decoded { width, height, pixels, mut warnings } = decoded;
@@ -86,9 +62,4 @@ fn finish(decoded: Decoded) -> Result<Environment, Problem> {
         ));
     }
     Ok(Environment { name: String::new(), width, height, pixels, peak, warnings })
-}
-
-/// Largest value of red, green and blue.
-pub fn peak(pixels: &[[f32; 4]]) -> f32 {
-    pixels.par_iter().map(|&[r, g, b, _]| r.max(g).max(b)).reduce(|| 0.0, f32::max)
 }

@@ -4,11 +4,13 @@
 //! pixels. A caller that finds the fingerprint in its cache skips decoding.
 
 mod built_in;
+mod decoded;
 mod direction;
 mod error;
 mod float_image;
 mod importance;
 mod open_exr;
+mod panorama;
 mod radiance;
 mod sky;
 mod studio;
@@ -23,38 +25,17 @@ use xxhash_rust::xxh3::xxh3_128_with_seed;
 use crate::regular_file;
 
 pub use built_in::BUILT_IN;
+pub use decoded::{MAX_HEIGHT, MAX_WIDTH};
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 pub use importance::CubeLuminance;
+pub use panorama::Environment;
 pub use suns::{Sun, has_exact_sun, restore_clipped, separates_suns};
 
-/// Largest supported width, pixels.
-pub const MAX_WIDTH: u32 = 16384;
-/// Largest supported height, pixels.
-pub const MAX_HEIGHT: u32 = 8192;
 /// Largest supported file: the largest image with four floats a pixel, and a header.
 const MAX_FILE_BYTES: u64 = MAX_WIDTH as u64 * MAX_HEIGHT as u64 * 16 + (1 << 20);
 /// Raise this when the same bytes decode to other pixels. It seeds the fingerprint, so old cache entries are not used.
 const DECODER_VERSION: u64 = 1;
-
-/// Radiance from every direction, linear RGB times cd/m^2, as an equirectangular image. [`direction_from_uv`] maps texels to
-/// directions.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Environment {
-    /// The built-in name, or the file's name without its extension.
-    pub name: String,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Radiance, linear RGB with Rec. 709 primaries; alpha is 1. Rows from top (+Y) to bottom, `width * height` in all;
-    /// every value is finite and not negative.
-    pub pixels: Vec<[f32; 4]>,
-    /// Largest value of any channel.
-    pub peak: f32,
-    /// Warnings for the user, such as an unusual aspect ratio or an all-black image.
-    pub warnings: Vec<String>,
-}
 
 /// An environment that was read but not decoded yet.
 #[derive(Clone, Debug)]

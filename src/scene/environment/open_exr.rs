@@ -6,8 +6,8 @@ use exr::meta::attribute::Chromaticities;
 use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, Vec2};
 
+use super::decoded::{Decoded, check_size};
 use super::error::EnvironmentProblem as Problem;
-use super::float_image::{Decoded, check_size};
 
 /// Flags in the version field (OpenEXR file layout, "Version Field").
 const DEEP: u32 = 1 << 11;

@@ -6,8 +6,8 @@ use image::codecs::hdr::{HdrDecoder, HdrMetadata};
 use image::error::{ImageError, UnsupportedErrorKind};
 use rayon::prelude::*;
 
+use super::decoded::{Decoded, check_size};
 use super::error::EnvironmentProblem as Problem;
-use super::float_image::{Decoded, check_size};
 
 /// Decodes a whole file.
 pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {

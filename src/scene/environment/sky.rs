@@ -11,9 +11,8 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use super::Environment;
-use super::built_in::render;
 use super::direction::texel_solid_angle;
-use super::float_image::peak;
+use super::panorama::peak;
 
 /// Haze: 2 is very clear air, 6 is hazy (P99, section 3).
 const TURBIDITY: f64 = 2.6;
@@ -50,7 +49,7 @@ pub fn make(width: u32) -> Environment {
     // A Lambertian ground: L = albedo E / pi.
     let ground = GROUND_ALBEDO * (sky_irradiance + sun_irradiance * sky.sun.y) / PI;
 
-    let mut environment = render(width, |direction| {
+    let mut environment = Environment::render(width, |direction| {
         let direction = direction.as_dvec3();
         if direction.y >= 0.0 {
             return radiance(direction).as_vec3();

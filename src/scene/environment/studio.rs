@@ -7,7 +7,6 @@
 use glam::{Vec2, Vec3};
 
 use super::Environment;
-use super::built_in::render;
 
 /// A rectangular light, in the perspective projection around its center.
 struct SoftBox {
@@ -83,7 +82,7 @@ const SEAM: f32 = 0.16;
 /// Generates the studio, with `width` columns and half as many rows.
 pub fn make(width: u32) -> Environment {
     let boxes = BOXES.map(|soft_box| (soft_box.frame(), soft_box));
-    render(width, |direction| {
+    Environment::render(width, |direction| {
         let y = direction.y;
         let band = (-((y - WALL_BAND.0) / WALL_BAND.1).powi(2)).exp();
         let wall = WALL_COLOR * (WALL.0 + WALL.1 * band);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{MeasuredKind, merl, utia};
+use super::kind::{MERL_DIMENSIONS, MeasuredKind};
 
 /// A measured BRDF that could not be read. The message is one paragraph: the file, what was expected, what was found,
 /// what to do.
@@ -38,7 +38,7 @@ pub enum MeasuredProblem {
         "has the dimensions {}, expected {} (MERL's theta_h x theta_d x phi_d). Specula reads files of the MERL \
          database's own resolution only: resample it, or take another file.",
         dimensions(found),
-        dimensions(&merl::DIMENSIONS)
+        dimensions(&MERL_DIMENSIONS)
     )]
     Dimensions {
         /// The header's three numbers.
@@ -80,9 +80,9 @@ pub enum MeasuredProblem {
 fn formats() -> String {
     format!(
         "a MERL file (.binary, {} bytes, beginning with the numbers {}) or a UTIA file (.bin, {} bytes)",
-        merl::FILE_BYTES,
-        dimensions(&merl::DIMENSIONS),
-        utia::FILE_BYTES
+        MeasuredKind::Merl.file_bytes(),
+        dimensions(&MERL_DIMENSIONS),
+        MeasuredKind::Utia.file_bytes()
     )
 }
 

@@ -13,18 +13,16 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 
+use super::decoded::{Decoded, interleave, warn_of_negative};
+use super::error::MeasuredProblem;
 use super::grid::{Between, triple};
-use super::{Decoded, MeasuredProblem, interleave, warn_of_negative};
+use super::kind::{
+    MERL_CELLS as CELLS, MERL_DIMENSIONS as DIMENSIONS, MERL_HEADER_BYTES as HEADER_BYTES, MeasuredKind,
+};
 
-const THETA_H: usize = 90;
-const THETA_D: usize = 90;
-const PHI_D: usize = 180;
-const CELLS: usize = THETA_H * THETA_D * PHI_D;
-
-/// The dimensions in the header.
-pub(super) const DIMENSIONS: [i32; 3] = [THETA_H as i32, THETA_D as i32, PHI_D as i32];
-pub(super) const HEADER_BYTES: usize = 12;
-pub(super) const FILE_BYTES: usize = HEADER_BYTES + 3 * CELLS * size_of::<f64>();
+const THETA_H: usize = DIMENSIONS[0] as usize;
+const THETA_D: usize = DIMENSIONS[1] as usize;
+const PHI_D: usize = DIMENSIONS[2] as usize;
 
 /// Converts stored values to 1/sr: one factor per channel (from the database's reader).
 const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
@@ -118,7 +116,7 @@ pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
 /// Encodes `f` as a file.
 pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
     let mut bytes: Vec<u8> = DIMENSIONS.iter().flat_map(|n| n.to_le_bytes()).collect();
-    bytes.resize(FILE_BYTES, 0);
+    bytes.resize(MeasuredKind::Merl.file_bytes(), 0);
     for index in 0..CELLS {
         let (l, v) = directions(index / (THETA_D * PHI_D), index / PHI_D % THETA_D, index % PHI_D);
         let above = l.z > 0.0 && v.z > 0.0;

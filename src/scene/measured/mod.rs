@@ -11,8 +11,10 @@
 //! directions here are unit vectors in tangent space (x tangent, y bitangent, z normal) that point away from the
 //! surface.
 
+mod decoded;
 mod error;
 mod grid;
+mod kind;
 mod merl;
 #[cfg(test)]
 mod tests;
@@ -26,36 +28,9 @@ use glam::Vec3;
 
 use crate::regular_file;
 pub use error::{MeasuredError, MeasuredProblem};
-
-/// Negative values are failed measurements. If more than this fraction of all values is negative, the user is warned.
-const UNUSUAL: f64 = 0.05;
-
-/// The database whose format a file has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeasuredKind {
-    /// Isotropic; theta_h x theta_d x phi_d = 90 x 90 x 180.
-    Merl,
-    /// Anisotropic; (theta x phi) of the light by (theta x phi) of the view, (6 x 48) x (6 x 48).
-    Utia,
-}
+pub use kind::MeasuredKind;
 
 impl MeasuredKind {
-    /// The database's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Merl => "MERL",
-            Self::Utia => "UTIA",
-        }
-    }
-
-    /// The size of every file of this format, bytes.
-    pub fn file_bytes(self) -> usize {
-        match self {
-            Self::Merl => merl::FILE_BYTES,
-            Self::Utia => utia::FILE_BYTES,
-        }
-    }
-
     /// Encodes `f(l, v)`, in 1/sr for directions above the horizon, as a file of this format. Other programs can read
     /// it, and the tests read it back.
     pub fn encode(self, f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
@@ -71,7 +46,7 @@ impl MeasuredKind {
 pub struct MeasuredBrdf {
     /// The file's name without its extension, which both databases use as the material's name.
     pub name: String,
-    /// The file's name without its extension. Both databases use it as the material's name.
+    /// The database whose format the file has.
     pub kind: MeasuredKind,
     /// 1/sr, linear RGB triples in the file's order, none negative: 1,458,000 (MERL) or 82,944 (UTIA) of them.
     pub values: Vec<f32>,
@@ -113,12 +88,6 @@ impl MeasuredBrdf {
     }
 }
 
-/// A file's values as RGB triples, and warnings about them.
-struct Decoded {
-    values: Vec<f32>,
-    warnings: Vec<String>,
-}
-
 /// Reads the whole file once its first bytes and its length determine the format. The header's dimensions are only
 /// compared, never used as a size.
 fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
@@ -128,7 +97,7 @@ fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
     }
     let mut file = regular_file::open(path).map_err(MeasuredProblem::Read)?;
     let mut bytes = Vec::new();
-    (&mut file).take(merl::HEADER_BYTES as u64).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
+    (&mut file).take(kind::MERL_HEADER_BYTES as u64).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
     let kind = recognize(&bytes, metadata.len(), path.extension())?;
     let rest = (kind.file_bytes() - bytes.len()) as u64;
     file.take(rest).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
@@ -151,7 +120,7 @@ fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<Me
         return Err(MeasuredProblem::Empty);
     }
     let dimensions = merl::dimensions(header);
-    if dimensions == Some(merl::DIMENSIONS) {
+    if dimensions == Some(kind::MERL_DIMENSIONS) {
         return of_length(MeasuredKind::Merl);
     }
     if length == MeasuredKind::Utia.file_bytes() as u64 {
@@ -164,34 +133,4 @@ fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<Me
         None if is_called("bin") => of_length(MeasuredKind::Utia),
         None => Err(MeasuredProblem::Unknown { found: length }),
     }
-}
-
-/// Converts three planes of doubles (red, green, blue) to RGB triples of `f32`, multiplied by `scale`.
-fn interleave(planes: &[u8], scale: [f64; 3]) -> Result<Vec<f32>, MeasuredProblem> {
-    let (doubles, _) = planes.as_chunks::<8>();
-    let cells = doubles.len() / 3;
-    let mut values = vec![0.0; cells * 3];
-    for (index, bytes) in doubles.iter().enumerate() {
-        let (channel, cell) = (index / cells, index % cells);
-        let found = f64::from_le_bytes(*bytes);
-        let value = (found * scale[channel]) as f32;
-        if !value.is_finite() {
-            return Err(MeasuredProblem::NotANumber { channel: ["red", "green", "blue"][channel], index: cell, found });
-        }
-        values[cell * 3 + channel] = value;
-    }
-    if values.iter().any(|&value| value > 0.0) { Ok(values) } else { Err(MeasuredProblem::Black) }
-}
-
-/// A warning if unusually many values (`negative` of `all`) were negative and set to 0.
-fn warn_of_negative(negative: usize, all: usize) -> Option<String> {
-    let part = negative as f64 / all as f64;
-    (part > UNUSUAL).then(|| {
-        format!(
-            "{negative} of {all} values ({:.0} %) are negative where both directions are above the horizon, and are \
-             treated as 0. A few are normal. This many mean that most of the measurement failed, or that the file is \
-             not what it seems.",
-            100.0 * part
-        )
-    })
 }

@@ -14,16 +14,15 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec3;
 
+use super::decoded::{Decoded, interleave, warn_of_negative};
+use super::error::MeasuredProblem;
 use super::grid::{Between, triple};
-use super::{Decoded, MeasuredProblem, interleave, warn_of_negative};
+use super::kind::{MeasuredKind, UTIA_DIRECTIONS as DIRECTIONS, UTIA_STEPS};
 
-const THETA: usize = 6;
-const PHI: usize = 48;
-const DIRECTIONS: usize = THETA * PHI;
+const THETA: usize = UTIA_STEPS[0];
+const PHI: usize = UTIA_STEPS[1];
 const THETA_STEP: f32 = PI / 12.0;
 const PHI_STEP: f32 = TAU / PHI as f32;
-
-pub(super) const FILE_BYTES: usize = 3 * DIRECTIONS * DIRECTIONS * size_of::<f64>();
 
 /// Albedos up to this are within the accuracy of such a measurement.
 const LARGEST_ALBEDO: f32 = 1.05;
@@ -90,7 +89,7 @@ pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
         Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
     };
     let cells = DIRECTIONS * DIRECTIONS;
-    let mut bytes = vec![0; FILE_BYTES];
+    let mut bytes = vec![0; MeasuredKind::Utia.file_bytes()];
     for cell in 0..cells {
         let value = f(direction(cell / DIRECTIONS), direction(cell % DIRECTIONS)).as_dvec3().to_array();
         for (channel, stored) in value.iter().enumerate() {
