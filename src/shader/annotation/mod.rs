@@ -22,6 +22,7 @@
 //! error with its line. Values are kept by name in `Settings::shader`, so they survive reloads in which offsets move.
 //! Parameters go through a uniform buffer and cost nothing; constants build pipelines.
 
+mod annotations;
 mod cursor;
 mod mode;
 mod mode_list;
@@ -37,7 +38,6 @@ mod value;
 
 use std::collections::BTreeMap;
 
-use crate::message::did_you_mean;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::snapshot::Snapshot;
@@ -50,35 +50,10 @@ use resolve::resolve;
 use texture::TextureDesc;
 use ui::Ui;
 
+pub use annotations::Annotations;
 pub use mode::{DrawAs, Encode, Mode, Numbers, PATHS_STAGE};
 pub use mode_list::{listed, neighbors};
 pub use parameter::{Constant, Parameter, ParameterType};
-
-/// All annotations of a tree.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Annotations {
-    /// Ordered by id.
-    pub modes: Vec<Mode>,
-    /// Ordered by id.
-    pub constants: Vec<Constant>,
-    /// Ordered by offset in `Params`, then those of passes by file and line.
-    pub parameters: Vec<Parameter>,
-    /// Ordered by name.
-    pub passes: Vec<PassDesc>,
-    /// Ordered by name.
-    pub textures: Vec<TextureDesc>,
-}
-
-impl Annotations {
-    /// A message if no constant has the `name` that follows `when=`.
-    pub fn unknown_constant(&self, name: &str) -> Option<String> {
-        let mut known = self.constants.iter().map(|constant| constant.name.as_str());
-        if known.clone().any(|constant| constant == name) {
-            return None;
-        }
-        Some(format!("no constant with //@ui is named `{name}`.{}", did_you_mean(name, known.by_ref())))
-    }
-}
 
 /// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules. `is_whole`: `files` are all of the
 /// tree, so that the constant of a `when=` must be among them.
