@@ -99,7 +99,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
 fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let folder = TempFolder::new()?;
     copy_tree(&args.common.source()?, &folder.0)?;
-    let source = Source::Disk(folder.0.clone());
+    let source = Source::disk(folder.0.clone());
     let (sender, batches) = unbounded::<Batch>();
     let on_batch = move |batch| {
         let _ = sender.send(batch);

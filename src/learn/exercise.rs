@@ -183,7 +183,7 @@ fn tree(files: &BTreeMap<TreePath, String>) -> Source {
     let mut all: BTreeMap<TreePath, String> =
         embedded::list(None).into_iter().filter_map(|path| Some((path.clone(), shipped(&path)?))).collect();
     all.extend(files.clone());
-    Source::Memory(all)
+    Source::of_texts(all)
 }
 
 fn shipped(path: &TreePath) -> Option<String> {

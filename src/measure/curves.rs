@@ -141,5 +141,5 @@ fn only_measuring(tree: &Source, texts: &BTreeMap<TreePath, Arc<str>>) -> Source
         files.filter_map(|path| tree.read(&path).ok().map(|text| (path, text))).collect();
     let newest = texts.iter().filter(|(path, _)| is_used(path));
     files.extend(newest.map(|(path, text)| (path.clone(), text.to_string())));
-    Source::Memory(files)
+    Source::of_texts(files)
 }

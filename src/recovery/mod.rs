@@ -232,7 +232,7 @@ impl RecoveryState {
         let path = |text: &String| TreePath::parse(text);
         let texts = good.texts.iter().filter_map(|(name, text)| Some((path(name)?, text.clone()))).collect();
         let quarantined = self.quarantined.iter().filter_map(|(name, hash)| Some((path(name)?, *hash))).collect();
-        Source::quarantined(tree, &texts, quarantined, &format!("{} while this text was in use", loss.cause))
+        Source::quarantined(&tree, &texts, quarantined, &format!("{} while this text was in use", loss.cause))
     }
 }
 

@@ -54,7 +54,7 @@ impl Viewer {
     /// Goes back to the numbers in the file.
     pub(super) fn end_draft(&mut self) {
         if let Some(draft) = self.edits.draft.take() {
-            let source = self.source.without_draft().clone();
+            let source = self.source.without_draft();
             self.threads.worker.read_from(source, BTreeSet::from([draft.path]));
         }
     }

@@ -16,7 +16,7 @@ use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::environment;
 use crate::settings::GROUND;
-use crate::shader::{Diagnostic, Severity, ShaderSet, Source, expression};
+use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
 use crate::threads::baker::BakeMessage;
 use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, TaskKind};
@@ -50,7 +50,7 @@ impl Viewer {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
                 self.shader.location = source.location().map(Into::into);
-                self.arrange_for(matches!(source, Source::Toy(_)));
+                self.arrange_for(source.is_toy());
                 self.threads.follow_tree(&source);
                 self.source = source;
                 self.remember_tree(&reload.outcome);

@@ -37,7 +37,7 @@ impl Viewer {
     /// Goes back to the texts of the files.
     pub(super) fn show_newest(&mut self) {
         if let Some(restored) = self.edits.restored.take() {
-            let source = self.source.without_draft().clone();
+            let source = self.source.without_draft();
             self.shader.compiling = true;
             self.threads.worker.read_from(source, restored.changed);
         }

@@ -102,7 +102,7 @@ pub(super) fn edits(
     };
     let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
     let model = args.common.model_silently(args.model.as_deref())?;
-    let (source, settings) = (Source::Disk(folder.0.clone()), args.common.settings()?);
+    let (source, settings) = (Source::disk(folder.0.clone()), args.common.settings()?);
     let (headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     let mut replay = Replay { headless, root: folder.0.clone(), batches };
     // Each edit's times, with incremental compilation and without.

@@ -44,7 +44,7 @@ pub(super) fn passes(
     let mut renderers = [
         renderer(args.common.source()?, settings.clone(), model.clone())?,
         renderer(args.common.source()?, more, model.clone())?,
-        renderer(Source::Disk(folder.0.clone()), settings, model)?,
+        renderer(Source::disk(folder.0.clone()), settings, model)?,
     ];
     let mut samples: [Vec<f64>; 3] = Default::default();
     // Wall time minus device time; empty on a device that does not measure.

@@ -288,7 +288,7 @@ pub fn example(name: &str) -> Result<Example, Failure> {
 /// built-in one.
 pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
     if let Some(name) = directory.and_then(Path::to_str).and_then(|name| name.strip_prefix("examples:")) {
-        return Ok(Source::Embedded(Some(example(name)?)));
+        return Ok(Source::example(Some(example(name)?)));
     }
     match directory {
         Some(directory) if is_specula_tree(directory) => open(directory),

@@ -32,7 +32,7 @@ struct Built {
 
 /// Compiles a stage as a whole.
 fn whole(texts: &Texts, stage: &TreePath) -> Result<Built, String> {
-    let source = Source::Memory(texts.clone());
+    let source = Source::of_texts(texts.clone());
     let snapshot = Snapshot::new(&source);
     let compiled = compiler().compile(&snapshot, stage);
     let files = FileCache::default().files(&snapshot, &compiled.dependencies).unwrap();
@@ -41,7 +41,7 @@ fn whole(texts: &Texts, stage: &TreePath) -> Result<Built, String> {
 
 /// Compiles an edited stage incrementally.
 fn incremental(texts: &Texts, stage: &TreePath, base: &Built) -> Option<Built> {
-    let source = Source::Memory(texts.clone());
+    let source = Source::of_texts(texts.clone());
     let snapshot = Snapshot::new(&source);
     let files = FileCache::default().files(&snapshot, base.files.keys()).unwrap();
     match rebuild(compiler(), &snapshot, stage, (&base.spirv, &base.files), &files)? {
@@ -334,7 +334,7 @@ fn comments_compile_nothing() {
     let base = whole(&small("", ""), &stage).unwrap();
     for (from, to) in [("return a * a;", "/* a\n */ return\n\n a * a; // b\n"), ("void main", "// main\n void main")] {
         let texts = small(from, to);
-        let source = Source::Memory(texts);
+        let source = Source::of_texts(texts);
         let snapshot = Snapshot::new(&source);
         let files = FileCache::default().files(&snapshot, base.files.keys()).unwrap();
         let rebuilt = rebuild(compiler(), &snapshot, &stage, (&base.spirv, &base.files), &files);

@@ -1,6 +1,7 @@
 //! Updates of trees in memory.
 
 use super::*;
+use crate::shader::source::Tree;
 
 const HEAD: &str = "#version 460\nlayout(location = 0) out vec4 o;\n";
 
@@ -12,7 +13,7 @@ fn library(files: &[(&str, &str)], stages: &[&str]) -> Library {
 /// Writes a file (or removes it, with `None`) and updates with that path only.
 fn edit(library: &mut Library, path: &str, text: Option<&str>) -> Update {
     let mut source = (*library.source).clone();
-    let Source::Memory(files) = &mut source else { panic!("memory") };
+    let Tree::Memory(files) = &mut source.tree else { panic!("memory") };
     match text {
         Some(text) => files.insert(path.into(), text.to_owned()),
         None => files.remove(&path.into()),
@@ -169,7 +170,7 @@ fn messages_are_those_of_the_whole_stage() {
     let texts = |color: &str| files(color).map(|(path, text)| (TreePath::from(path), text));
     let good = "float color() {\n    float c = 0.5;\n    return c;\n}";
     let new = |color: &str| {
-        Library::new(Source::Memory(texts(color).into()), Arc::new(Compiler::new().unwrap()), &["a.frag"])
+        Library::new(Source::of_texts(texts(color).into()), Arc::new(Compiler::new().unwrap()), &["a.frag"])
     };
     let messages = |update: Update| match update {
         Update::Ready(set, _) => set.warnings.iter().map(Diagnostic::render).collect::<Vec<_>>(),

@@ -118,7 +118,7 @@ mod tests {
         let written = write_to(&target, None).unwrap();
         assert_eq!(written.len(), list(None).len());
         assert!(is_specula_tree(&target));
-        assert_eq!(Source::Disk(target.clone()).list(), Source::embedded().list());
+        assert_eq!(Source::disk(target.clone()).list(), Source::embedded().list());
         let error = write_to(&target, None).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
         assert!(error.to_string().contains("not empty"), "{error}");
@@ -135,6 +135,6 @@ mod tests {
         assert!(Example::named("reaction/passes").is_none() && Example::named("").is_none());
         let directory = tempfile::tempdir().unwrap();
         write_to(directory.path(), Some(example)).unwrap();
-        assert_eq!(Source::Disk(directory.path().to_owned()).list(), Source::Embedded(Some(example)).list());
+        assert_eq!(Source::disk(directory.path()).list(), Source::example(Some(example)).list());
     }
 }

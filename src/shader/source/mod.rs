@@ -1,165 +1,66 @@
-//! Sources of shader text: a directory, the tree inside the binary, or memory (for tests).
+//! Sources of shader text: a tree, and texts in memory that are read instead of some of its files.
 
 pub(super) mod directory;
 pub mod draft;
 pub mod embedded;
+mod error;
 pub mod pattern;
 pub mod quarantine;
 mod read;
 pub mod snapshot;
 mod toy;
+mod tree;
+mod tree_path;
 
-use std::collections::BTreeMap;
-use std::ffi::OsStr;
-use std::fmt;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Serialize;
-
 use crate::shader::diagnostic::Diagnostic;
-
-use draft::Draft;
+use draft::DraftText;
 use embedded::Example;
 use quarantine::Quarantine;
-use read::{check_text, names_in, read_bytes, read_file};
 use toy::Toy;
 
-/// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
-pub const MAX_FILE_BYTES: u64 = 4 << 20;
-/// Largest size of an image file.
-pub const MAX_IMAGE_BYTES: u64 = 256 << 20;
+pub use error::SourceError;
+pub use read::is_specula_tree;
+pub use tree::Tree;
+pub use tree_path::TreePath;
 
-/// The path of a file in a shader tree: relative to the root, normalized, with forward slashes.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub struct TreePath(String);
-
-impl TreePath {
-    /// Normalizes `.` and `..`. `None` if the path is absolute, leaves the root, or is the root itself.
-    pub fn parse(path: &str) -> Option<Self> {
-        if path.starts_with('/') {
-            return None;
-        }
-        let mut parts: Vec<&str> = Vec::new();
-        for part in path.split('/') {
-            match part {
-                "" | "." => {}
-                ".." => {
-                    parts.pop()?;
-                }
-                part => parts.push(part),
-            }
-        }
-        if parts.is_empty() { None } else { Some(Self(parts.join("/"))) }
-    }
-
-    /// Resolves `relative` from the directory of this file. `None` if the result leaves the root.
-    pub fn sibling(&self, relative: &str) -> Option<Self> {
-        match self.0.rsplit_once('/') {
-            Some((directory, _)) if !relative.starts_with('/') => Self::parse(&format!("{directory}/{relative}")),
-            _ => Self::parse(relative),
-        }
-    }
-
-    /// The path as text.
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-
-    /// The text after the last dot of the file name.
-    pub fn extension(&self) -> Option<&str> {
-        let name = self.0.rsplit('/').next()?;
-        name.rsplit_once('.').map(|(_, extension)| extension)
-    }
-
-    /// The path without its extension: `ibl/dfg` of `ibl/dfg.comp`.
-    pub fn stem(&self) -> &str {
-        match self.extension() {
-            Some(extension) => &self.0[..self.0.len() - extension.len() - 1],
-            None => &self.0,
-        }
-    }
-}
-
-impl From<&str> for TreePath {
-    /// Converts paths in source code. A `..` that would leave the root stays at the root. Use [`TreePath::parse`], which refuses
-    /// such a path, for input.
-    fn from(path: &str) -> Self {
-        let mut parts: Vec<&str> = Vec::new();
-        for part in path.split('/') {
-            match part {
-                "" | "." => {}
-                ".." => {
-                    parts.pop();
-                }
-                part => parts.push(part),
-            }
-        }
-        Self(parts.join("/"))
-    }
-}
-
-impl fmt::Display for TreePath {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-/// Why a file of a tree cannot be used. The message continues "FILE ...".
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SourceError {
-    /// No such file.
-    #[error("does not exist")]
-    Missing,
-    /// A directory instead of a file.
-    #[error("is a directory, expected a GLSL file")]
-    Directory,
-    /// The file is not UTF-8.
-    #[error("is not UTF-8 text (line {line}); save it as UTF-8")]
-    NotUtf8 {
-        /// First bad line, from 1.
-        line: u32,
-    },
-    /// A NUL byte, which the compiler would treat as the end of the text.
-    #[error("holds a NUL byte (line {line}); is it a binary file, or still being written?")]
-    Nul {
-        /// 1-based.
-        line: u32,
-    },
-    /// Larger than [`MAX_FILE_BYTES`], or [`MAX_IMAGE_BYTES`] for an image.
-    #[error("has {bytes} bytes, more than the {most} that such a file may have")]
-    TooBig {
-        /// Size found.
-        bytes: u64,
-        /// Largest size.
-        most: u64,
-    },
-    /// Any other error of the system.
-    #[error("cannot be read: {0}")]
-    Io(String),
-}
-
-/// A shader tree.
+/// A shader tree, some of whose files may have other texts. It has the methods of its [`Tree`].
 #[derive(Clone, Debug)]
-pub enum Source {
-    /// A directory, read again at every update.
-    Disk(PathBuf),
-    /// A directory, some of whose files are quarantined: see [`Source::quarantined`].
-    Quarantined(Arc<Quarantine>),
-    /// A tree with other texts of some files in memory: see [`Source::with_draft`].
-    Draft(Arc<Draft>),
-    /// The tree inside the binary, or that of an example.
-    Embedded(Option<Example>),
-    /// A single file of another playground.
-    Toy(Arc<Toy>),
-    /// Text in memory.
-    Memory(BTreeMap<TreePath, String>),
+pub struct Source {
+    pub(in crate::shader) tree: Tree,
+    /// Files whose last good texts are read: see [`Source::quarantined`].
+    quarantine: Option<Arc<Quarantine>>,
+    /// Texts that are not saved: see [`Source::with_draft`].
+    draft: Option<Arc<BTreeMap<TreePath, DraftText>>>,
+}
+
+impl From<Tree> for Source {
+    fn from(tree: Tree) -> Self {
+        Self { tree, quarantine: None, draft: None }
+    }
+}
+
+impl Deref for Source {
+    type Target = Tree;
+
+    fn deref(&self) -> &Tree {
+        &self.tree
+    }
 }
 
 impl Source {
+    /// The tree in a directory, which is read again at every update.
+    pub fn disk(directory: impl Into<PathBuf>) -> Self {
+        Tree::Disk(directory.into()).into()
+    }
+
     /// The tree in a directory, or the tree that a single shader file makes: [`Source::is_file`].
     pub fn open(path: PathBuf) -> Self {
-        if Self::is_file(&path) { Self::Toy(Arc::new(Toy::new(path))) } else { Self::Disk(path) }
+        if Self::is_file(&path) { Tree::Toy(Toy::new(path)).into() } else { Self::disk(path) }
     }
 
     /// As [`Source::open`] for a tree that is there. Its path does not change with the working directory.
@@ -181,198 +82,120 @@ impl Source {
         !path.is_dir() && Toy::is_toy(path)
     }
 
+    /// Whether the tree is made of a single file.
+    pub fn is_toy(&self) -> bool {
+        matches!(self.tree, Tree::Toy(_))
+    }
+
     /// The tree that was compiled into the binary.
     pub fn embedded() -> Self {
-        Self::Embedded(None)
+        Self::example(None)
+    }
+
+    /// The tree that was compiled into the binary, with the files of an example.
+    pub fn example(example: Option<Example>) -> Self {
+        Tree::Embedded(example).into()
+    }
+
+    /// A tree in memory.
+    pub fn of_texts(texts: BTreeMap<TreePath, String>) -> Self {
+        Tree::Memory(texts).into()
     }
 
     /// A tree in memory, from `(path, text)` pairs.
     pub fn memory<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        Self::Memory(files.into_iter().map(|(path, text)| (path.into(), text.to_owned())).collect())
+        Self::of_texts(files.into_iter().map(|(path, text)| (path.into(), text.to_owned())).collect())
     }
 
     /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
-        match self {
-            Self::Disk(root) => read_file(&root.join(path.as_str())),
-            Self::Quarantined(quarantine) => match quarantine.text(path) {
-                Some(text) => Ok(text.clone()),
-                None => quarantine.tree().read(path),
-            },
-            Self::Draft(draft) => draft.read(path),
-            Self::Toy(toy) => toy.read(path),
-            Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
-            Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
-        }
-    }
-
-    /// The bytes of a file, of an image for example.
-    pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
-        match self {
-            Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
-            Self::Quarantined(quarantine) => quarantine.tree().read_bytes(path),
-            Self::Draft(draft) => draft.tree().read_bytes(path),
-            Self::Toy(toy) => toy.read_bytes(path),
-            Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
-            Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
-        }
-    }
-
-    /// The path for messages. For a directory, an editor can open it from the working directory.
-    pub fn display_path(&self, path: &TreePath) -> String {
-        match (self, self.root()) {
-            (Self::Quarantined(quarantine), _) => quarantine.tree().display_path(path),
-            (Self::Draft(draft), _) => draft.tree().display_path(path),
-            (Self::Toy(toy), _) => toy.display_path(path),
-            (_, Some(root)) if root == Path::new(".") => path.to_string(),
-            (_, Some(root)) => root.join(path.as_str()).display().to_string(),
-            (Self::Embedded(_), None) => format!("embedded:{path}"),
-            (_, None) => path.to_string(),
-        }
-    }
-
-    /// All files, sorted, without hidden files and directories (of editors and git).
-    pub fn list(&self) -> Vec<TreePath> {
-        match (self, self.root()) {
-            (Self::Quarantined(quarantine), _) => quarantine.tree().list(),
-            (Self::Draft(draft), _) => draft.tree().list(),
-            (Self::Toy(toy), _) => toy.list(),
-            (_, Some(root)) => {
-                let tree_path = |path: &PathBuf| {
-                    let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
-                    TreePath::parse(&names?.join("/"))
-                };
-                let found = directory::files(root, |name| !name.starts_with('.'));
-                let mut out: Vec<TreePath> = found.iter().filter_map(tree_path).collect();
-                out.sort();
-                out
-            }
-            (Self::Memory(files), None) => files.keys().cloned().collect(),
-            (Self::Embedded(example), None) => embedded::list(*example),
-            (Self::Disk(_), None) => Vec::new(),
-        }
-    }
-
-    /// The names of the files in a folder, sorted, without hidden files. An empty path is the root.
-    pub fn folder(&self, folder: &str) -> Vec<String> {
-        let mut names = match self {
-            Self::Disk(root) => names_in(&root.join(folder)),
-            Self::Quarantined(quarantine) => quarantine.tree().folder(folder),
-            Self::Draft(draft) => draft.tree().folder(folder),
-            Self::Toy(toy) => toy.names_in(folder),
-            Self::Embedded(_) | Self::Memory(_) => {
-                let in_folder = |path: &TreePath| {
-                    let (parent, name) = path.as_str().rsplit_once('/').unwrap_or(("", path.as_str()));
-                    (parent == folder).then(|| name.to_owned())
-                };
-                self.list().iter().filter_map(in_folder).collect()
-            }
-        };
-        names.sort();
-        names
-    }
-
-    /// The directory of a tree that is one on disk. All of it is watched.
-    pub fn root(&self) -> Option<&Path> {
-        match self {
-            Self::Disk(root) => Some(root),
-            Self::Quarantined(quarantine) => quarantine.tree().root(),
-            Self::Draft(draft) => draft.tree().root(),
-            Self::Embedded(_) | Self::Memory(_) | Self::Toy(_) => None,
-        }
-    }
-
-    /// The directory or file that [`Source::open`] opens; `None` for a tree that is not on disk.
-    pub fn location(&self) -> Option<&Path> {
-        match self {
-            Self::Quarantined(quarantine) => quarantine.tree().location(),
-            Self::Draft(draft) => draft.tree().location(),
-            Self::Toy(toy) => Some(toy.file()),
-            _ => self.root(),
-        }
-    }
-
-    /// The files to watch of a tree that has no directory of its own. They change with the texts.
-    pub fn files(&self) -> Vec<PathBuf> {
-        match self {
-            Self::Quarantined(quarantine) => quarantine.tree().files(),
-            Self::Draft(draft) => draft.tree().files(),
-            Self::Toy(toy) => toy.watched(),
-            _ => Vec::new(),
-        }
-    }
-
-    /// The paths of the tree whose text a change of this file on disk may change.
-    pub fn changed(&self, file: &Path) -> Vec<TreePath> {
-        match self {
-            Self::Quarantined(quarantine) => quarantine.tree().changed(file),
-            Self::Draft(draft) => draft.tree().changed(file),
-            Self::Toy(toy) => toy.changed(file),
-            _ => {
-                let relative = self.root().and_then(|root| file.strip_prefix(root).ok());
-                relative.and_then(|path| TreePath::parse(&path.to_string_lossy())).into_iter().collect()
-            }
-        }
+        let good = self.quarantine.as_ref().and_then(|quarantine| quarantine.texts.get(path));
+        let own = good.map_or_else(|| self.tree.read(path), |text| Ok(text.clone()))?;
+        let draft = self.draft.as_ref().and_then(|texts| texts.get(path)).filter(|draft| *own == *draft.base);
+        Ok(draft.map_or(own, |draft| draft.text.to_string()))
     }
 
     /// The errors of a single opened file that are known before anything is compiled.
     pub fn problems(&self) -> Vec<Diagnostic> {
-        match self {
-            Self::Toy(toy) => toy.problems(),
-            // Its texts are not those on disk while some are held back.
-            Self::Quarantined(quarantine) if quarantine.is_released() => quarantine.tree().problems(),
-            Self::Draft(draft) => draft.tree().problems(),
-            _ => Vec::new(),
-        }
+        // Texts that are quarantined are not those on disk.
+        let is_on_disk = self.quarantine.as_ref().is_none_or(|quarantine| quarantine.texts.is_empty());
+        if is_on_disk { self.tree.problems() } else { Vec::new() }
     }
 
-    /// A diagnostic as the author of the tree should see it: with the author's line, also where another text is compiled.
+    /// The tree with other texts of these files. Each applies only while the file's own text equals `base`, so an edit of the
+    /// file wins. Replaces an earlier draft.
     #[must_use]
-    pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {
-        match self {
-            Self::Toy(toy) => toy.explained(diagnostic),
-            Self::Quarantined(quarantine) => quarantine.tree().explained(diagnostic),
-            Self::Draft(draft) => draft.tree().explained(diagnostic),
-            _ => diagnostic,
-        }
+    pub fn with_draft(&self, texts: BTreeMap<TreePath, DraftText>) -> Self {
+        Self { draft: Some(Arc::new(texts)), ..self.clone() }
     }
 
-    /// The name of the tree in messages: its folder, or that it is built in.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Embedded(Some(example)) => format!("examples:{}", example.name()),
-            Self::Draft(draft) => draft.tree().name(),
-            _ => self.location().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
-        }
+    /// The tree without a draft.
+    #[must_use]
+    pub fn without_draft(&self) -> Self {
+        Self { draft: None, ..self.clone() }
     }
-}
 
-/// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.
-pub fn is_specula_tree(directory: &Path) -> bool {
-    directory.join("interface.glsl").is_file()
+    /// Whether some files may be quarantined, and none has a draft.
+    pub fn is_quarantined(&self) -> bool {
+        self.quarantine.is_some() && self.draft.is_none()
+    }
+
+    /// The `tree`, in which each file that differs from its text in `good` has that text. [`Source::released`] then returns to the
+    /// files on disk, except those in `quarantined`, by path and [`text_hash`]. `cause` is the reason that diagnostics give.
+    pub fn quarantined(
+        tree: &Self,
+        good: &BTreeMap<TreePath, String>,
+        quarantined: BTreeMap<TreePath, u64>,
+        cause: &str,
+    ) -> Self {
+        let differs = |(path, text): &(&TreePath, &String)| tree.read(path).as_ref() != Ok(*text);
+        let texts = good.iter().filter(differs).map(|(path, text)| (path.clone(), text.clone())).collect();
+        let quarantine = Quarantine { texts, files: quarantined, cause: cause.to_owned() };
+        Self { tree: tree.tree.clone(), quarantine: Some(Arc::new(quarantine)), draft: None }
+    }
+
+    /// The tree with fewer files replaced, and the paths whose texts this changes. `None` if nothing can be released. All quarantined
+    /// texts are released together as soon as one of them changes, since only together they are known to be good or bad.
+    pub fn released(&self) -> Option<(Self, BTreeSet<TreePath>)> {
+        // With an unsaved draft, the quarantine stays as it is.
+        let quarantine = self.quarantine.as_ref().filter(|_| self.draft.is_none())?;
+        let still = quarantine.files.iter().all(|(path, hash)| quarantine::text_hash(&self.tree.read(path)) == *hash);
+        let quarantined = if still { quarantine.files.clone() } else { BTreeMap::new() };
+        let (kept, released): (BTreeMap<_, _>, BTreeMap<_, _>) =
+            quarantine.texts.clone().into_iter().partition(|(path, _)| quarantined.contains_key(path));
+        if quarantined.is_empty() {
+            return Some((
+                self.tree.clone().into(),
+                released.into_keys().chain(quarantine.files.keys().cloned()).collect(),
+            ));
+        }
+        let next = Quarantine { texts: kept, files: quarantined, cause: quarantine.cause.clone() };
+        let next = Self { quarantine: Some(Arc::new(next)), ..self.clone() };
+        (!released.is_empty()).then(|| (next, released.into_keys().collect()))
+    }
+
+    /// The quarantined files, with the hashes of their texts.
+    pub fn quarantined_files(&self) -> BTreeMap<TreePath, u64> {
+        self.quarantine.as_ref().map(|quarantine| quarantine.files.clone()).unwrap_or_default()
+    }
+
+    /// An error for each quarantined file.
+    pub fn refusals(&self) -> Vec<Diagnostic> {
+        let Some(quarantine) = &self.quarantine else { return Vec::new() };
+        let message = format!("{}, so it is refused until it changes; the last good text is used", quarantine.cause);
+        quarantine.files.keys().map(|path| Diagnostic::error(self.display_path(path), message.clone())).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::error::MAX_FILE_BYTES;
     use super::*;
-
-    #[test]
-    fn paths_are_normalized_and_stay_inside() {
-        assert_eq!(TreePath::parse("a/./b//../c.glsl").map(|p| p.to_string()), Some("a/c.glsl".to_owned()));
-        assert_eq!(TreePath::parse("../c.glsl"), None);
-        assert_eq!(TreePath::parse("/etc/passwd"), None);
-        assert_eq!(TreePath::parse("a/.."), None);
-        let path = TreePath::from("brdf/ggx.glsl");
-        assert_eq!(path.sibling("../common/math.glsl"), TreePath::parse("common/math.glsl"));
-        assert_eq!(path.sibling("../../x.glsl"), None);
-        assert_eq!(path.sibling("/x.glsl"), None);
-        assert_eq!((path.stem(), path.extension()), ("brdf/ggx", Some("glsl")));
-    }
 
     #[test]
     fn every_reason_has_its_own_message() {
         let directory = tempfile::tempdir().unwrap();
-        let source = Source::Disk(directory.path().to_owned());
+        let source = Source::disk(directory.path());
         let write = |name: &str, bytes: &[u8]| std::fs::write(directory.path().join(name), bytes).unwrap();
         write("nul.glsl", b"a\nb\0");
         write("latin.glsl", b"a\n\n// \xe4\n");
@@ -387,5 +210,51 @@ mod tests {
         assert_eq!(read("dir"), Err(SourceError::Directory));
         assert_eq!(read("none"), Err(SourceError::Missing));
         assert_eq!(read("bom.glsl/x"), Err(SourceError::Missing));
+    }
+
+    #[test]
+    fn a_draft_hides_a_file_until_that_is_edited() {
+        let directory = tempfile::tempdir().unwrap();
+        let write = |text: &str| std::fs::write(directory.path().join("a.glsl"), text).unwrap();
+        write("old");
+        std::fs::write(directory.path().join("b.glsl"), "old").unwrap();
+        let source = Source::disk(directory.path());
+        let (a, b) = (TreePath::from("a.glsl"), TreePath::from("b.glsl"));
+        let of_a = |text: &str| BTreeMap::from([(a.clone(), DraftText { base: "old".into(), text: text.into() })]);
+        let draft = source.with_draft(of_a("first")).with_draft(of_a("draft"));
+        assert_eq!((draft.read(&a), draft.read(&b)), (Ok("draft".to_owned()), Ok("old".to_owned())));
+        assert_eq!((draft.root(), draft.list()), (source.root(), source.list()));
+        write("edited");
+        assert_eq!(draft.read(&a), Ok("edited".to_owned()));
+        assert_eq!(draft.without_draft().read(&a), Ok("edited".to_owned()));
+    }
+
+    #[test]
+    fn a_refused_text_is_read_once_one_of_them_changes() {
+        let directory = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(directory.path().join(name), text).unwrap();
+        let paths = ["a.glsl", "b.glsl", "c.glsl", "same.glsl"].map(TreePath::from);
+        let [a, b, c, same] = &paths;
+        paths.iter().for_each(|path| write(path.as_str(), "new"));
+        let good = [(a, "old a"), (b, "old b"), (same, "new")].map(|(path, text)| (path.clone(), text.to_owned()));
+        let hash = quarantine::text_hash(&Ok("new".to_owned()));
+        // `c` is a new file, which has no last good text.
+        let quarantined = BTreeMap::from([(a.clone(), hash), (c.clone(), hash)]);
+        let quarantine =
+            Source::quarantined(&Source::disk(directory.path()), &BTreeMap::from(good), quarantined, "lost");
+        let read = |source: &Source| paths.each_ref().map(|path| source.read(path).unwrap());
+        assert_eq!(read(&quarantine), ["old a", "old b", "new", "new"]);
+
+        let (quarantine, changed) = quarantine.released().unwrap();
+        assert_eq!(changed, BTreeSet::from([b.clone()]));
+        assert_eq!(read(&quarantine), ["old a", "new", "new", "new"]);
+        assert!(quarantine.released().is_none(), "nothing has changed");
+        assert_eq!(quarantine.refusals().len(), 2);
+
+        write("c.glsl", "repaired");
+        let (disk, changed) = quarantine.released().unwrap();
+        assert_eq!(changed, BTreeSet::from([a.clone(), c.clone()]));
+        assert_eq!(read(&disk), ["new", "new", "repaired", "new"]);
+        assert!(disk.released().is_none() && disk.refusals().is_empty());
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::{MAX_FILE_BYTES, SourceError};
+use super::error::{MAX_FILE_BYTES, SourceError};
 
 /// The names of the files in a directory, without hidden files.
 pub(super) fn names_in(directory: &Path) -> Vec<String> {
@@ -55,4 +55,9 @@ pub(super) fn check_text(bytes: Vec<u8>) -> Result<String, SourceError> {
         Some(rest) => rest.to_owned(),
         None => text,
     })
+}
+
+/// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.
+pub fn is_specula_tree(directory: &Path) -> bool {
+    directory.join("interface.glsl").is_file()
 }

@@ -19,7 +19,7 @@ use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
 use crate::shader::annotation::neighbors;
-use crate::shader::{Change, ShaderSet, Source, TreePath, text_hash};
+use crate::shader::{Change, ShaderSet, TreePath, text_hash};
 use crate::threads::{Message, MessageSender, TaskKind};
 
 /// How many times in a row the thread restarts after a panic.
@@ -222,7 +222,7 @@ impl Thread {
             Change::Paths(paths) => paths.clone(),
             Change::All if library.set().is_some() => known.clone(),
             // The last good texts come first.
-            Change::All if matches!(source, Source::Quarantined(_)) => BTreeSet::new(),
+            Change::All if source.is_quarantined() => BTreeSet::new(),
             Change::All => source.list().into_iter().collect(),
         };
         // A new file may be one that was missing until now. Editors also save other files, with names and extensions of their

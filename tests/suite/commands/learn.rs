@@ -20,7 +20,7 @@ fn three_times(name: &str) -> [Vec<Finding>; 3] {
     let folder = prepare(parent.path(), exercise).unwrap();
     let mut meter = GoalMeter::new(gpu(), compiler());
     let mut check = || {
-        let found = meter.check(exercise, &Source::Disk(folder.clone()), || false);
+        let found = meter.check(exercise, &Source::disk(folder.clone()), || false);
         found.unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     let start = check();
@@ -124,7 +124,7 @@ fn an_equal_formula_passes() {
     let folder = prepare(parent.path(), exercise).unwrap();
     let text = std::fs::read_to_string(folder.join("brdf/fresnel.glsl")).unwrap();
     write(&folder, "brdf/fresnel.glsl", &text.replace("f0 + (f90 - f0) * pow5(c)", "mix(f0, f90, pow(1.0 - c, 5.0))"));
-    let findings = meter.check(exercise, &Source::Disk(folder), || false).unwrap();
+    let findings = meter.check(exercise, &Source::disk(folder), || false).unwrap();
     assert!(findings.iter().all(|finding| finding.passed), "{findings:#?}");
 }
 

@@ -13,7 +13,7 @@ fn draw(example: Option<Example>, frames: u32) -> specula::render::Capture {
 fn draw_with(more: &[&str], example: Option<Example>, frames: u32) -> specula::render::Capture {
     let ball = model("shader-ball");
     let settings = settings(&[&["view.msaa=1"], more].concat());
-    let opened = Headless::new(gpu(), compiler(), Source::Embedded(example), ball, settings, SIZE);
+    let opened = Headless::new(gpu(), compiler(), Source::example(example), ball, settings, SIZE);
     let Ok((mut headless, _)) = opened else { panic!("an example does not open") };
     headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0, ..Sequence::default() });
     crate::support::render(&mut headless, "final")
@@ -59,7 +59,7 @@ fn examples_change_the_picture_and_repeat_themselves() {
 /// Fails unless the device refuses the example, which has a mesh stage.
 #[track_caller]
 fn assert_refused(example: Option<Example>) {
-    let (ball, source) = (model("shader-ball"), Source::Embedded(example));
+    let (ball, source) = (model("shader-ball"), Source::example(example));
     match Headless::new(gpu(), compiler(), source, ball, settings(&["view.msaa=1"]), SIZE).map(|_| ()) {
         Err(HeadlessError::Shaders(told)) => {
             let told = lines(&told).join("\n");
@@ -95,7 +95,7 @@ fn the_deferred_renderer_lights_as_the_model_pass_does() {
 fn examples_pass_check() {
     for name in Example::names() {
         let stages = specula::frame::stages::stages();
-        let mut library = Library::new(Source::Embedded(Example::named(name)), compiler().clone(), &stages);
+        let mut library = Library::new(Source::example(Example::named(name)), compiler().clone(), &stages);
         let found = check::check(&mut library);
         assert!(found.is_empty(), "{name}: {}", lines(&found).join("\n"));
     }

@@ -18,7 +18,7 @@ fn model() -> specula::scene::Model {
 
 /// The picture by a renderer that has drawn nothing before.
 fn fresh(session: &mut Session) -> Capture {
-    let (source, settings) = (Source::Disk(session.tree.root()), session.headless.settings_mut().clone());
+    let (source, settings) = (Source::disk(session.tree.root()), session.headless.settings_mut().clone());
     let headless = Headless::new(gpu(), compiler(), source, model(), settings, SIZE);
     headless.map(|(mut headless, _)| headless.render().unwrap()).unwrap_or_else(|error| panic!("{error}"))
 }

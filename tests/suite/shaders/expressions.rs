@@ -125,7 +125,7 @@ fn what_cannot_be_watched_is_said_at_its_place() {
 #[test]
 fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
     let tree = Tree::new();
-    let mut library = Library::new(Source::Disk(tree.root()), compiler().clone(), &["fullscreen.vert"]);
+    let mut library = Library::new(Source::disk(tree.root()), compiler().clone(), &["fullscreen.vert"]);
     let ready = |update: Update| match update {
         Update::Ready(set, report) => (set, report),
         other => panic!("{other:?}"),
@@ -167,7 +167,7 @@ fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
 #[test]
 fn values_of_the_shipped_tree_become_its_defaults() {
     let tree = Tree::new();
-    let source = Source::Disk(tree.root());
+    let source = Source::disk(tree.root());
     let mut library = Library::new(source.clone(), compiler().clone(), &["fullscreen.vert"]);
     let Update::Ready(set, _) = library.update(&Change::All) else { panic!("the tree does not compile") };
     let values: BTreeMap<String, ShaderValue> =

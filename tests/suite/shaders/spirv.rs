@@ -115,7 +115,7 @@ fn several_modes_in_one_stage_are_valid() {
 fn stages_of_examples_are_valid() {
     let shipped = set(Source::embedded());
     for name in Example::names() {
-        let set = set(Source::Embedded(Example::named(name)));
+        let set = set(Source::example(Example::named(name)));
         let is_own =
             |(path, stage): &(&String, &Arc<Stage>)| shipped.stages.get(*path).is_none_or(|s| s.spirv != stage.spirv);
         let own: Vec<_> = set.stages.iter().filter(is_own).map(|(_, stage)| stage).collect();

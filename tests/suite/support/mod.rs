@@ -111,7 +111,7 @@ impl Session {
     /// Opens a fresh tree with a model.
     pub fn new(model: Model, settings: Settings) -> Self {
         let tree = Tree::new();
-        let source = Source::Disk(tree.root());
+        let source = Source::disk(tree.root());
         let (headless, _) = Headless::new(gpu(), compiler(), source, model, settings, SIZE).unwrap_or_else(explain);
         Self { tree, headless }
     }
@@ -255,7 +255,7 @@ pub fn stages(reload: &Reload) -> Vec<&str> {
 
 /// Fails unless `specula check` would pass.
 pub fn passes_check(session: &Session) {
-    let source = Source::Disk(session.tree.root());
+    let source = Source::disk(session.tree.root());
     let mut library = Library::new(source, compiler().clone(), &specula::frame::stages::stages());
     let found = check::check(&mut library);
     assert!(found.is_empty(), "{}", lines(&found).join("\n"));

@@ -21,9 +21,10 @@ mod problems;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
+use super::error::MAX_IMAGE_BYTES;
 use super::pattern::{FACES, Pattern};
 use super::read::{check_text, names_in, read_bytes, read_file};
-use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded};
+use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
 use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
 use channel::{Channel, Sampler, channels};

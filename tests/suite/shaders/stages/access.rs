@@ -227,7 +227,7 @@ fn what_a_stage_does_not_have_is_refused_at_its_line() {
     let tree = Tree::new();
     tree.write(PROBE, LIBRARY);
     tree.write("passes/probe_image.frag", IMAGE);
-    let mut library = Library::new(Source::Disk(tree.root()), compiler().clone(), &all_stages());
+    let mut library = Library::new(Source::disk(tree.root()), compiler().clone(), &all_stages());
     assert!(matches!(library.update(&Change::All), Update::Ready(..)));
     for place in PLACES {
         let before = if place.from.is_empty() { String::new() } else { tree.read(place.file) };

@@ -1,0 +1,154 @@
+//! Shader trees: a directory, the tree inside the binary, a single file of another playground, or memory (for tests).
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use super::directory;
+use super::embedded::{self, Example};
+use super::error::{MAX_IMAGE_BYTES, SourceError};
+use super::read::{check_text, names_in, read_bytes, read_file};
+use super::toy::Toy;
+use super::tree_path::TreePath;
+use crate::shader::diagnostic::Diagnostic;
+
+/// Where the texts of a shader tree are.
+#[derive(Clone, Debug)]
+pub enum Tree {
+    /// A directory, read again at every update.
+    Disk(PathBuf),
+    /// The tree inside the binary, or that of an example.
+    Embedded(Option<Example>),
+    /// A single file of another playground.
+    Toy(Toy),
+    /// Text in memory.
+    Memory(BTreeMap<TreePath, String>),
+}
+
+impl Tree {
+    /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
+    pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
+        match self {
+            Self::Disk(root) => read_file(&root.join(path.as_str())),
+            Self::Toy(toy) => toy.read(path),
+            Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
+            Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+        }
+    }
+
+    /// The bytes of a file, of an image for example.
+    pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
+        match self {
+            Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
+            Self::Toy(toy) => toy.read_bytes(path),
+            Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+            Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
+        }
+    }
+
+    /// The path for messages. For a directory, an editor can open it from the working directory.
+    pub fn display_path(&self, path: &TreePath) -> String {
+        match self {
+            Self::Toy(toy) => toy.display_path(path),
+            Self::Disk(root) if root != Path::new(".") => root.join(path.as_str()).display().to_string(),
+            Self::Disk(_) | Self::Memory(_) => path.to_string(),
+            Self::Embedded(_) => format!("embedded:{path}"),
+        }
+    }
+
+    /// All files, sorted, without hidden files and directories (of editors and git).
+    pub fn list(&self) -> Vec<TreePath> {
+        match self {
+            Self::Toy(toy) => toy.list(),
+            Self::Disk(root) => {
+                let tree_path = |path: &PathBuf| {
+                    let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
+                    TreePath::parse(&names?.join("/"))
+                };
+                let found = directory::files(root, |name| !name.starts_with('.'));
+                let mut out: Vec<TreePath> = found.iter().filter_map(tree_path).collect();
+                out.sort();
+                out
+            }
+            Self::Memory(files) => files.keys().cloned().collect(),
+            Self::Embedded(example) => embedded::list(*example),
+        }
+    }
+
+    /// The names of the files in a folder, sorted, without hidden files. An empty path is the root.
+    pub fn folder(&self, folder: &str) -> Vec<String> {
+        let mut names = match self {
+            Self::Disk(root) => names_in(&root.join(folder)),
+            Self::Toy(toy) => toy.names_in(folder),
+            Self::Embedded(_) | Self::Memory(_) => {
+                let in_folder = |path: &TreePath| {
+                    let (parent, name) = path.as_str().rsplit_once('/').unwrap_or(("", path.as_str()));
+                    (parent == folder).then(|| name.to_owned())
+                };
+                self.list().iter().filter_map(in_folder).collect()
+            }
+        };
+        names.sort();
+        names
+    }
+
+    /// The directory of a tree that is one on disk. All of it is watched.
+    pub fn root(&self) -> Option<&Path> {
+        match self {
+            Self::Disk(root) => Some(root),
+            Self::Embedded(_) | Self::Memory(_) | Self::Toy(_) => None,
+        }
+    }
+
+    /// The directory or file that [`super::Source::open`] opens; `None` for a tree that is not on disk.
+    pub fn location(&self) -> Option<&Path> {
+        match self {
+            Self::Toy(toy) => Some(toy.file()),
+            _ => self.root(),
+        }
+    }
+
+    /// The files to watch of a tree that has no directory of its own. They change with the texts.
+    pub fn files(&self) -> Vec<PathBuf> {
+        match self {
+            Self::Toy(toy) => toy.watched(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The paths of the tree whose text a change of this file on disk may change.
+    pub fn changed(&self, file: &Path) -> Vec<TreePath> {
+        match self {
+            Self::Toy(toy) => toy.changed(file),
+            _ => {
+                let relative = self.root().and_then(|root| file.strip_prefix(root).ok());
+                relative.and_then(|path| TreePath::parse(&path.to_string_lossy())).into_iter().collect()
+            }
+        }
+    }
+
+    /// The errors of a single opened file that are known before anything is compiled.
+    pub fn problems(&self) -> Vec<Diagnostic> {
+        match self {
+            Self::Toy(toy) => toy.problems(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A diagnostic as the author of the tree should see it: with the author's line, also where another text is compiled.
+    #[must_use]
+    pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Toy(toy) => toy.explained(diagnostic),
+            _ => diagnostic,
+        }
+    }
+
+    /// The name of the tree in messages: its folder, or that it is built in.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Embedded(Some(example)) => format!("examples:{}", example.name()),
+            _ => self.location().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
+        }
+    }
+}
