@@ -1,6 +1,8 @@
 //! Makes cargo rebuild when a file in `shaders/` or `assets/`, which the program embeds, is added or changed. Hashes what makes a module
 //! of GLSL, so that the cache of modules on disk never outlives it.
 
+#![allow(clippy::print_stdout, reason = "cargo reads it")]
+
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher};
 use std::path::Path;

@@ -3,7 +3,7 @@
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
-use std::thread::JoinHandle;
+use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
 /// How often the waiting caller checks whether it is canceled.
@@ -19,12 +19,17 @@ pub(crate) struct Running<T> {
 }
 
 impl<T: Send + 'static> Running<T> {
-    /// Starts `work`.
+    /// Starts `work`. If the system grants no thread, the caller does it.
     pub(crate) fn start(work: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, result) = channel();
-        // Sending fails if the caller has abandoned the work.
-        let thread = std::thread::spawn(move || drop(sender.send(work())));
-        Self { thread: Some(thread), result, given_up: None }
+        let work = Arc::new(Mutex::new(Some(work)));
+        let run = move || {
+            let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
+            // Sending fails if the caller has abandoned the work.
+            work.into_iter().for_each(|work| drop(sender.send(work())));
+        };
+        let thread = Builder::new().spawn(run.clone()).inspect_err(|_| run()).ok();
+        Self { thread, result, given_up: None }
     }
 
     /// Returns the result of the work, or `None` once `canceled` returns true. A panic of the work is resumed in the caller.

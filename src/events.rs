@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::control::Clients;
 use crate::learn::Finding;
+use crate::message::print_output;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::BakeReport;
 use crate::shader::Diagnostic;
@@ -283,9 +284,7 @@ impl Audience for bool {
     }
 
     fn take(&self, line: &str) {
-        use std::io::Write as _;
-        // Specula continues after the reader has closed the pipe.
-        let _ = writeln!(std::io::stdout().lock(), "{line}");
+        print_output(line);
     }
 }
 

@@ -5,5 +5,5 @@ mod commands;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    commands::main(std::time::Instant::now())
+    commands::start()
 }

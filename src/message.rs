@@ -1,13 +1,19 @@
 //! Shared by all messages: control characters of foreign names are escaped before a terminal sees them, and a name
 //! that does not exist is answered with the nearest one that does.
+//!
+//! All output of the program goes through this file, because `println!` and `eprintln!` panic when nobody reads them or the disk is full.
 
 use std::any::Any;
-use std::fmt::{Display, Write as _};
-use std::io::Write as _;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::cell::Cell;
+use std::fmt::{Arguments, Display, Write as _};
+use std::io::{ErrorKind, Write as _, stderr, stdout};
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError};
 
 /// Least similarity, 0..1, for a suggestion.
 const LEAST_LIKENESS: f64 = 0.4;
+/// Longest name that is compared with others, in bytes: the time grows with the square of the length.
+const LONGEST_NAME: usize = 64;
 
 /// One line of text without control characters: each, line breaks and tabs too, becomes an escape such as `\u{1b}`. For
 /// names from files.
@@ -25,6 +31,26 @@ pub fn escape_lines(text: &str) -> String {
 pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
+}
+
+/// Runs `work`, such as a decoder of foreign files. A panic in it becomes its message, and prints nothing.
+pub(crate) fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    thread_local! {
+        static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
+    }
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let report = take_hook();
+        set_hook(Box::new(move |panic| {
+            if !IS_CAUGHT.get() {
+                report(panic);
+            }
+        }));
+    });
+    let before = IS_CAUGHT.replace(true);
+    let result = catch_unwind(AssertUnwindSafe(work));
+    IS_CAUGHT.set(before);
+    result.map_err(|panic| panic_text(&*panic).to_owned())
 }
 
 fn escape_but(text: &str, kept: &[char]) -> String {
@@ -48,8 +74,7 @@ static STATUS: Mutex<bool> = Mutex::new(false);
 pub fn show_status(text: &str) {
     let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
     // Without wrapping: only one row can be overwritten.
-    eprint!("\r\u{1b}[?7lspecula: {}\u{1b}[K\u{1b}[?7h", escape(text));
-    let _ = std::io::stderr().flush();
+    write_error(format_args!("\r\u{1b}[?7lspecula: {}\u{1b}[K\u{1b}[?7h", escape(text)));
     *is_shown = true;
 }
 
@@ -62,16 +87,39 @@ pub fn clear_status() {
 pub fn without_status() -> MutexGuard<'static, bool> {
     let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
     if std::mem::take(&mut *is_shown) {
-        eprint!("\r\u{1b}[K");
-        let _ = std::io::stderr().flush();
+        write_error(format_args!("\r\u{1b}[K"));
     }
     is_shown
+}
+
+/// Writes to stderr. If nobody reads it or its disk is full, there is nobody to tell.
+fn write_error(text: Arguments<'_>) {
+    let _ = stderr().write_fmt(text);
+}
+
+/// The first reason why stdout did not take a line.
+static LOST_OUTPUT: OnceLock<String> = OnceLock::new();
+
+/// Prints text to stdout as it is, with a line break. A reader that has gone away, as `head` does, is ignored; another failure is kept
+/// for [`lost_output`].
+pub fn print_output(text: &str) {
+    let _guard = without_status();
+    if let Err(error) = writeln!(stdout().lock(), "{text}")
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        let _ = LOST_OUTPUT.set(error.to_string());
+    }
+}
+
+/// Why stdout lacks text that was printed; `None` if it took all.
+pub fn lost_output() -> Option<&'static str> {
+    LOST_OUTPUT.get().map(String::as_str)
 }
 
 /// Prints a line, or several, to stderr as they are.
 pub fn print_error(text: impl Display) {
     let _guard = without_status();
-    eprintln!("{text}");
+    write_error(format_args!("{text}\n"));
 }
 
 /// Prints a message to stderr: `specula: MESSAGE`, with its control characters escaped.
@@ -91,8 +139,11 @@ pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
     best(candidates.into_iter().map(likeness))
 }
 
-/// The similarity of two names, 0..1; 1 if they differ only in case.
+/// The similarity of two names, 0..1; 1 if they differ only in case. 0 if one is longer than any name.
 pub(crate) fn likeness(a: &str, b: &str) -> f64 {
+    if a.len().max(b.len()) > LONGEST_NAME {
+        return 0.0;
+    }
     strsim::normalized_damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }
 
@@ -136,6 +187,23 @@ mod tests {
         }
         assert_eq!(nearest("x", []), None);
         assert_eq!(did_you_mean("sly", names), " Did you mean `sky`?");
+    }
+
+    #[test]
+    fn words_longer_than_names_are_not_compared() {
+        let word = "A".repeat(200_000_000);
+        let start = std::time::Instant::now();
+        assert_eq!(nearest(&word, [&*word, "studio"]), None);
+        // Two words of 100,000 letters take seconds.
+        assert!(start.elapsed().as_secs() < 1);
+        assert_eq!(nearest(&"A".repeat(LONGEST_NAME), [&*"a".repeat(LONGEST_NAME)]), Some(&*"a".repeat(LONGEST_NAME)));
+    }
+
+    #[test]
+    fn a_caught_panic_is_its_message() {
+        assert_eq!(catch_panic(|| 7), Ok(7));
+        assert_eq!(catch_panic(|| -> u8 { panic!("damaged {}", 3) }), Err("damaged 3".to_owned()));
+        assert_eq!(catch_panic(|| catch_panic(|| -> u8 { panic!("inner") })), Ok(Err("inner".to_owned())));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Command, CommandFactory as _};
 use specula::control::{COMMANDS, Described};
-use specula::message::nearest;
+use specula::message::{nearest, print_output};
 use specula::scene::BUILT_IN;
 use specula::settings::{Factor, Setting, catalog, factor_path};
 use specula::shader::annotation::ParameterType;
@@ -13,7 +13,7 @@ use specula::shader::{Change, Library, ShaderSet, Update};
 
 use super::common::names::is_word;
 use super::common::{compiler, source};
-use super::{Cli, Failure, print};
+use super::{Cli, Failure};
 
 /// Topics that are not commands.
 const SETTINGS: &str = "set";
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             Failure::Usage(format!("there is no help about '{name}'.{hint} Topics: {}", names.join(", ")))
         })?;
     }
-    print(command.render_long_help().to_string().trim_end());
+    print_output(command.render_long_help().to_string().trim_end());
     Ok(())
 }
 

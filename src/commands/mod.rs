@@ -1,9 +1,8 @@
 //! Parsing, dispatch, and what all commands share: common options, exit codes, and how results and errors are printed.
 
-/// `println!` for people: escapes the control characters of foreign names, and ignores a reader that went away, as
-/// `specula modes | head` does. JSON goes through [`print_json`].
+/// `println!` for people: escapes the control characters of foreign names. JSON goes through [`print_json`].
 macro_rules! out {
-    ($($text:tt)*) => { $crate::commands::print(&specula::message::escape_lines(&format!($($text)*))) };
+    ($($text:tt)*) => { specula::message::print_output(&specula::message::escape_lines(&format!($($text)*))) };
 }
 
 mod bench;
@@ -14,6 +13,7 @@ mod diff;
 mod help;
 mod info;
 mod learn;
+mod limits;
 mod modes;
 mod new;
 mod probe;
@@ -22,14 +22,15 @@ mod render;
 mod signals;
 mod view;
 
-use std::io::IsTerminal as _;
+use std::fmt::Display;
+use std::io::{ErrorKind, IsTerminal as _};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
-use specula::message::{print_error, tell, without_status};
+use specula::message::{lost_output, print_error, print_output, tell};
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
@@ -130,8 +131,15 @@ impl From<HeadlessError> for Failure {
     }
 }
 
-/// Runs the program that started at `start`.
-pub fn main(start: Instant) -> ExitCode {
+/// Runs the program.
+pub fn start() -> ExitCode {
+    let start = Instant::now();
+    limits::check_stack().map_or_else(|failure| end(&failure), |()| main(start))
+}
+
+/// Not inlined, since its arguments alone may need more stack than there is.
+#[inline(never)]
+fn main(start: Instant) -> ExitCode {
     use tracing_subscriber::EnvFilter;
     specula::gpu::return_large_blocks();
     // winit warns of every oddity of a display at every start.
@@ -141,6 +149,8 @@ pub fn main(start: Instant) -> ExitCode {
         .with_writer(std::io::stderr)
         .with_ansi(color)
         .with_env_filter(filter)
+        // It would print them with `eprintln!`.
+        .log_internal_errors(false)
         .without_time()
         .init();
     let cli = match Cli::try_parse() {
@@ -150,7 +160,12 @@ pub fn main(start: Instant) -> ExitCode {
             let first = std::env::args_os().nth(1).filter(|_| error.use_stderr());
             return match first.map_or(Ok(()), |word| help::check_command(word.as_ref())) {
                 Err(failure) => end(&failure),
-                Ok(()) => error.exit(),
+                Ok(()) => match error.print() {
+                    Err(lost) if !error.use_stderr() && lost.kind() != ErrorKind::BrokenPipe => {
+                        end(&output_is_lost(&lost))
+                    }
+                    _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+                },
             };
         }
     };
@@ -170,7 +185,12 @@ pub fn main(start: Instant) -> ExitCode {
         Some(Command::Probe(args)) => probe::run(args),
         Some(Command::Help(args)) => help::run(&args),
     };
+    let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));
     result.map_or_else(|failure| end(&failure), |()| ExitCode::SUCCESS)
+}
+
+fn output_is_lost(why: &dyn Display) -> Failure {
+    Failure::Input(format!("cannot write to standard output: {why}"))
 }
 
 /// Prints why the program ends.
@@ -181,13 +201,6 @@ fn end(failure: &Failure) -> ExitCode {
         Failure::Printed | Failure::Window(_) => {}
     }
     failure.exit_code()
-}
-
-/// Prints text to stdout as it is, with a line break. A reader that went away is ignored.
-pub fn print(text: &str) {
-    use std::io::Write as _;
-    let _guard = without_status();
-    let _ = writeln!(std::io::stdout().lock(), "{text}");
 }
 
 /// Says how many modes of random paths a command has left out.
@@ -210,7 +223,7 @@ pub fn print_json(value: &impl serde::Serialize) {
             c => out.push(c),
         }
     }
-    print(&out);
+    print_output(&out);
 }
 
 /// Prints diagnostics to stderr: `file:line: error: message`, which editors parse, then the source line with its caret.

@@ -60,12 +60,14 @@ impl Progress {
         let (end, ended) = channel::<()>();
         let shown = state.clone();
         let tick = if is_terminal { IN_TERMINAL } else { PATIENCE } / 2;
-        let thread = std::thread::spawn(move || {
+        let show = move || {
             while ended.recv_timeout(tick) == Err(RecvTimeoutError::Timeout) {
                 locked(&shown).show();
             }
-        });
-        Self { state, end: Some(end), thread: Some(thread) }
+        };
+        // Without a thread, no progress is shown.
+        let thread = std::thread::Builder::new().name("specula-progress".to_owned()).spawn(show).ok();
+        Self { state, end: Some(end), thread }
     }
 
     /// Sets what the command is doing now.

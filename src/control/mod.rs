@@ -27,7 +27,7 @@ pub use described::{COMMANDS, Described};
 pub(crate) use fields::{Camera, Capture, Compare, Numbers, Playback, Probe, Run, Sheet, Timeline, Turntable};
 pub(crate) use reply::Reply;
 pub(crate) use request::{Open, Request, VersionsRequest};
-pub use socket::{Socket, socket_path};
+pub use socket::{Socket, remove_sockets, socket_path};
 
 use crate::message::warn;
 

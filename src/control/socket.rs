@@ -32,6 +32,28 @@ fn file_id(path: &Path) -> io::Result<FileId> {
     std::fs::symlink_metadata(path).map(|file| (file.dev(), file.ino()))
 }
 
+/// The files of this process's sockets, for a signal that ends it.
+#[cfg(unix)]
+static BOUND: Mutex<Vec<(PathBuf, FileId)>> = Mutex::new(Vec::new());
+
+/// Removes the files of all sockets of this process, which is about to end.
+pub fn remove_sockets() {
+    #[cfg(unix)]
+    for (path, file) in std::mem::take(&mut *BOUND.lock().unwrap_or_else(PoisonError::into_inner)) {
+        remove_own(&path, file);
+    }
+}
+
+/// Removes the file of a socket that is still open, so that no other file has its number. If somebody has removed the file, another may be
+/// at the path by now, and stays.
+#[cfg(unix)]
+fn remove_own(path: &Path, file: FileId) {
+    let _lock = path.parent().map(lock_folder);
+    if file_id(path).is_ok_and(|there| there == file) {
+        let _ = std::fs::remove_file(path);
+    }
+}
+
 /// Locks a folder until the returned file is dropped, so that no other window replaces or removes a socket in it meanwhile.
 #[cfg(unix)]
 fn lock_folder(folder: &Path) -> io::Result<std::fs::File> {
@@ -102,6 +124,7 @@ impl Socket {
         let set = std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600));
         set.map_err(|e| cannot(e.to_string()))?;
         let file = file_id(&path).map_err(|e| cannot(e.to_string()))?;
+        BOUND.lock().unwrap_or_else(PoisonError::into_inner).push((path.clone(), file));
         Ok(Self { path, listener, file })
     }
 
@@ -187,11 +210,8 @@ impl Socket {
 #[cfg(unix)]
 impl Drop for Socket {
     fn drop(&mut self) {
-        let _lock = self.path.parent().map(lock_folder);
-        // If somebody has removed the file, another window may listen at the path by now.
-        if file_id(&self.path).is_ok_and(|file| file == self.file) {
-            let _ = std::fs::remove_file(&self.path);
-        }
+        remove_own(&self.path, self.file);
+        BOUND.lock().unwrap_or_else(PoisonError::into_inner).retain(|(_, file)| *file != self.file);
     }
 }
 
@@ -250,6 +270,11 @@ mod tests {
         assert!(path.exists(), "the first window removed the socket of the second");
         drop(second);
         assert!(!path.exists());
+        let third = Socket::bind(path.clone()).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        std::fs::write(&path, "precious").unwrap();
+        drop(third);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
     }
 
     #[test]

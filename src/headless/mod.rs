@@ -12,7 +12,6 @@ mod stages;
 mod thumbnails;
 
 use std::collections::BTreeSet;
-use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -113,11 +112,13 @@ impl Headless {
             !settings.passes.is_empty() || !settings.shader.is_empty() || settings.mode.starts_with("pass:");
         this.watch()?;
         let reloader = &mut this.reloader;
-        let (compiled, model) = std::thread::scope(|scope| {
-            let compiled = scope.spawn(|| reloader.compile_first_picture(names_passes));
-            let model = read();
-            (compiled.join().unwrap_or_else(|panic| resume_unwind(panic)), model)
+        let mut compiled = None;
+        let model = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| compiled = Some(reloader.compile_first_picture(names_passes)));
+            read()
         });
+        // The scope ends with it.
+        let compiled = compiled.unwrap_or_else(|| this.reloader.compile_first_picture(names_passes));
         let model = model?;
         model.variant(&variant).map_err(HeadlessError::Settings)?;
         this.session.settings.variant = variant;

@@ -1,5 +1,6 @@
 //! The program as a process: options, files, exit codes, messages, and what the README promises.
 
+mod attacks;
 mod cache;
 mod cli;
 mod files;

@@ -12,6 +12,7 @@ use crate::app::state::recent::Kind;
 use crate::app::state::workspace::PanelRequest;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
+use crate::message::print_error;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::environment;
@@ -156,7 +157,7 @@ impl Viewer {
 
     fn show_errors(&mut self, diagnostics: &[Diagnostic]) {
         for diagnostic in diagnostics {
-            eprintln!("{}", diagnostic.full());
+            print_error(diagnostic.full());
             emit(&self.events, &Event::Diagnostic(diagnostic));
         }
         self.set_diagnostics(diagnostics.to_vec());
@@ -185,7 +186,7 @@ impl Viewer {
                 self.endless_loop = None;
                 self.session.diagnostics.clone_from(&set.shaders.warnings);
                 for warning in &self.session.diagnostics {
-                    eprintln!("{}", warning.full());
+                    print_error(warning.full());
                     if warning.severity == Severity::Error {
                         emit(&self.events, &Event::Diagnostic(warning));
                     }
@@ -206,7 +207,7 @@ impl Viewer {
     fn show_endless_loop(&mut self, words: [u32; 2], diagnostic: Option<Diagnostic>) {
         let Some(endless) = self.endless_loop.as_mut().filter(|endless| endless.words == words) else { return };
         let Some(diagnostic) = diagnostic else { return };
-        eprintln!("{}", diagnostic.full());
+        print_error(diagnostic.full());
         emit(&self.events, &Event::Diagnostic(&diagnostic));
         endless.diagnostic = Some(diagnostic);
         let others = std::mem::take(&mut self.session.diagnostics);

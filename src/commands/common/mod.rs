@@ -19,7 +19,7 @@ use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
 use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
 
-use super::Failure;
+use super::{Failure, limits};
 use look::read_look;
 use names::{check_environment, check_model_path};
 use parse::{ev, fovy, size, vector};
@@ -314,6 +314,7 @@ pub fn open_gpu(
     timeout_s: u32,
     pipelines: Option<&'static dyn PipelineStore>,
 ) -> Result<Arc<Gpu>, Failure> {
+    limits::check()?;
     watchdog::end_after(Duration::from_secs(timeout_s.into()), end_of_device);
     Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None, pipelines })?)
 }

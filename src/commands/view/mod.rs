@@ -17,6 +17,7 @@ use specula::shader::Source;
 use super::Failure;
 use super::common::names::check_model_path;
 use super::common::{Common, compiler};
+use super::limits;
 
 /// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
 const LARGEST_WINDOW: u32 = 16384;
@@ -68,6 +69,9 @@ fn reads_commands(args: &Args) -> bool {
 /// Starts to print events and to read commands.
 fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
     let mut control = Control::new();
+    if is_supervised {
+        supervisor::wake_with_parent();
+    }
     if args.common.emits() {
         let stdout = control.print_events();
         if is_supervised {
@@ -87,6 +91,7 @@ fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
 
 /// Opens the window. With the `folder` of a session, goes on where the process before was lost.
 fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Failure> {
+    limits::check()?;
     let control = control(&args, folder.is_some())?;
     check_model_path(args.model.as_deref())?;
     let (width, height) = args.common.size;

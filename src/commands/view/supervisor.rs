@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
+use specula::control::remove_sockets;
 use specula::message;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
 
@@ -52,8 +53,8 @@ pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Re
             return Ok(());
         }
         let tree = state.work.as_ref().and_then(|work| work.tree.clone());
-        let state = match status.code() {
-            Some(PANICKED) if state.losses == 0 => state.after_panic(&cause),
+        let state = match state.losses {
+            0 if is_unexplained(status) => state.after_panic(&cause),
             _ => state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref())),
         };
         if state.losses >= MOST_LOSSES {
@@ -78,6 +79,12 @@ pub fn end_with_parent() {
     let _ = std::thread::Builder::new().name("specula-parent".to_owned()).spawn(wait);
 }
 
+/// Wakes the child, if it is stopped, when its parent ends, so that it sees the end of the pipe.
+pub fn wake_with_parent() {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::CONT));
+}
+
 /// Ends the child, whose parent has ended.
 pub fn end() {
     clean_up();
@@ -86,8 +93,9 @@ pub fn end() {
     std::process::exit(1);
 }
 
-/// Removes the folder of the session, if this process is the child and about to be ended by a signal.
+/// Removes the sockets, and the folder of the session if this process is the child, before a signal ends it.
 pub fn clean_up() {
+    remove_sockets();
     session().iter().for_each(|folder| remove_folder(folder));
 }
 
@@ -105,6 +113,7 @@ impl Drop for Folder {
 fn create_folder() -> io::Result<Folder> {
     let in_memory = [std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from), Some(PathBuf::from("/dev/shm"))];
     let parent = in_memory.into_iter().flatten().find(|path| path.is_dir()).unwrap_or_else(std::env::temp_dir);
+    remove_abandoned(&parent);
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
@@ -118,6 +127,17 @@ fn create_folder() -> io::Result<Folder> {
         }
     }
     result
+}
+
+/// Removes the folders of sessions whose supervisor and child were both killed.
+fn remove_abandoned(parent: &Path) {
+    let has_ended = |folder: &Path| {
+        let name = folder.file_name()?.to_str()?.strip_prefix("specula-")?;
+        let process: u32 = name.split_once('-')?.0.parse().ok()?;
+        Some(Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{process}")).exists())
+    };
+    let folders = std::fs::read_dir(parent).into_iter().flatten().flatten().map(|entry| entry.path());
+    folders.filter(|folder| has_ended(folder) == Some(true)).for_each(|folder| remove_folder(&folder));
 }
 
 /// Runs the program again with the same arguments, to its end.
@@ -200,11 +220,23 @@ fn cause_of_loss(status: ExitStatus) -> Option<String> {
     }
 }
 
-/// The signal of a crash, as a driver may cause it.
+/// Whether neither a text nor a setting is suspected: a panic is a fault of Specula, and somebody else kills a process.
+fn is_unexplained(status: ExitStatus) -> bool {
+    #[cfg(unix)]
+    let is_killed = std::os::unix::process::ExitStatusExt::signal(&status) == Some(signal_hook::consts::SIGKILL);
+    #[cfg(not(unix))]
+    let is_killed = false;
+    is_killed || status.code() == Some(PANICKED)
+}
+
+/// The signal of a crash, as a driver may cause it, or by which the system ends a process.
 #[cfg(unix)]
 fn crash(status: ExitStatus, _: Option<i32>) -> Option<String> {
-    use signal_hook::consts::{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
+    use signal_hook::consts::{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGKILL, SIGSEGV, SIGSYS, SIGTRAP};
     use std::os::unix::process::ExitStatusExt as _;
+    if status.signal() == Some(SIGKILL) {
+        return Some("the program was killed (SIGKILL), as the system does when memory is short".to_owned());
+    }
     let crashes = [SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP];
     let signal = status.signal().filter(|signal| crashes.contains(signal))?;
     Some(format!("the program crashed ({})", signal_hook::low_level::signal_name(signal).unwrap_or("a signal")))

@@ -1,13 +1,12 @@
 //! Decodes the bytes of an image file into a validated [`Environment`].
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use rayon::prelude::*;
 
 use super::decoded::Decoded;
 use super::error::EnvironmentProblem as Problem;
 use super::panorama::peak;
 use super::{Environment, open_exr, radiance};
+use crate::message::catch_panic;
 
 /// Decodes a file; its content determines the format. The caller sets the name.
 pub fn decode(bytes: &[u8]) -> Result<Environment, Problem> {
@@ -18,21 +17,15 @@ pub fn decode(bytes: &[u8]) -> Result<Environment, Problem> {
         _ => return Err(another_format(bytes)),
     };
     // A panic here is a bug of the decoder. It must not end the user's session, so it becomes an error.
-    let decoded = catch_unwind(AssertUnwindSafe(|| reader(bytes))).unwrap_or_else(|panic| {
-        let words =
-            panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(Problem::Refused { found: words.unwrap_or("no message").to_owned() })
-    })?;
+    let decoded = catch_panic(|| reader(bytes)).unwrap_or_else(|found| Err(Problem::Refused { found }))?;
     finish(decoded)
 }
 
 fn another_format(bytes: &[u8]) -> Problem {
     match image::guess_format(bytes) {
         Ok(format) => Problem::LowDynamicRange { found: format!("{format:?}").to_uppercase() },
-        Err(_) => {
-            let first: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-            Problem::UnknownFormat { found: format!("{} bytes that begin with {}", bytes.len(), first.join(" ")) }
-        }
+        // A look may name any file, whose bytes a message must not print.
+        Err(_) => Problem::UnknownFormat { bytes: bytes.len() },
     }
 }
 

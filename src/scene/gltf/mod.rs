@@ -12,7 +12,6 @@ pub(super) mod values;
 mod variants;
 
 use std::collections::HashMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -32,7 +31,7 @@ use super::load_options::{Canceled, LoadOptions};
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
-use crate::message::panic_text;
+use crate::message::catch_panic;
 use crate::regular_file;
 
 /// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.
@@ -45,7 +44,7 @@ pub fn load_file(
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
     tried.push(path.clone());
-    let bytes = regular_file::read(&path, u64::MAX).map_err(Problem::Read)?;
+    let bytes = regular_file::read(&path, regular_file::LARGEST).map_err(Problem::Read)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = path.parent().map(Path::to_owned);
     guarded(&name, &bytes, Files::new(folder, options.allow_outside, canceled, tried), start)
@@ -59,8 +58,7 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
 /// the session.
 fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
-    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start)))
-        .unwrap_or_else(|panic| Err(Problem::Refused { found: panic_text(&*panic).to_owned() }))
+    catch_panic(|| build(name, bytes, files, start)).unwrap_or_else(|found| Err(Problem::Refused { found }))
 }
 
 fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {

@@ -303,13 +303,15 @@ impl Thread {
         self.join_aside();
         let sender = self.sender.clone();
         let (done, ended) = bounded::<()>(0);
-        self.low_priority = Some(std::thread::spawn(move || {
+        let build = move || {
             if let Err(error) = set.build_aside(&request) {
                 tracing::debug!("no thumbnails: {error}");
             }
             sender.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
             drop(done);
-        }));
+        };
+        // Without a thread, the thumbnail is missing.
+        self.low_priority = std::thread::Builder::new().name("specula-thumbnails".to_owned()).spawn(build).ok();
         // The driver takes tens of milliseconds, for which an edit need not wait.
         while !self.is_stale() && self.inbox.is_empty() {
             if ended.recv_timeout(Duration::from_millis(1)) != Err(RecvTimeoutError::Timeout) {

@@ -51,6 +51,19 @@ pub fn specula(directory: &Path) -> Command {
     command
 }
 
+/// A shell that runs `command` as `"$0" "$@"`, in the same environment.
+pub fn in_shell(command: &Command, script: &str) -> Command {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script]).arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => shell.env(name, value),
+            None => shell.env_remove(name),
+        };
+    }
+    shell
+}
+
 /// Runs the program to its end.
 pub fn run<S: AsRef<OsStr>>(directory: &Path, args: &[S]) -> Finished {
     finish(specula(directory).args(args))

@@ -9,6 +9,7 @@ use crate::app::drawn::compare::{Opening, With};
 use crate::app::drawn::last_complete::{LastComplete, target};
 use crate::app::viewer::Viewer;
 use crate::gpu::GpuError;
+use crate::message::print_error;
 use crate::pipeline::PipelineSet;
 use crate::render::BoundFrame;
 use crate::shader::{Diagnostic, Severity, Source};
@@ -87,7 +88,7 @@ impl Viewer {
         }
         if let Some(message) = first {
             for diagnostic in diagnostics {
-                eprintln!("{}", diagnostic.full());
+                print_error(diagnostic.full());
             }
             self.comparison_failed(&message);
             self.say(message);

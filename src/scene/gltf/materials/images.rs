@@ -3,7 +3,6 @@
 
 use std::borrow::Cow;
 use std::io::{Cursor, ErrorKind};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use gltf::json;
 use image::{ImageFormat, ImageReader};
@@ -11,6 +10,7 @@ use rayon::prelude::*;
 
 use super::placeholder;
 use super::textures::Origin;
+use crate::message::catch_panic;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
 use crate::scene::gltf::place::{out_of_range, place};
@@ -118,8 +118,7 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
     let Encoded { name, title, bytes } = encoded;
     let pixels = bytes.and_then(|bytes| {
         // A decoder that panics at a damaged image fails only that image.
-        let pixels = catch_unwind(AssertUnwindSafe(|| pixels(&bytes)));
-        let pixels = pixels.unwrap_or_else(|_| Err("the decoder failed".into()));
+        let pixels = catch_panic(|| pixels(&bytes)).unwrap_or_else(|_| Err("the decoder failed".into()));
         pixels.map_err(|reason| format!("{title} cannot be decoded ({})", shorten(&reason)))
     });
     match pixels {

@@ -1,0 +1,80 @@
+//! A window in hostile surroundings: killed processes, signals, and output that nobody takes.
+
+use std::process::{Command, Stdio};
+
+use super::NDF;
+use crate::support::Tree;
+use crate::support::process::{Running, in_shell};
+use crate::support::window::{Display, Viewer};
+
+fn kill(process: u32, signal: &str) {
+    let status = Command::new("kill").args(["-s", signal, &process.to_string()]).status().unwrap();
+    assert!(status.success(), "kill -s {signal} {process}: {status}");
+}
+
+/// The names in the folder of sockets and of the records of sessions.
+fn left(tree: &Tree) -> Vec<String> {
+    let mut names = Vec::new();
+    for folder in ["runtime", "runtime/specula"] {
+        let entries = std::fs::read_dir(tree.beside(folder)).into_iter().flatten().flatten();
+        names.extend(entries.map(|entry| entry.file_name().into_string().unwrap()));
+    }
+    names.retain(|name| name.starts_with("specula-") || name.ends_with(".sock"));
+    names
+}
+
+#[test]
+fn a_killed_process_comes_back_with_its_session() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    viewer.key("n");
+    viewer.until("shading normals", |shot| *shot != first);
+    let before = viewer.screenshot();
+    kill(viewer.running.worker(), "KILL");
+    let event = viewer.restarted();
+    assert!(event["cause"].as_str().unwrap().contains("was killed (SIGKILL)"), "{event}");
+    assert_eq!((&event["refused"], &event["reset"]), (&serde_json::json!([]), &serde_json::json!([])), "{event}");
+    viewer.running.event("ready");
+    assert!(viewer.screenshot() == before, "the mode did not come back");
+    viewer.quit();
+}
+
+#[test]
+fn signals_leave_no_socket_and_no_records() {
+    for signal in ["TERM", "INT", "HUP"] {
+        let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "attacked"]);
+        assert_eq!(left(&viewer.tree).len(), 2, "{:?}", left(&viewer.tree));
+        viewer.running.signal(signal);
+        viewer.running.end();
+        assert_eq!(left(&viewer.tree), [""; 0], "{signal}");
+    }
+}
+
+/// A stopped process sees nothing of the end of its supervisor.
+#[test]
+fn a_stopped_window_ends_with_its_supervisor() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "attacked"]);
+    viewer.running.event("ready");
+    kill(viewer.running.worker(), "STOP");
+    viewer.running.signal("KILL");
+    viewer.running.end();
+    assert_eq!(left(&viewer.tree), [""; 0]);
+}
+
+#[test]
+fn a_broken_save_costs_nothing_when_stderr_takes_nothing() {
+    for stderr in ["2>/dev/full", "2>&1 >&3 | true"] {
+        let (display, tree) = (Display::new(), Tree::new());
+        let mut command = display.view(&tree);
+        command.args(["sphere-grid", "--env", "none", "--size", "320x240", "--shaders", "shaders"]);
+        let script = format!("exec 3>&1; \"$0\" \"$@\" {stderr}");
+        let mut running = Running::start(in_shell(&command, &script).current_dir(tree.beside("")).stdin(Stdio::null()));
+        running.event("ready");
+        let sound = tree.read(NDF);
+        tree.write(NDF, &tree.edited(NDF, "alpha * alpha;", "alpha * alfa;"));
+        running.reload(false);
+        tree.write(NDF, &sound.replace("alpha * alpha;", "alpha;"));
+        running.reload(true);
+    }
+}
