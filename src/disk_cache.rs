@@ -2,6 +2,7 @@
 //!
 //! The folders are in `$SPECULA_CACHE`, or in `specula` of the user's cache folder. A name is the hash of all inputs of an entry, so an
 //! entry is never stale; it ends in a hash of itself, so a damaged one counts as absent. Beyond 512 MiB the oldest of a folder are removed.
+//! Only the user can read the files.
 
 use std::ffi::OsStr;
 use std::io::Write as _;
@@ -10,6 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, SystemTime};
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+use crate::regular_file;
 
 /// Size of a folder in bytes. Beyond it, the oldest entries are deleted.
 const MOST_BYTES: u64 = 512 << 20;
@@ -52,7 +55,7 @@ pub(crate) fn read(name: &str, key: &str) -> Option<Vec<u8>> {
 }
 
 fn read_from(folder: &Path, key: &str) -> Option<Vec<u8>> {
-    let mut bytes = std::fs::read(file(folder, key)).ok()?;
+    let mut bytes = regular_file::read(&file(folder, key), MOST_BYTES).ok()?;
     let end = bytes.len().checked_sub(CHECKSUM as usize)?;
     let is_whole = bytes[end..] == xxh3_64(&bytes[..end]).to_le_bytes();
     bytes.truncate(end);
@@ -90,7 +93,7 @@ fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     static WRITES: AtomicU64 = AtomicU64::new(0);
     let number = WRITES.fetch_add(1, Ordering::Relaxed);
     let temporary = folder.join(format!("{key}.{}-{number}.{PART}", std::process::id()));
-    let mut file_of_part = std::fs::File::create(&temporary)?;
+    let mut file_of_part = regular_file::create_private(&temporary)?;
     file_of_part.write_all(bytes)?;
     file_of_part.write_all(&xxh3_64(bytes).to_le_bytes())?;
     drop(file_of_part);
@@ -140,6 +143,9 @@ mod tests {
         old.set_modified(SystemTime::UNIX_EPOCH).unwrap();
         write(folder.path(), "key", b"bytes").unwrap();
         assert_eq!(read_from(folder.path(), "key").unwrap(), b"bytes");
+        use std::os::unix::fs::PermissionsExt as _;
+        let mode = in_folder("key.bake").metadata().unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600, "others can read it");
         assert!(in_folder("new.2.part").exists(), "another process may be writing it");
         assert!(!in_folder("old.1.part").exists(), "an ended process has left it");
     }

@@ -1,11 +1,13 @@
-//! Files between two runs: `specula` in the user's folder for state.
+//! Files between two runs: `specula` in the user's folder for state. They name the user's paths, so only the user can read them.
 
-use std::fs::{self, File};
-use std::io;
+use std::fs;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+
+use crate::regular_file;
 
 /// `$XDG_STATE_HOME/specula/NAME`, or the same in `~/.local/state`. `None` without a home folder.
 fn file(name: &str) -> Option<PathBuf> {
@@ -16,7 +18,7 @@ fn file(name: &str) -> Option<PathBuf> {
 
 /// The text of a file, if it exists and can be read.
 pub(crate) fn load(name: &str) -> Option<String> {
-    fs::read_to_string(file(name)?).ok()
+    regular_file::read_text(&file(name)?).ok()
 }
 
 /// Writes a file. A failure costs only what the file stores, so it is logged and not reported.
@@ -46,13 +48,13 @@ fn store(name: &str, new_text: impl FnOnce(Option<String>) -> io::Result<String>
 /// a file.
 fn rewrite(path: &Path, new_text: impl FnOnce(Option<String>) -> io::Result<String>) -> io::Result<()> {
     fs::create_dir_all(path.parent().unwrap_or(path))?;
-    let lock = File::create(path.with_extension("lock"))?;
+    let lock = fs::File::create(path.with_extension("lock"))?;
     // Some file systems have no locks. The file is still replaced as a whole.
     if let Err(error) = lock.lock() {
         tracing::debug!("{} is not locked: {error}", path.display());
     }
     let new = path.with_extension("new");
-    fs::write(&new, new_text(fs::read_to_string(path).ok())?)?;
+    regular_file::create_private(&new)?.write_all(new_text(regular_file::read_text(path).ok())?.as_bytes())?;
     fs::rename(&new, path)
 }
 
@@ -74,5 +76,7 @@ mod tests {
             }
         });
         assert_eq!(fs::read_to_string(&path).unwrap(), "200");
+        #[cfg(unix)]
+        assert_eq!(std::os::unix::fs::PermissionsExt::mode(&path.metadata().unwrap().permissions()) & 0o777, 0o600);
     }
 }

@@ -116,7 +116,7 @@ fn from_folder(path: &Path, folder: &Path) -> PathBuf {
 /// The file cannot be read, is a PNG without settings, or its text is no look. Values are not checked against their ranges.
 pub fn read_look(path: &Path) -> Result<Look, ReadError> {
     if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-        let text = std::fs::read_to_string(path)
+        let text = regular_file::read_text(path)
             .map_err(|e| ReadError::File(format!("{}: the look file cannot be read: {e}", path.display())))?;
         let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
         return Ok(Look { settings, model: None, shaders: None });
@@ -149,10 +149,20 @@ fn decode(path: &Path) -> Result<(String, Option<String>), String> {
     let reader = decoder.read_info().map_err(|e| format!("no PNG file: {e}"))?;
     let text = |keyword: &str| {
         let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword);
-        chunk.map(|chunk| chunk.get_text().map_err(|e| format!("its settings cannot be read: {e}"))).transpose()
+        chunk.cloned().map(unpacked).transpose().map_err(|why| format!("its settings cannot be read: {why}"))
     };
     let settings = text(SETTINGS)?.ok_or_else(|| "this PNG holds no settings of Specula".to_owned())?;
     Ok((settings, text(FILES)?))
+}
+
+/// The text of a chunk, which is packed in files of others. A small file could fill the memory.
+fn unpacked(mut chunk: png::text_metadata::ITXtChunk) -> Result<String, String> {
+    chunk.decompress_text_with_limit(regular_file::LONGEST_TEXT as usize).map_err(|error| error.to_string())?;
+    let text = chunk.get_text().map_err(|error| error.to_string())?;
+    if text.len() as u64 > regular_file::LONGEST_TEXT {
+        return Err(format!("they have {} bytes; Specula reads at most {}", text.len(), regular_file::LONGEST_TEXT));
+    }
+    Ok(text)
 }
 
 #[cfg(test)]
@@ -214,5 +224,27 @@ mod tests {
         assert!(message(path.path()).ends_with("this PNG holds no settings of Specula"));
         std::fs::write(path.path(), b"text").unwrap();
         assert!(message(path.path()).contains("no PNG file"));
+    }
+
+    /// A small file of packed text must not fill the memory.
+    #[test]
+    fn a_packed_text_is_limited() {
+        let written = |text: String| {
+            let file = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
+            let mut writer = png::Encoder::new(file.as_file(), 1, 1).write_header().unwrap();
+            let mut chunk = png::text_metadata::ITXtChunk::new(SETTINGS, text);
+            chunk.compressed = true;
+            chunk.compress_text().unwrap();
+            writer.write_text_chunk(&chunk).unwrap();
+            writer.write_image_data(&[0]).unwrap();
+            drop(writer);
+            file
+        };
+        let look = written("mode = \"d\"".to_owned());
+        assert_eq!(read_checked_look(look.path()).unwrap().settings.mode, "d");
+        let bomb = written(format!("mode = \"{}\"", "A".repeat(20_000_000)));
+        assert!(bomb.as_file().metadata().unwrap().len() < 100_000);
+        let message = read_checked_look(bomb.path()).unwrap_err();
+        assert!(message.contains("its settings cannot be read"), "{message}");
     }
 }

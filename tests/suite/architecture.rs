@@ -13,8 +13,8 @@ use syn::{Attribute, Item, UseTree, Visibility};
 /// The folders and files of `src`, from the lowest layer to the highest. Each imports only from layers before its own in this list; those
 /// of one layer do not know each other.
 const LAYERS: &[&[&str]] = &[
-    &["cancel", "cpu_clock", "disk_cache", "interface", "message", "regular_file", "state"],
-    &["settings"],
+    &["cancel", "cpu_clock", "interface", "message", "regular_file"],
+    &["disk_cache", "settings", "state"],
     &["shader", "gpu", "scene"],
     &["frame", "comparison", "control", "file_kind", "recovery"],
     &["pipeline", "session"],

@@ -44,11 +44,11 @@ pub enum EnvironmentProblem {
     /// Neither HDR nor EXR.
     #[error(
         "is not an environment image: expected Radiance HDR (which begins with `#?`) or OpenEXR (bytes 76 2f 31 01), \
-         found {found}. Convert it to .hdr or .exr."
+         found {bytes} bytes of something else. Convert it to .hdr or .exr."
     )]
     UnknownFormat {
-        /// The first bytes.
-        found: String,
+        /// Their number.
+        bytes: usize,
     },
     /// A size outside the limits.
     #[error(

@@ -91,14 +91,14 @@ impl MeasuredBrdf {
 /// Reads the whole file once its first bytes and its length determine the format. The header's dimensions are only
 /// compared, never used as a size.
 fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
-    let metadata = std::fs::metadata(path).map_err(MeasuredProblem::Read)?;
-    if !metadata.is_file() {
+    if !std::fs::metadata(path).map_err(MeasuredProblem::Read)?.is_file() {
         return Err(MeasuredProblem::NotAFile);
     }
     let mut file = regular_file::open(path).map_err(MeasuredProblem::Read)?;
+    let length = file.limit();
     let mut bytes = Vec::new();
     (&mut file).take(kind::MERL_HEADER_BYTES as u64).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
-    let kind = recognize(&bytes, metadata.len(), path.extension())?;
+    let kind = recognize(&bytes, length, path.extension())?;
     let rest = (kind.file_bytes() - bytes.len()) as u64;
     file.take(rest).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
     // The length was right before, so the file was truncated while it was read.
@@ -126,8 +126,8 @@ fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<Me
     if length == MeasuredKind::Utia.file_bytes() as u64 {
         return Ok(MeasuredKind::Utia);
     }
-    // Small numbers are probably dimensions; the first bytes of a double or of text are not small numbers.
-    let plausible = |found: &[i32; 3]| is_called("binary") || found.iter().all(|n| (1..=4096).contains(n));
+    // Small numbers are probably dimensions. Others may be anything, such as a part of a secret, and a message must not print that.
+    let plausible = |found: &[i32; 3]| found.iter().all(|n| (1..=4096).contains(n));
     match dimensions.filter(plausible) {
         Some(found) => Err(MeasuredProblem::Dimensions { found }),
         None if is_called("bin") => of_length(MeasuredKind::Utia),

@@ -37,8 +37,8 @@ fn other_files() {
     assert!(error("a.hdr", b"").starts_with("is empty. Expected a Radiance HDR or OpenEXR image"));
     assert!(error("a.hdr", &png.into_inner()).starts_with("is a PNG image, of low dynamic range"));
     assert!(error("a.exr", &[0xff, 0xd8, 0xff, 0xe0, 0, 0]).starts_with("is a JPEG image"));
-    assert!(error("a.exr", b"hello, world").contains("found 12 bytes that begin with 68 65 6c 6c 6f 2c 20 77"));
-    assert!(error("a.hdr", b"#").contains("found 1 bytes that begin with 23"));
+    assert!(error("a.exr", b"hello, world").contains("found 12 bytes of something else"));
+    assert!(error("a.hdr", b"#").contains("found 1 bytes of something else"));
     let folder = tempfile::tempdir().unwrap();
     let missing = EnvironmentFile::open(folder.path().join("studo").to_str().unwrap()).unwrap_err();
     assert!(missing.to_string().contains("one of the built-in environments: studio, furnace, sky"), "{missing}");

@@ -61,11 +61,9 @@ impl<'t> Files<'t> {
                 let found = format!("a link to {}", end.display());
                 Err(Problem::Outside { place: place.into(), uri: named.display().to_string(), found })
             }
-            found => found.and_then(|_| regular_file::read(&path, u64::MAX)).map_err(|source| Problem::External {
-                place: place.into(),
-                path,
-                source,
-            }),
+            found => found
+                .and_then(|_| regular_file::read(&path, regular_file::LARGEST))
+                .map_err(|source| Problem::External { place: place.into(), path, source }),
         }
     }
 }
