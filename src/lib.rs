@@ -35,6 +35,8 @@ pub mod capture;
 pub mod comparison;
 pub mod control;
 pub mod cpu_clock;
+#[cfg(test)]
+mod damaged;
 mod disk_cache;
 pub mod events;
 pub mod file_kind;

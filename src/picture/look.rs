@@ -247,4 +247,18 @@ mod tests {
         let message = read_checked_look(bomb.path()).unwrap_err();
         assert!(message.contains("its settings cannot be read"), "{message}");
     }
+
+    #[test]
+    fn damaged_looks_cause_no_panic() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = encode(&capture(), &SessionState::default(), folder.path()).unwrap();
+        let text = Settings::default().to_toml();
+        for (name, whole) in [("look.png", &picture[..]), ("look.toml", text.as_bytes())] {
+            let path = folder.path().join(name);
+            crate::damaged::each(300, &[whole], |bytes| {
+                std::fs::write(&path, bytes).unwrap();
+                drop(read_checked_look(&path));
+            });
+        }
+    }
 }

@@ -77,4 +77,9 @@ mod tests {
         assert_eq!(told("1 1 1\n"), "has no LUT_3D_SIZE");
         assert_eq!(told("LUT_1D_SIZE 4\n"), "line 1: a table of one dimension; expected LUT_3D_SIZE");
     }
+
+    #[test]
+    fn damaged_files_cause_no_panic() {
+        crate::damaged::each(300, &[CORNERS.as_bytes()], |bytes| drop(decode(bytes)));
+    }
 }

@@ -239,3 +239,11 @@ fn bad_files_are_refused_with_what_was_found_and_expected() {
     std::fs::File::options().write(true).open(&huge).unwrap().set_len(1 << 40).unwrap();
     assert!(message(&huge).contains("has 1099511627776 bytes, expected 34992012"));
 }
+
+#[test]
+fn damaged_files_cause_no_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    for (few, name, whole) in [(10, "a.binary", &*MERL_BYTES), (100, "a.bin", &MeasuredKind::Utia.encode(analytic))] {
+        crate::damaged::each(few, &[whole], |bytes| drop(MeasuredBrdf::open(&write(folder.path(), name, bytes))));
+    }
+}

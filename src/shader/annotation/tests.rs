@@ -299,3 +299,16 @@ fn what_is_given_twice_names_both_places() {
     assert_eq!(errors[0].one_line(), "m.frag:5:16: error: mode id `1` is given twice");
     assert_eq!((errors[0].length, &*errors[0].notes), (3, &["the other is at m.frag:3".to_owned()][..]));
 }
+
+#[test]
+fn damaged_annotations_cause_no_panic() {
+    let files = ["user/params.glsl", "debug/modes.glsl", "passes/film.frag", "brdf/models.glsl"];
+    let files = files.map(|file| embedded::read(None, &file.into()).unwrap());
+    let of_textures = b"//@texture noise \"maps/noise_*.png\" linear repeat mips layers=8\nuniform sampler2D noise;\n";
+    crate::damaged::each(300, &[files[0], files[1], files[2], files[3], of_textures], |bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        let source = Source::memory([("passes/a.frag", &*text)]);
+        let snapshot = Snapshot::new(&source);
+        drop(read(&snapshot, &["passes/a.frag".into()], &[], false));
+    });
+}

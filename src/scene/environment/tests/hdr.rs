@@ -107,3 +107,9 @@ fn bad_headers() {
     assert!(message(good, "-Y four +X 8\n").contains("height"));
     assert!(message(&good.replace("rgbe", "xyze"), "-Y 4 +X 8\n").contains("32-bit_rle_xyze"));
 }
+
+#[test]
+fn damaged_files_cause_no_panic() {
+    let (packed, plain) = (run_lengths(), flat(4, &[[9, 8, 7, 129]; 8]));
+    crate::damaged::each(300, &[&packed, &plain], |bytes| drop(load("a.hdr", bytes)));
+}

@@ -151,3 +151,16 @@ fn every_byte_changed() {
         }
     }
 }
+
+/// The decoder of some compressions panics at damaged data. That is caught, and an error like others.
+#[test]
+fn damaged_files_are_errors_or_images() {
+    let tiles = Blocks::Tiles(Vec2(3, 2));
+    let compressions =
+        [Compression::Uncompressed, Compression::RLE, Compression::ZIP16, Compression::PIZ, Compression::PXR24];
+    let files =
+        compressions.map(|compression| [Blocks::ScanLines, tiles].map(|blocks| encode(compression, blocks, &[])));
+    let b44 = [Compression::B44, Compression::B44A].map(|compression| encode(compression, Blocks::ScanLines, &[]));
+    let files: Vec<&[u8]> = files.iter().flatten().chain(&b44).map(Vec::as_slice).collect();
+    crate::damaged::each(300, &files, |bytes| drop(float_image::decode(bytes)));
+}
