@@ -33,6 +33,6 @@ pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};
 pub use not_finite::{FirstNotFinite, Site, TracedShaders};
 pub use pixel::PixelValue;
 pub use source::quarantine::text_hash;
-pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree};
+pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree, leads_out};
 pub use spirv::specialize;
 pub use watch::{Batch, Watcher};

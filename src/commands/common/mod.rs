@@ -376,6 +376,5 @@ pub fn check_validation(gpu: &Gpu) -> Result<(), Failure> {
 }
 
 fn open(path: &Path) -> Result<Source, Failure> {
-    let absolute = std::path::absolute(path);
-    absolute.map(Source::open).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))
+    Source::find(path).map_err(Failure::Input)
 }

@@ -1,9 +1,11 @@
-//! Walks the files below a directory. The walk follows symbolic links, but no cycles.
+//! Walks the files below a directory. The walk follows symbolic links, but no cycles, and no links to directories outside.
 
 use std::path::{Path, PathBuf};
 
 /// Maximum depth of the walk.
 const MAX_DEPTH: usize = 16;
+/// Maximum number of files and directories. A tree may be anything that the user, or a look from elsewhere, names.
+pub const MOST_ENTRIES: usize = 20_000;
 /// Maximum number of links on a path. Directories that link to each other have exponentially many paths even without cycles.
 const MAX_NESTED_LINKS: usize = 2;
 
@@ -32,11 +34,14 @@ pub enum Entry<'a> {
 }
 
 /// Visits everything below `directory`, in no particular order. `keep` decides by name whether the walk visits an entry. The
-/// walk follows a link to a directory unless that directory contains the link.
-pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(Entry<'_>)) {
-    let Ok(real) = directory.canonicalize() else { return };
+/// walk follows a link to a directory of the tree unless that directory contains the link. Returns whether it has visited all: it ends
+/// after [`MOST_ENTRIES`].
+pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(Entry<'_>)) -> bool {
+    let Ok(real) = directory.canonicalize() else { return true };
     visit(Entry::Directory { path: directory, real: &real });
-    Walk { keep, above: vec![real], links: 0 }.descend(directory, visit);
+    let mut walk = Walk { keep, above: vec![real], links: 0, left: MOST_ENTRIES };
+    walk.descend(directory, visit);
+    walk.left > 0
 }
 
 /// The files that [`walk`] visits.
@@ -56,6 +61,8 @@ struct Walk<F> {
     above: Vec<PathBuf>,
     /// Number of links on the way to the current directory.
     links: usize,
+    /// Number of entries that may still be visited.
+    left: usize,
 }
 
 impl<F: Fn(&str) -> bool> Walk<F> {
@@ -65,6 +72,10 @@ impl<F: Fn(&str) -> bool> Walk<F> {
             let path = entry.path();
             if !(self.keep)(&entry.file_name().to_string_lossy()) {
                 continue;
+            }
+            self.left = self.left.saturating_sub(1);
+            if self.left == 0 {
+                return;
             }
             let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
             if is_link && let Some(folder) = self.above.last() {
@@ -82,7 +93,8 @@ impl<F: Fn(&str) -> bool> Walk<F> {
         let Ok(real) = directory.canonicalize() else { return };
         // A link may lead to a parent of the walk's first directory, so comparing for equality is not enough.
         let is_circle = self.above.iter().any(|above| above.starts_with(&real));
-        if is_link && (is_circle || self.links >= MAX_NESTED_LINKS) {
+        let is_inside = self.above.first().is_some_and(|root| real.starts_with(root));
+        if is_link && (is_circle || !is_inside || self.links >= MAX_NESTED_LINKS) {
             return;
         }
         visit(Entry::Directory { path: directory, real: &real });
@@ -117,13 +129,32 @@ mod tests {
             std::fs::write(root.join(directory).join("f"), "").unwrap();
         }
         std::fs::write(outside.path().join("g"), "").unwrap();
-        symlink(outside.path(), root.join("linked")).unwrap();
+        std::fs::create_dir(root.join("d")).unwrap();
+        std::fs::write(root.join("d/g"), "").unwrap();
+        symlink("d", root.join("linked")).unwrap();
+        symlink(outside.path(), root.join("outside")).unwrap();
+        symlink("/proc", root.join("kernel")).unwrap();
         for circle in ["a/self", "a/up", "b/c/top", "b/c/again"] {
             symlink(root, root.join(circle)).unwrap();
         }
         symlink(outside.path().parent().unwrap(), root.join("above")).unwrap();
         symlink("nowhere", root.join("dangling")).unwrap();
-        assert_eq!(names(root), ["a/f", "b/c/f", "linked/g"]);
+        assert_eq!(names(root), ["a/f", "b/c/f", "d/g", "linked/g"]);
+    }
+
+    #[test]
+    fn a_walk_of_too_many_files_ends() {
+        let root = tempfile::tempdir().unwrap();
+        for folder in 0..MOST_ENTRIES / 100 {
+            std::fs::create_dir(root.path().join(folder.to_string())).unwrap();
+            for file in 0..100 {
+                std::fs::write(root.path().join(format!("{folder}/{file}")), "").unwrap();
+            }
+        }
+        let mut visited = 0;
+        assert!(!walk(root.path(), |_| true, &mut |_| visited += 1));
+        assert_eq!(visited, MOST_ENTRIES);
+        assert!(walk(&root.path().join("0"), |_| true, &mut |_| ()));
     }
 
     #[test]

@@ -24,9 +24,17 @@ use quarantine::Quarantine;
 use toy::Toy;
 
 pub use error::SourceError;
-pub use read::is_specula_tree;
+pub use read::{is_specula_tree, leads_out};
 pub use tree::Tree;
 pub use tree_path::TreePath;
+
+fn too_many_files(path: &Path) -> String {
+    format!(
+        "{} has more than {} files and folders, too many for a shader tree",
+        path.display(),
+        directory::MOST_ENTRIES
+    )
+}
 
 /// A shader tree, some of whose files may have other texts. It has the methods of its [`Tree`].
 #[derive(Clone, Debug)]
@@ -66,10 +74,11 @@ impl Source {
     /// As [`Source::open`] for a tree that is there. Its path does not change with the working directory.
     ///
     /// # Errors
-    /// A message: the path is neither a folder with a Specula shader tree nor a single shader file.
+    /// A message: the path is neither a folder with a Specula shader tree nor a single shader file, or the folder has too many files.
     pub fn find(path: &Path) -> Result<Self, String> {
         if is_specula_tree(path) || (Self::is_file(path) && path.exists()) {
-            return Ok(Self::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned())));
+            let source = Self::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+            return if source.is_bounded() { Ok(source) } else { Err(too_many_files(path)) };
         }
         Err(format!(
             "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",

@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::error::{MAX_FILE_BYTES, SourceError};
+use crate::regular_file;
 
 /// The names of the files in a directory, without hidden files.
 pub(super) fn names_in(directory: &Path) -> Vec<String> {
@@ -13,11 +14,31 @@ pub(super) fn names_in(directory: &Path) -> Vec<String> {
     names.filter(|name| !name.starts_with('.')).collect()
 }
 
-pub(super) fn read_file(path: &Path) -> Result<String, SourceError> {
-    check_text(read_bytes(path, MAX_FILE_BYTES)?)
+/// The text of a file below `root`.
+pub(super) fn read_file(root: &Path, path: &str) -> Result<String, SourceError> {
+    check_text(read_bytes(root, path, MAX_FILE_BYTES)?)
 }
 
-pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
+/// The bytes of a file below `root`.
+pub(super) fn read_bytes(root: &Path, path: &str, most: u64) -> Result<Vec<u8>, SourceError> {
+    let bytes = read_anywhere(&root.join(path), most)?;
+    if leads_out(root, path) { Err(SourceError::Outside) } else { Ok(bytes) }
+}
+
+/// Whether symbolic links lead a path below `root` out of it. Most paths have no link on the way, which costs one call of the system for each
+/// part.
+pub fn leads_out(root: &Path, path: &str) -> bool {
+    let file = root.join(path);
+    let parts = file.ancestors().take_while(|part| *part != root);
+    if !parts.into_iter().any(Path::is_symlink) {
+        return false;
+    }
+    let ends = file.canonicalize().and_then(|file| Ok(file.starts_with(root.canonicalize()?)));
+    ends.is_ok_and(|is_inside| !is_inside)
+}
+
+/// The bytes of a file that the user has named.
+pub(super) fn read_anywhere(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
     let metadata = std::fs::metadata(path).map_err(io_error)?;
     if metadata.is_dir() {
         return Err(SourceError::Directory);
@@ -28,7 +49,7 @@ pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, SourceError>
     if metadata.len() > most {
         return Err(SourceError::TooBig { bytes: metadata.len(), most });
     }
-    std::fs::read(path).map_err(io_error)
+    regular_file::read(path, most).map_err(io_error)
 }
 
 fn io_error(error: io::Error) -> SourceError {

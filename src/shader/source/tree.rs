@@ -29,7 +29,7 @@ impl Tree {
     /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         match self {
-            Self::Disk(root) => read_file(&root.join(path.as_str())),
+            Self::Disk(root) => read_file(root, path.as_str()),
             Self::Toy(toy) => toy.read(path),
             Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
@@ -39,7 +39,7 @@ impl Tree {
     /// The bytes of a file, of an image for example.
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match self {
-            Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
+            Self::Disk(root) => read_bytes(root, path.as_str(), MAX_IMAGE_BYTES),
             Self::Toy(toy) => toy.read_bytes(path),
             Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
             Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
@@ -65,7 +65,7 @@ impl Tree {
                     let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
                     TreePath::parse(&names?.join("/"))
                 };
-                let found = directory::files(root, |name| !name.starts_with('.'));
+                let found = directory::files(root, is_listed);
                 let mut out: Vec<TreePath> = found.iter().filter_map(tree_path).collect();
                 out.sort();
                 out
@@ -73,6 +73,11 @@ impl Tree {
             Self::Memory(files) => files.keys().cloned().collect(),
             Self::Embedded(example) => embedded::list(*example),
         }
+    }
+
+    /// Whether the tree has no more files than [`Tree::list`] finds.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.root().is_none_or(|root| directory::walk(root, is_listed, &mut |_| ()))
     }
 
     /// The names of the files in a folder, sorted, without hidden files. An empty path is the root.
@@ -151,4 +156,9 @@ impl Tree {
             _ => self.location().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
         }
     }
+}
+
+/// Editors and git keep hidden files in a tree.
+fn is_listed(name: &str) -> bool {
+    !name.starts_with('.')
 }

@@ -135,3 +135,56 @@ fn files_of_the_kernel_are_not_read() {
         run(directory.path(), args).expect(1, &["/proc/kmsg"]);
     }
 }
+
+/// A tree from elsewhere must not read, or let the user write, files outside of it.
+#[test]
+fn links_of_a_tree_do_not_lead_out_of_it() {
+    use std::os::unix::fs::symlink;
+    let tree = Tree::new();
+    let render = || run(&tree.beside(""), &[&QUICK[..], &["--shaders", "shaders"]].concat());
+    fs::write(tree.beside("secret.glsl"), "hunter2 = 7;\n").unwrap();
+    image::RgbImage::new(2, 2).save(tree.beside("secret.png")).unwrap();
+    symlink(tree.beside("secret.glsl"), tree.path("link.glsl")).unwrap();
+    symlink(tree.beside("secret.png"), tree.path("link.png")).unwrap();
+    symlink(tree.beside(""), tree.path("above")).unwrap();
+    symlink("/proc", tree.path("kernel")).unwrap();
+    symlink("/usr", tree.path("usr")).unwrap();
+    let started = std::time::Instant::now();
+    render().expect(0, &[]);
+    // The walk through /proc and /usr alone took 30 s.
+    assert!(started.elapsed() < std::time::Duration::from_secs(20));
+    let ndf = tree.read(NDF);
+    for link in ["link.glsl", "above/secret.glsl"] {
+        tree.write(NDF, &format!("#include \"{link}\"\n{ndf}"));
+        let finished = render();
+        finished.expect(1, &[NDF, "a link that leads out of the shader tree"]);
+        assert!(!finished.stderr.contains("hunter2"), "{finished:#?}");
+    }
+    tree.write(NDF, &ndf);
+    fs::create_dir_all(tree.path("passes")).unwrap();
+    let pass = |image: &str| {
+        format!(
+            "//@pass tint \"Tint\" to=picture\n//@texture color_of_all \"{image}\"\n#version 460\n#include \"pass.glsl\"\n\
+             uniform sampler2D color_of_all;\nvoid main() {{ color = texture(color_of_all, uv); }}\n"
+        )
+    };
+    tree.write("passes/tint.frag", &pass("../link.png"));
+    render().expect(1, &["link.png", "a link that leads out of the shader tree"]);
+    // A link within the tree is followed.
+    fs::copy(tree.beside("secret.png"), tree.path("own.png")).unwrap();
+    symlink("own.png", tree.path("alias.png")).unwrap();
+    tree.write("passes/tint.frag", &pass("../alias.png"));
+    render().expect(0, &[]);
+}
+
+#[test]
+fn a_folder_with_too_many_files_is_no_tree() {
+    let tree = Tree::new();
+    for folder in 0..210 {
+        let folder = tree.path(&format!("many/{folder}"));
+        fs::create_dir_all(&folder).unwrap();
+        (0..100).for_each(|file| fs::write(folder.join(file.to_string()), "").unwrap());
+    }
+    let render = run(&tree.beside(""), &[&QUICK[..], &["--shaders", "shaders"]].concat());
+    render.expect(1, &["has more than 20000 files and folders, too many for a shader tree"]);
+}

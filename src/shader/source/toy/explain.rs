@@ -8,7 +8,6 @@ use super::channel::{Channel, channel, samplers};
 use super::{STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{find_word, lines};
-use crate::shader::source::read::read_file;
 
 /// Shadertoy's entry point.
 const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
@@ -29,7 +28,7 @@ impl Toy {
         let Some(file) = Path::new(&diagnostic.file).strip_prefix(self.folder()).ok().and_then(slashes) else {
             return diagnostic;
         };
-        let Ok(text) = read_file(&self.folder().join(&file)) else { return diagnostic };
+        let Ok(text) = self.text(&file) else { return diagnostic };
         let pass = self.drawings().into_iter().find(|drawing| drawing.file == file).map(|drawing| drawing.pass);
         let pass = pass.as_deref().unwrap_or(COMMON);
         self.with_help(with_words(quoted(diagnostic, &text, pass), &text), &text)

@@ -21,9 +21,9 @@ mod problems;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
-use super::error::MAX_IMAGE_BYTES;
+use super::error::{MAX_FILE_BYTES, MAX_IMAGE_BYTES};
 use super::pattern::{FACES, Pattern};
-use super::read::{check_text, names_in, read_bytes, read_file};
+use super::read::{check_text, names_in, read_anywhere, read_bytes, read_file};
 use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
 use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
@@ -79,10 +79,18 @@ impl Toy {
         self.file.parent().unwrap_or(Path::new("."))
     }
 
+    /// The text of a file beside the toy. The toy itself, which the user has named, may be a link to anywhere.
+    fn text(&self, file: &str) -> Result<String, SourceError> {
+        if file == self.name() {
+            return check_text(read_anywhere(&self.file, MAX_FILE_BYTES)?);
+        }
+        read_file(self.folder(), file)
+    }
+
     /// The text of a file of the tree.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         if let Some(relative) = below(path.as_str(), OPENED) {
-            let text = read_file(&self.folder().join(relative))?;
+            let text = self.text(relative)?;
             let pass = self.drawings().into_iter().find(|drawing| drawing.file == relative).map(|drawing| drawing.pass);
             return Ok(adapted(&text, pass.as_deref().unwrap_or(COMMON)));
         }
@@ -104,7 +112,7 @@ impl Toy {
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match below(path.as_str(), OPENED) {
             _ if path.as_str() == NOISE => noise::png().map_err(SourceError::Io),
-            Some(relative) => read_bytes(&self.folder().join(relative), MAX_IMAGE_BYTES),
+            Some(relative) => read_bytes(self.folder(), relative, MAX_IMAGE_BYTES),
             None => Ok(embedded::read(None, path).ok_or(SourceError::Missing)?.to_vec()),
         }
     }
@@ -142,7 +150,7 @@ impl Toy {
         for Drawing { file, text, .. } in self.drawings() {
             let path = self.folder().join(&file);
             let shown = path.display().to_string();
-            match read_file(&path) {
+            match self.text(&file) {
                 Ok(_) if !is_shadertoy(&text) && !uses(&text, "main") => {
                     let message = "expected `void mainImage(out vec4 fragColor, in vec2 fragCoord)` or `void main()`";
                     out.push(Diagnostic::error(shown.clone(), message));
@@ -211,7 +219,7 @@ impl Toy {
     /// The file of this name beside the toy, and its text.
     fn beside(&self, name: &str) -> Option<(String, String)> {
         self.candidates(name).into_iter().filter(|file| *file != self.name()).find_map(|file| {
-            let text = read_file(&self.folder().join(&file)).ok()?;
+            let text = self.text(&file).ok()?;
             Some((file, text))
         })
     }
@@ -233,7 +241,7 @@ impl Toy {
         if above.iter().any(|other| other == file) || out.iter().any(|drawing| drawing.file == file) {
             return;
         }
-        let text = read_file(&self.folder().join(file)).unwrap_or_default();
+        let text = self.text(file).unwrap_or_default();
         above.push(file.to_owned());
         for (_, channel) in channels(&text) {
             if let Channel::Drawing(other) = channel {

@@ -127,19 +127,19 @@ fn the_target_of_a_link_comes_to_exist() {
 #[test]
 fn a_directory_of_the_tree_is_a_link() {
     let tree = Tree::new();
-    let elsewhere = tempfile::tempdir().unwrap();
     for library in ["one", "two"] {
-        fs::create_dir_all(elsewhere.path().join(library).join("deep")).unwrap();
-        fs::write(elsewhere.path().join(library).join("deep/f.glsl"), library).unwrap();
+        fs::create_dir_all(tree.path(library).join("deep")).unwrap();
+        fs::write(tree.path(library).join("deep/f.glsl"), library).unwrap();
     }
-    symlink(elsewhere.path().join("one"), tree.path("library")).unwrap();
+    tree.expect(&["one/deep/f.glsl", "two/deep/f.glsl"]);
+    symlink("one", tree.path("library")).unwrap();
     tree.expect(&["library/deep/f.glsl"]);
-    fs::write(elsewhere.path().join("one/deep/f.glsl"), "edit").unwrap();
-    tree.expect(&["library/deep/f.glsl"]);
-    fs::write(elsewhere.path().join("one/deep/g.glsl"), "new").unwrap();
-    tree.expect(&["library/deep/g.glsl"]);
-    relink(&elsewhere.path().join("two"), &tree.path("library"));
+    fs::write(tree.path("one/deep/f.glsl"), "edit").unwrap();
+    tree.expect(&["library/deep/f.glsl", "one/deep/f.glsl"]);
+    fs::write(tree.path("one/deep/g.glsl"), "new").unwrap();
+    tree.expect(&["library/deep/g.glsl", "one/deep/g.glsl"]);
+    relink(Path::new("two"), &tree.path("library"));
     tree.expect(&["library/deep/f.glsl", "library/deep/g.glsl"]);
-    fs::write(elsewhere.path().join("two/deep/f.glsl"), "another edit").unwrap();
-    tree.expect(&["library/deep/f.glsl"]);
+    fs::write(tree.path("two/deep/f.glsl"), "another edit").unwrap();
+    tree.expect(&["library/deep/f.glsl", "two/deep/f.glsl"]);
 }
