@@ -53,7 +53,7 @@ pub fn specula(directory: &Path) -> Command {
 
 /// A shell that runs `command` as `"$0" "$@"`, in the same environment.
 pub fn in_shell(command: &Command, script: &str) -> Command {
-    let mut shell = Command::new("sh");
+    let mut shell = Command::new("bash");
     shell.args(["-c", script]).arg(command.get_program()).args(command.get_args());
     for (name, value) in command.get_envs() {
         match value {
