@@ -99,7 +99,7 @@ fn a_window_in_which_nothing_happens_rests() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     // Pipelines may still be built.
-    viewer.running.rests();
+    viewer.rests();
     // Input wakes the window.
     let picture = viewer.screenshot();
     viewer.key("n");

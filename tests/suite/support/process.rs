@@ -224,21 +224,6 @@ impl Running {
         }
     }
 
-    /// Waits until the program has used less than a tenth of the processor for a second. One that draws without a pause never does.
-    #[track_caller]
-    pub fn rests(&self) {
-        let deadline = Instant::now() + PATIENCE;
-        loop {
-            let before = self.ticks();
-            // The time that is measured.
-            std::thread::sleep(Duration::from_secs(1));
-            if self.ticks() - before < 10 {
-                return;
-            }
-            assert!(Instant::now() < deadline, "it never rests. {}", self.story());
-        }
-    }
-
     /// Waits for a reload that ended well or did not.
     #[track_caller]
     pub fn reload(&mut self, ok: bool) -> Value {

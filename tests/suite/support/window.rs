@@ -1,5 +1,5 @@
 //! `specula view` on an X server of its own (Xvfb). Keys, the mouse and sizes go through the X server by xdotool. What the window
-//! shows comes from the server's frame buffer, which Xvfb keeps in a file.
+//! shows comes from the server's frame buffer, which Xvfb keeps in a file; the server reports each change of it.
 
 use std::io::{BufRead as _, BufReader, ErrorKind};
 use std::process::{Child, Command, Stdio};
@@ -9,6 +9,7 @@ use image::RgbaImage;
 use serde_json::Value;
 use tempfile::TempDir;
 
+use super::damage::Damage;
 use super::process::{Finished, PATIENCE, Running, finish, specula};
 use super::{Tree, open_image};
 
@@ -17,6 +18,7 @@ pub struct Display {
     server: Child,
     name: String,
     frame_buffer: TempDir,
+    damage: Damage,
 }
 
 impl Display {
@@ -38,7 +40,8 @@ impl Display {
         let mut line = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
         assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
-        let display = Self { server, name: format!(":{}", line.trim()), frame_buffer };
+        let name = format!(":{}", line.trim());
+        let display = Self { server, damage: Damage::watch(&name), name, frame_buffer };
         display.park_mouse();
         display
     }
@@ -78,11 +81,10 @@ impl Display {
         let word = |index: usize| u32::from_be_bytes(bytes[4 * index..][..4].try_into().unwrap());
         let (header_bytes, width, height, row_bytes, colors) = (word(0), word(4), word(5), word(12), word(19));
         assert_eq!((word(7), word(11)), (0, 32), "expected little-endian pixels of 32 bits");
-        let start = (header_bytes + 12 * colors) as usize;
-        RgbaImage::from_fn(width, height, |x, y| {
-            let at = start + (y * row_bytes + 4 * x) as usize;
-            image::Rgba([bytes[at + 2], bytes[at + 1], bytes[at], 255])
-        })
+        let rows = bytes[(header_bytes + 12 * colors) as usize..].chunks_exact(row_bytes as usize);
+        let pixels = rows.flat_map(|row| row[..4 * width as usize].chunks_exact(4));
+        let rgba = pixels.flat_map(|bgrx| [bgrx[2], bgrx[1], bgrx[0], 255]).collect();
+        RgbaImage::from_raw(width, height, rgba).expect("all rows of the screen")
     }
 }
 
@@ -360,20 +362,35 @@ impl Viewer {
         self.display.screen()
     }
 
-    /// Looks at the screen until `is` accepts it, and returns it.
+    /// Looks at the screen, and again whenever it changes, until `is` accepts it. Returns it.
     #[track_caller]
     pub fn until_screen(&self, what: &str, is: impl Fn(&RgbaImage) -> bool) -> RgbaImage {
         let deadline = Instant::now() + PATIENCE;
         loop {
+            self.display.damage.forget();
             let screen = self.screen();
             if is(&screen) {
                 return screen;
             }
-            if Instant::now() > deadline {
+            if !self.display.damage.comes_before(deadline) {
                 panic!("{what} never appeared on the screen, kept as {}. {}", keep(&screen), self.running.story());
             }
-            // The frame buffer gives no event when it changes.
-            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits for a second in which the program draws nothing and uses less than a tenth of the processor. A program that draws without a
+    /// pause has none.
+    #[track_caller]
+    pub fn rests(&self) {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            self.display.damage.forget();
+            let before = self.running.ticks();
+            let is_drawn = self.display.damage.comes_before(Instant::now() + Duration::from_secs(1));
+            if !is_drawn && self.running.ticks() - before < 10 {
+                return;
+            }
+            assert!(Instant::now() < deadline, "it never rests. {}", self.running.story());
         }
     }
 

@@ -1,6 +1,7 @@
-//! A long session: memory, threads and file descriptors stay as they are. `SPECULA_LONG=1` runs ten times as many steps.
+//! A long session: memory, threads and file descriptors stay as they are. `SPECULA_LONG=1` runs twenty times as many
+//! steps.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use image::RgbaImage;
 
@@ -15,13 +16,10 @@ const WIDTH: u32 = 640;
 /// Memory may grow by this much, in KiB: allocators keep some of what is freed.
 const SLACK_KIB: u64 = 16 * 1024;
 
-/// How many times as many steps as in an ordinary run.
-fn factor() -> usize {
-    if is_long() { 10 } else { 1 }
-}
-
-/// Repeats `step` so many times, and compares what the program holds after a fifth of them with what it holds in the end.
+/// Repeats `step` so many times, or twenty times as often in a long run, and compares what the program holds after a fifth of them with what
+/// it holds in the end.
 fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&mut Viewer, usize)) {
+    let steps = if is_long() { 20 * steps } else { steps };
     (0..steps / 5).for_each(|number| step(viewer, number));
     let early = viewer.running.usage();
     (steps / 5..steps).for_each(|number| step(viewer, number));
@@ -29,7 +27,7 @@ fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&m
     // A thread that has sent its result may still be ending, and a file may be written at the moment.
     let deadline = Instant::now() + PATIENCE;
     while (late.threads > early.threads || late.files > early.files) && Instant::now() < deadline {
-        std::thread::sleep(Duration::from_millis(10));
+        viewer.screenshot();
         late = viewer.running.usage();
     }
     println!("{what}: {early:?} after {}, {late:?} after {steps}", steps / 5);
@@ -50,7 +48,7 @@ fn a_thousand_reloads_keep_nothing() {
     let first = viewer.screenshot();
     let original = viewer.tree.read(TONEMAP);
     let texts = [viewer.tree.edited(TONEMAP, "value *= frame.exposure", "value *= 0.5 * frame.exposure"), original];
-    repeat(&mut viewer, "reloads", 100 * factor(), |viewer, number| {
+    repeat(&mut viewer, "reloads", 50, |viewer, number| {
         viewer.tree.write(TONEMAP, &texts[number % 2]);
         viewer.running.reload(true);
     });
@@ -77,7 +75,7 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
     let row = |screen: &RgbaImage| TILES.into_iter().find(|y| differs(screen, *y));
     let after = viewer.until_screen("the constant's row", |screen| row(screen).is_some());
     let y = row(&after).unwrap() + 8;
-    repeat(&mut viewer, "drags", 200 * factor(), |viewer, number| {
+    repeat(&mut viewer, "drags", 50, |viewer, number| {
         drag_slider(viewer, left, y, (number % 7) as f32 / 7.0);
         viewer.screenshot();
     });
@@ -92,7 +90,7 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
 fn twenty_environments_keep_nothing() {
     let mut viewer = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
     viewer.ready_and_baked();
-    repeat(&mut viewer, "environments", 20 * factor(), |viewer, number| {
+    repeat(&mut viewer, "environments", 10, |viewer, number| {
         let name = ["furnace", "studio"][number % 2];
         choose(viewer, &format!("environment {name}"));
         viewer.running.until(name, |event| event["event"] == "bake" && event["environment"] == name);

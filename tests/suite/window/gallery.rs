@@ -40,7 +40,7 @@ fn thumbnails_follow_edits_stay_through_errors_and_let_the_window_rest() {
     viewer.tree.write("debug/light.glsl", &light);
     viewer.until_screen("the first thumbnails", |screen| first_row(screen) == before);
 
-    viewer.running.rests();
+    viewer.rests();
     viewer.quit();
 }
 
@@ -64,7 +64,7 @@ fn the_thumbnail_of_an_edit_appears_though_nothing_moves() {
     let original = viewer.tree.read(NDF);
     viewer.tree.write(NDF, &original.replace("alpha * alpha;", "alpha;"));
     viewer.until_screen("the second thumbnail", |screen| colors_of_versions(screen).iter().all(|count| *count > 100));
-    viewer.running.rests();
+    viewer.rests();
     viewer.running.end_input();
     viewer.quit();
 }

@@ -38,7 +38,7 @@ fn keys_reach_the_shaders_and_the_window_rests() {
     viewer.key("n");
     viewer.key("space");
     viewer.until_screen("green without blue", is(0, 255, 0));
-    viewer.running.rests();
+    viewer.rests();
     viewer.until_screen("green", is(0, 255, 0));
     viewer.quit();
 }
