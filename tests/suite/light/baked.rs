@@ -116,7 +116,7 @@ fn shown(session: &mut Session, slug: &str) -> Vec<(DVec3, DVec3)> {
         let values = session.mode(slug);
         let pixels = values.raw.iter().zip(&normals.raw).filter(|(value, _)| value[3] == 1.0);
         let vector = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
-        out.extend(pixels.step_by(7).map(|(value, normal)| (vector(normal).normalize(), vector(value))));
+        out.extend(pixels.step_by(21).map(|(value, normal)| (vector(normal).normalize(), vector(value))));
     }
     assert!(out.len() > 20, "{} pixels", out.len());
     out

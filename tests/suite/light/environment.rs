@@ -7,8 +7,8 @@ use std::path::Path;
 
 use crate::support::process::{Finished, Running, run, specula};
 use crate::support::{
-    Session, Tree, assert_differ, assert_same, assert_validated, failed, glb, hdr, load, model, open_image, ready,
-    render, renderer, settings,
+    Renderer, Session, Tree, assert_differ, assert_same, assert_validated, failed, glb, hdr, load, model, open_image,
+    ready, render, renderer, settings,
 };
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, SpecificChannels, WritableImage as _};
 use serde_json::Value;
@@ -152,7 +152,7 @@ fn a_bad_file_keeps_the_last_good_picture_and_a_good_one_shows() {
 }
 
 /// A ball that leaves most of the picture to the background. Left is -X.
-fn before_the_sky(environment: &str) -> Headless {
+fn before_the_sky(environment: &str) -> Renderer {
     let settings = settings(&[
         &format!("environment.name={environment}"),
         "view.background=env",

@@ -1,7 +1,7 @@
 //! Random paths: they trace the model itself, agree with what is known in closed form, and split the picture's error into
 //! parts that add up.
 
-use crate::support::{Session, assert_validated, glb, load, ready, render, renderer, settings};
+use crate::support::{Renderer, Session, assert_validated, glb, load, ready, render, renderer, settings};
 use serde_json::{Value, json};
 use specula::headless::Headless;
 use specula::render::Capture;
@@ -10,7 +10,7 @@ use specula::scene::Model;
 const SIZE: (u32, u32) = (48, 32);
 
 /// One sample per pixel, no light and no background but what a test adds.
-fn bare(model: Model, more: &[&str]) -> Headless {
+fn bare(model: Model, more: &[&str]) -> Renderer {
     let bare = ["view.msaa=1", "view.background=none", "environment.name=none", "lights.ambient_strength=0"];
     let dark = ["lights.orbit.0.strength=0", "lights.orbit.1.strength=0", "lights.orbit.2.strength=0"];
     renderer(model, settings(&[&bare[..], &dark, more].concat()), SIZE)

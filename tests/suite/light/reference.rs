@@ -9,7 +9,7 @@ mod glass;
 mod inputs;
 mod sheen;
 
-use crate::support::{glb, load, model, render, renderer, settings};
+use crate::support::{Renderer, glb, load, model, render, renderer, settings};
 use brdf::{Lobes, Masking};
 use exr::prelude::{Image, SpecificChannels, WritableImage as _};
 use glam::DVec3;
@@ -48,7 +48,7 @@ const COAT: Part = ("clearcoat-light", |point| point.lobes.coat);
 const EMITTED: Part = ("emissive-only", |point| point.emitted);
 
 /// Lights the model with three lamps only, and turns off what the specification does not define.
-fn open(model: Model) -> Headless {
+fn open(model: Model) -> Renderer {
     let settings = settings(&[
         "view.msaa=1",
         "view.background=none",

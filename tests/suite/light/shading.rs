@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use crate::support::{SIZE, glb, load, render, renderer, settings};
+use crate::support::{Renderer, SIZE, glb, load, render, renderer, settings};
 use glam::{DVec3, Mat4, Vec3};
 use serde_json::{Value, json};
 use specula::headless::Headless;
@@ -142,7 +142,7 @@ const MATERIALS: [Material; 4] = [
 ];
 
 /// One sample a pixel and no tone map, so that raw values are what the shader wrote.
-fn open(bytes: &[u8]) -> Headless {
+fn open(bytes: &[u8]) -> Renderer {
     let [r, g, b] = AMBIENT;
     let settings = settings(&[
         "view.msaa=1",

@@ -1,7 +1,9 @@
 //! What settings do to the parts of a model: hide and isolate, factors of single materials, channels of all, another place.
 
 use crate::support::process::run;
-use crate::support::{SIZE, assert_differ, assert_same, differing, glb, load, model, render, renderer, settings};
+use crate::support::{
+    Renderer, SIZE, assert_differ, assert_same, differing, glb, load, model, render, renderer, settings,
+};
 use serde_json::json;
 use specula::headless::Headless;
 use specula::render::Capture;
@@ -9,7 +11,7 @@ use specula::render::Capture;
 const DIRECT: [&str; 3] = ["environment.name=none", "view.msaa=1", "view.background=none"];
 
 /// A red box at the left, a green one at the right, seen from the front.
-fn boxes(more: &[&str]) -> Headless {
+fn boxes(more: &[&str]) -> Renderer {
     let material = |name: &str, color: [f32; 4]| json!({ "name": name, "pbrMetallicRoughness": { "baseColorFactor": color, "metallicFactor": 0.0 } });
     let bytes = glb::scene(&[
         (glb::cuboid([-2.0, -1.0, -1.0], [-0.5, 1.0, 1.0], true), material("Red", [1.0, 0.0, 0.0, 1.0])),
@@ -95,7 +97,7 @@ fn one_channel_of_all_materials_is_replaced_and_the_others_stay() {
 }
 
 /// A box whose node the file moves, or the settings.
-fn moved(node: serde_json::Value, more: &[&str]) -> Headless {
+fn moved(node: serde_json::Value, more: &[&str]) -> Renderer {
     let gray = glb::gray();
     let (mut json, bin) = glb::document(&glb::cuboid([-1.0, -0.5, -0.25], [1.0, 0.5, 0.25], true), &gray);
     json["nodes"][0] = node;

@@ -1,11 +1,11 @@
 //! Variants of a model, and the material override.
 
 use crate::support::process::run;
-use crate::support::{SIZE, assert_differ, assert_same, glb, load, model, render, renderer, settings};
+use crate::support::{Renderer, SIZE, assert_differ, assert_same, glb, load, model, render, renderer, settings};
 use specula::headless::Headless;
 use specula::render::Capture;
 
-fn open(name: &str, more: &[&str]) -> Headless {
+fn open(name: &str, more: &[&str]) -> Renderer {
     let direct = ["environment.name=none", "view.msaa=1", "view.background=none"];
     renderer(model(name), settings(&[&direct[..], more].concat()), SIZE)
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::support::{SIZE, Session, glb, load, model, ready, render, renderer, settings, srgb};
+use crate::support::{Renderer, SIZE, Session, glb, load, model, ready, render, renderer, settings, srgb};
 use serde_json::json;
 use specula::headless::Headless;
 use specula::render::Capture;
@@ -43,7 +43,7 @@ const BY_PATHS: [&str; 5] = ["monte-carlo", "ibl-error", "prefilter-error", "spl
 const MEASURED: [&str; 3] = ["measured", "measured-split", "measured-error"];
 
 /// Direct light, and one sample per pixel, so that no pixel mixes the model with the background.
-fn sharp(model: Model, more: &[&str]) -> Headless {
+fn sharp(model: Model, more: &[&str]) -> Renderer {
     let mut settings: Settings =
         settings(&["view.msaa=1", "view.frames=2", "view.background=none", "environment.name=none"]);
     more.iter().for_each(|assignment| settings.assign(assignment).unwrap());

@@ -13,7 +13,7 @@ use specula::shader::StageKind;
 use specula::shader::spirv::loops::Bounds;
 use specula::shader::spirv::{finish, specialize, validate};
 
-use crate::support::{assert_validated, compiler, gpu};
+use crate::support::{assert_validated, compiler, gpu, is_long};
 
 const PROGRAMS: u64 = 24;
 const LONG: Duration = Duration::from_secs(3600);
@@ -394,7 +394,7 @@ fn run(layouts: &Arc<SetLayouts>, words: &[u32]) -> Vec<i32> {
 fn random_programs_compute_the_same_when_they_are_optimized() {
     let layouts = SetLayouts::new(gpu()).unwrap();
     let start = Instant::now();
-    let is_long = std::env::var_os("SPECULA_LONG").is_some();
+    let is_long = is_long();
     let (mut optimized, mut results) = (0, std::collections::HashSet::new());
     for seed in (0..).take_while(|seed| *seed < PROGRAMS || (is_long && start.elapsed() < LONG)) {
         let constant = seed as usize % 4;

@@ -12,7 +12,7 @@ use specula::shader::spirv::loops::Bounds;
 use specula::shader::spirv::{behavior_hash, finish, specialize, specialize_several, validate};
 use specula::shader::{Change, Library, ShaderSet, Source, Stage, StageKind, Update};
 
-use crate::support::{compiler, lines};
+use crate::support::{compiler, is_long, lines};
 
 /// How many modes share a stage (thumbnails).
 const SEVERAL: usize = 8;
@@ -33,11 +33,6 @@ fn assert_valid(words: &[u32], what: &str) {
     if let Err(error) = validate(words) {
         panic!("{what}: {error}");
     }
-}
-
-/// Whether to validate also what no driver gets: specializations that are not finished, and those for devices that cannot store.
-fn is_long() -> bool {
-    std::env::var_os("SPECULA_LONG").is_some()
 }
 
 /// Fails unless a specialization of a stage is valid as a driver gets it.

@@ -5,6 +5,7 @@ mod damage;
 pub mod glb;
 pub mod hdr;
 pub mod process;
+mod renderer;
 pub mod video;
 pub mod window;
 pub mod xdnd;
@@ -22,6 +23,8 @@ use specula::scene::{Model, built_in, load_bytes};
 use specula::settings::Settings;
 use specula::shader::{Change, Compiler, Diagnostic, Library, Source, TreePath, check, embedded};
 use tempfile::TempDir;
+
+pub use renderer::{Renderer, render, renderer};
 
 /// Large enough for every feature of the models, small enough for a software device.
 pub const SIZE: (u32, u32) = (96, 64);
@@ -188,19 +191,6 @@ impl Session {
     pub fn set(&mut self, assignment: &str) {
         self.headless.settings_mut().assign(assignment).unwrap();
     }
-}
-
-/// Opens the embedded tree; nothing is written to disk.
-pub fn renderer(model: Model, settings: Settings, size: (u32, u32)) -> Headless {
-    Headless::new(gpu(), compiler(), Source::embedded(), model, settings, size).unwrap_or_else(explain).0
-}
-
-/// A frame of a mode.
-pub fn render(headless: &mut Headless, slug: &str) -> Capture {
-    headless.settings_mut().mode = slug.to_owned();
-    let capture = headless.render().unwrap_or_else(explain);
-    assert_validated();
-    capture
 }
 
 fn explain<T>(error: HeadlessError) -> T {

@@ -16,7 +16,7 @@ use specula::scene::environment::{direction_from_uv, uv_from_direction};
 use tempfile::TempDir;
 
 use crate::support::process::{self, specula};
-use crate::support::{assert_differ, assert_same, assert_validated, glb, load, render, renderer, settings};
+use crate::support::{Renderer, assert_differ, assert_same, assert_validated, glb, load, render, renderer, settings};
 
 /// Columns and rows of the maps. A sun of one texel is about a degree wide.
 const MAP: (usize, usize) = (512, 256);
@@ -93,7 +93,7 @@ fn ggx(n: DVec3, l: DVec3, v: DVec3, roughness: f64) -> f64 {
 }
 
 /// A white metal ball under the map of a file, without multiple scattering.
-fn ball(path: &Path) -> Headless {
+fn ball(path: &Path) -> Renderer {
     let chosen = settings(&[
         &format!("environment.name={}", path.display()),
         "view.msaa=1",
