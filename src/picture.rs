@@ -3,7 +3,7 @@
 mod look;
 mod part;
 
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -139,9 +139,25 @@ impl Replacement {
 
 fn write_bytes(bytes: &[u8], path: &Path) -> io::Result<()> {
     if is_stream(path) {
+        let _reader = open_pipe(path)?;
         return OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
     part::replace(&follow_links(path)?, bytes)
+}
+
+/// Opens a pipe, if `path` leads to one. Fails if nobody reads it: opening it in the usual way would wait for a reader, perhaps for ever.
+fn open_pipe(path: &Path) -> io::Result<Option<File>> {
+    #[cfg(target_os = "linux")]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&path.metadata()?.file_type()) {
+        let mut options = OpenOptions::new();
+        std::os::unix::fs::OpenOptionsExt::custom_flags(
+            &mut options,
+            rustix::fs::OFlags::NONBLOCK.bits().cast_signed(),
+        );
+        let opened = options.write(true).open(path);
+        return opened.map(Some).map_err(|error| io::Error::other(format!("nobody reads this pipe ({error})")));
+    }
+    Ok(None)
 }
 
 /// Whether `path` leads to a pipe, a device or a socket.

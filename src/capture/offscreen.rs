@@ -6,6 +6,7 @@
 //! drawn in one piece, so its size is limited by the memory of the device.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
@@ -32,6 +33,8 @@ pub struct OffscreenCapture {
     count: u32,
     /// Whether captures are for files of linear light, whose pixels are plain averages of the samples.
     is_linear: bool,
+    /// Whether to end before the next frame.
+    canceled: Arc<AtomicBool>,
 }
 
 /// A version of the shaders to capture.
@@ -44,19 +47,36 @@ pub(crate) struct VersionPicture {
 }
 
 impl OffscreenCapture {
-    /// Copies of what the window draws with. `clock` is the time of all captures.
+    /// Largest number of frames of a capture.
+    const MOST_FRAMES: u32 = 10_000;
+
+    /// Copies of what the window draws with. `clock` is the time of all captures. `canceled` ends them before the next frame.
     ///
     /// # Errors
     /// No memory left.
-    pub fn new(gpu: &Arc<Gpu>, session: Session, resources: Resources, clock: Clock) -> Result<Self, GpuError> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        session: Session,
+        resources: Resources,
+        clock: Clock,
+        canceled: &Arc<AtomicBool>,
+    ) -> Result<Self, GpuError> {
         let view = View::new(gpu, resources.layouts(), 1)?;
         let frames = Frames::new(gpu, 1)?;
-        Ok(Self { gpu: gpu.clone(), session, resources, frames, view, output: None, clock, count: 1, is_linear: false })
+        let (gpu, canceled) = (gpu.clone(), canceled.clone());
+        Ok(Self { gpu, session, resources, frames, view, output: None, clock, count: 1, is_linear: false, canceled })
     }
 
     /// Sets the number of frames that each capture takes.
-    pub fn set_count(&mut self, count: u32) {
-        self.count = count.max(1);
+    ///
+    /// # Errors
+    /// More frames than a capture may have.
+    pub fn set_count(&mut self, count: u32) -> Result<(), CaptureError> {
+        if !(1..=Self::MOST_FRAMES).contains(&count) {
+            return Err(CaptureError::Usage(format!("`frames` is {count}; it can be 1 to {}", Self::MOST_FRAMES)));
+        }
+        self.count = count;
+        Ok(())
     }
 
     /// Sets whether captures are for files of linear light (EXR).
@@ -114,12 +134,13 @@ impl OffscreenCapture {
         let scene = self.session.scene();
         let shaders = self.session.shaders.clone()?;
         let target = TargetFormat::full(1);
+        let canceled = self.canceled.clone();
         let search = Search {
             picture: self.session.inputs(&shaders, scene.as_ref(), self.clock, size, target),
             at,
             mode,
             source,
-            is_canceled: &|| false,
+            is_canceled: &|| canceled.load(Ordering::Relaxed),
         };
         let found = first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.frames), &search);
         Some(NotFinite { mode: mode.slug.clone(), found })
@@ -223,6 +244,9 @@ impl OffscreenCapture {
         redraw: Redraw,
         more: impl FnOnce(&View, &mut crate::gpu::Encoder, &Arc<Image>) -> Result<T, GpuError>,
     ) -> Result<T, HeadlessError> {
+        if self.canceled.load(Ordering::Relaxed) {
+            return Err(HeadlessError::Canceled);
+        }
         self.view.prepare(frame)?;
         let fits = |image: &Arc<Image>| (image.desc().width, image.desc().height) == frame.state.size;
         let image = match self.output.take().filter(fits) {

@@ -14,6 +14,9 @@ pub enum HeadlessError {
     /// A setting does not fit the shaders, the model or the device.
     #[error("{0}")]
     Settings(String),
+    /// The user has canceled the picture.
+    #[error("canceled")]
+    Canceled,
     /// The file of a measured BRDF cannot be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),

@@ -105,7 +105,7 @@ impl Job {
                     modes_of(offscreen.session(), std::slice::from_ref(&mode)).map_err(wrong)?;
                     offscreen.settings().mode = mode;
                 }
-                offscreen.set_count(frames);
+                offscreen.set_count(frames)?;
                 offscreen.set_linear(file.as_deref().is_some_and(picture::holds_light));
                 let capture = offscreen.capture(own.unwrap_or(size))?;
                 let shown = SessionState { settings: offscreen.session().shared_settings(), ..work };
@@ -241,7 +241,7 @@ impl Viewer {
                 !canceled.load(Ordering::Relaxed)
             };
             let result = match tell(0, 0) {
-                true => OffscreenCapture::new(&gpu, session, resources, clock)
+                true => OffscreenCapture::new(&gpu, session, resources, clock, &canceled)
                     .map_err(|error| CaptureError::Render(error.into()))
                     .and_then(|mut offscreen| {
                         job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell)

@@ -98,6 +98,7 @@ fn pipes_and_devices_are_written_to() {
     let piped = render(directory.path(), "out.png");
     assert!(piped.expect(0, &[]).stdout.contains("IHDR"), "standard output is no PNG");
     assert_eq!(names_in(directory.path()), ["full.exr", "null.png", "out.png", "pipe.png"]);
+    render(directory.path(), "pipe.png").expect(1, &["cannot write pipe.png: nobody reads this pipe"]);
 }
 
 /// Opening a pipe waits for a program that writes to it, and closing a window waits for its readers.

@@ -78,3 +78,28 @@ fn a_broken_save_costs_nothing_when_stderr_takes_nothing() {
         running.reload(true);
     }
 }
+
+#[test]
+fn a_capture_of_many_frames_is_limited_and_ends_when_it_is_canceled() {
+    use serde_json::json;
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--size", "320x240"]);
+    viewer.running.event("ready");
+    let many = |frames: u32| json!({ "command": "capture", "frames": frames, "size": [320, 240], "file": "many.png" });
+    for frames in [0, 10_001, u32::MAX] {
+        let refused = viewer.running.refused(many(frames));
+        assert!(refused.contains("it can be 1 to 10000"), "{refused}");
+    }
+    viewer
+        .running
+        .say(&json!({ "command": "capture", "frames": 10_000, "size": [640, 480], "id": "long" }).to_string());
+    viewer.running.until("the capture to begin", |event| event["event"] == "progress" && event["id"] == "long");
+    viewer.running.done(json!({ "command": "cancel" }));
+    // The next capture waits for the one before.
+    viewer.running.done(json!({ "command": "capture", "frames": 2, "size": [32, 32], "file": "small.png" }));
+    viewer
+        .running
+        .say(&json!({ "command": "capture", "frames": 10_000, "size": [640, 480], "id": "last" }).to_string());
+    viewer.running.until("the capture to begin", |event| event["event"] == "progress" && event["id"] == "last");
+    viewer.running.done(json!({ "command": "quit" }));
+    assert!(viewer.running.end().success());
+}
