@@ -203,6 +203,16 @@ impl PipelineSet {
         Ok(missing.len())
     }
 
+    /// Drops all pipelines but those of `request`, for a set that a newer one has replaced: a software device takes megabytes for each. What is
+    /// needed again is built again.
+    pub(crate) fn keep(&self, request: &PipelineRequest) {
+        let keys: HashSet<PipelineKey> = request.keys().collect();
+        let constants = request.pass_constants();
+        let is_pass = |stage: &str| request.passes.iter().any(|pass| pass.is_compute && pass.desc.stage == stage);
+        lock(&self.graphics).entries.retain(|key, _| keys.contains(key));
+        lock(&self.computes).entries.retain(|(stage, of), _| *of == constants && is_pass(stage));
+    }
+
     /// Whether a stage of the pipeline is not compiled yet.
     fn is_pending(&self, key: &PipelineKey) -> bool {
         key.stages().any(|path| self.is_pending_stage(path))

@@ -49,9 +49,10 @@ impl Generations {
         }
     }
 
-    /// Keeps the last frame of a version that a newer one replaces.
+    /// Keeps the last frame of a version that a newer one replaces, and of its pipelines those of that frame.
     pub(in crate::app) fn retire(&mut self, picture: LastComplete) {
         if let Some(generation) = self.0.get_mut(&picture.frame.state.shaders.generation) {
+            generation.set.keep(&picture.frame.state.pipelines);
             generation.picture = Some(picture);
         }
     }
