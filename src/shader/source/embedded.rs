@@ -76,7 +76,8 @@ fn collect(directory: &Dir<'_>, root: &Path, out: &mut Vec<TreePath>) {
     }
 }
 
-/// Writes the tree, with an example, into `directory`, creating it if needed. Returns the files in order.
+/// Writes the tree, with an example, into `directory`, creating it if needed. Returns the files in order. Leaves nothing if a file cannot be
+/// written.
 ///
 /// # Errors
 /// `AlreadyExists` if the directory is not empty, so that no file of the user is overwritten. Otherwise the system's error
@@ -88,22 +89,30 @@ pub fn write_to(directory: &Path, example: Option<Example>) -> io::Result<Vec<Pa
         let message = format!("{} is not empty; choose a new directory", directory.display());
         return Err(io::Error::new(io::ErrorKind::AlreadyExists, message));
     }
-    let mut written = Vec::new();
-    for path in list(example) {
+    let mut begun = Vec::new();
+    let result = list(example).iter().try_for_each(|path| {
         let target = directory.join(path.as_str());
         if let Some(parent) = target.parent() {
             fs::create_dir_all(parent).map_err(|error| named(parent, error))?;
         }
-        let bytes = read(example, &path).unwrap_or_default();
-        OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&target)
-            .and_then(|mut file| file.write_all(bytes))
-            .map_err(|error| named(&target, error))?;
-        written.push(target);
+        let bytes = read(example, path).unwrap_or_default();
+        begun.push(target.clone());
+        let opened = OpenOptions::new().write(true).create_new(true).open(&target);
+        opened.and_then(|mut file| file.write_all(bytes)).map_err(|error| named(&target, error))
+    });
+    if result.is_err() {
+        remove(directory, &begun);
     }
-    Ok(written)
+    result.map(|()| begun)
+}
+
+/// Removes files below `directory`, and the folders that are then empty.
+fn remove(directory: &Path, files: &[PathBuf]) {
+    let folders = files.iter().flat_map(|file| file.ancestors().skip(1));
+    let folders: BTreeSet<&Path> = folders.filter(|folder| folder.starts_with(directory)).collect();
+    files.iter().for_each(|file| _ = fs::remove_file(file));
+    // Inner folders come after outer ones. A folder with other files stays.
+    folders.into_iter().rev().for_each(|folder| _ = fs::remove_dir(folder));
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Reads files of a tree on disk, and says why one cannot be used.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use super::error::{MAX_FILE_BYTES, SourceError};
-use crate::regular_file;
 
 /// The names of the files in a directory, without hidden files.
 pub(super) fn names_in(directory: &Path) -> Vec<String> {
@@ -21,8 +21,14 @@ pub(super) fn read_file(root: &Path, path: &str) -> Result<String, SourceError> 
 
 /// The bytes of a file below `root`.
 pub(super) fn read_bytes(root: &Path, path: &str, most: u64) -> Result<Vec<u8>, SourceError> {
-    let bytes = read_anywhere(&root.join(path), most)?;
-    if leads_out(root, path) { Err(SourceError::Outside) } else { Ok(bytes) }
+    let file = root.join(path);
+    let size = size_of(&file, most)?;
+    if leads_out(root, path) { Err(SourceError::Outside) } else { load(&file, size) }
+}
+
+/// The bytes of a file that the user has named.
+pub(super) fn read_anywhere(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
+    load(path, size_of(path, most)?)
 }
 
 /// Whether symbolic links lead a path below `root` out of it. Most paths have no link on the way, which costs one call of the system for each
@@ -37,19 +43,22 @@ pub fn leads_out(root: &Path, path: &str) -> bool {
     ends.is_ok_and(|is_inside| !is_inside)
 }
 
-/// The bytes of a file that the user has named.
-pub(super) fn read_anywhere(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
+/// The size of a regular file of at most `most` bytes.
+fn size_of(path: &Path, most: u64) -> Result<u64, SourceError> {
     let metadata = std::fs::metadata(path).map_err(io_error)?;
-    if metadata.is_dir() {
-        return Err(SourceError::Directory);
+    match metadata.len() {
+        _ if metadata.is_dir() => Err(SourceError::Directory),
+        _ if !metadata.is_file() => Err(SourceError::Io("not a regular file".to_owned())),
+        bytes if bytes > most => Err(SourceError::TooBig { bytes, most }),
+        bytes => Ok(bytes),
     }
-    if !metadata.is_file() {
-        return Err(SourceError::Io("not a regular file".to_owned()));
-    }
-    if metadata.len() > most {
-        return Err(SourceError::TooBig { bytes: metadata.len(), most });
-    }
-    regular_file::read(path, most).map_err(io_error)
+}
+
+/// Reads `size` bytes of a file, and no more: a file of the kernel claims to be empty, and reading it might never end.
+fn load(path: &Path, size: u64) -> Result<Vec<u8>, SourceError> {
+    let mut bytes = Vec::with_capacity(size as usize);
+    File::open(path).and_then(|file| file.take(size).read_to_end(&mut bytes)).map_err(io_error)?;
+    Ok(bytes)
 }
 
 fn io_error(error: io::Error) -> SourceError {

@@ -189,3 +189,14 @@ fn a_folder_with_too_many_files_is_no_tree() {
     let render = run(&tree.beside(""), &[&QUICK[..], &["--shaders", "shaders"]].concat());
     render.expect(1, &["has more than 20000 files and folders, too many for a shader tree"]);
 }
+
+#[test]
+fn a_tree_that_does_not_fit_on_the_disk_is_not_begun() {
+    let directory = tempfile::tempdir().unwrap();
+    // No file may grow.
+    let mut command = specula(directory.path());
+    let script = "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\"";
+    finish(in_shell(command.args(["new", "mine"]), script).current_dir(directory.path()))
+        .expect(1, &["mine/", "large"]);
+    assert!(!directory.path().join("mine").exists());
+}
