@@ -56,168 +56,35 @@
 mod contradiction;
 mod inputs;
 mod order;
+mod pass;
 mod pre_rasterization;
 mod roles;
+mod stage;
 mod textures;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use serde::Serialize;
-
+use super::annotation::Annotations;
 use super::annotation::pass::{MODEL, PassDesc, PassTarget};
-use super::annotation::{Annotations, PATHS_STAGE};
 use super::compile::StageKind;
-use super::contract::Texts;
 use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath, embedded};
 use super::spirv::primitive::Primitive;
-use super::spirv::reflect::Reflection;
 use crate::interface::{StageRole, VERTEX_BINDINGS};
 use contradiction::contradiction;
 pub use inputs::read_later;
+pub use pass::{GraphPass, Input, Inputs, RenderPhase};
 pub use pre_rasterization::{MeshStages, PreRasterization, at_main, stage_beside, unlike_neighbors};
 pub use roles::missing_passes;
+pub use stage::{FULL_SCREEN, PassStage};
 use textures::read_texture;
 pub use textures::{Texture, TextureFile, TextureKind};
-
-/// The resource that a pass reads or writes at a binding of `interface::SET_PASS`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
-pub enum Input {
-    /// The picture before this pass.
-    Picture,
-    /// The samples of the picture's pixels.
-    Samples,
-    /// Color of the opaque scene, with mip levels, which transmissive surfaces look up (`behind` in GLSL).
-    OpaqueScene,
-    /// Depth of the model: 1 near, 0 at infinity or where there is nothing.
-    Depth,
-    /// The image of another pass.
-    Image(String),
-    /// The image of a pass one frame ago.
-    Before(String),
-    /// A texture of the tree, as the kind that the stage declares.
-    Texture(String, TextureKind),
-    /// The image of this pass, written by a compute shader.
-    Output,
-    /// A storage buffer that all passes share by the name of its block, with its size in bytes, and whether the stage may write it. It
-    /// lasts from frame to frame.
-    Buffer(String, u32, bool),
-    /// The block `Pass` of pass.glsl and toy.glsl: its size in bytes, and its members with their offsets.
-    Pass(u32, Vec<(u32, String)>),
-    /// The pass's own uniform block: its size in bytes, and its members with their offsets.
-    Parameters(u32, Vec<(u32, String)>),
-}
-
-/// The vertex stage of stages that cover an image.
-pub const FULL_SCREEN: &str = "fullscreen.vert";
 
 /// How to get the constant that `when=` names.
 const DECLARE_A_CONSTANT: &str =
     "declare it: layout(constant_id = USER_CONSTANTS + 30) const bool NAME = true; //@ui \"Label\"";
-
-/// Inputs by their binding in `interface::SET_PASS`.
-pub type Inputs = BTreeMap<u32, Input>;
-
-/// The phase of a frame in which a pass is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum RenderPhase {
-    /// Before the model, which reads its image.
-    BeforeModel,
-    /// The model and the background.
-    Model,
-    /// One color from the samples of each pixel.
-    Resolve,
-    /// The mean of all frames.
-    Mean,
-    /// Between the model and the tone map: the picture is linear light.
-    #[default]
-    Light,
-    /// The tone map.
-    Tonemap,
-    /// After the tone map: the picture is as the display shows it.
-    Display,
-}
-
-/// A pass in its place in the [`Graph`].
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
-pub struct GraphPass {
-    /// The parsed `//@pass`.
-    pub desc: PassDesc,
-    /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
-    pub is_compute: bool,
-    /// The stages before the rasterizer, of a pass that is no compute pass.
-    pub pre_rasterization: PreRasterization,
-    /// When it is drawn.
-    pub phase: RenderPhase,
-    /// The images, textures and buffers that it reads and writes.
-    pub inputs: Inputs,
-    /// Invocations of a workgroup, of a compute pass.
-    pub local_size: [u32; 3],
-    /// Whether its image may change while the settings do not: it reads the previous frame, a buffer, or the clock in the block
-    /// `Pass`. The clock in the block `Frame` does not count: the compiled modules tell which pipelines read that.
-    pub moves: bool,
-}
-
-impl GraphPass {
-    /// The name of the pass and its image.
-    pub fn name(&self) -> &str {
-        &self.desc.name
-    }
-
-    /// The paths of its stages, in the order in which they run.
-    pub fn stages(&self) -> impl Iterator<Item = &str> {
-        let pre_rasterization = (!self.is_compute).then(|| self.pre_rasterization.stages());
-        pre_rasterization.into_iter().flatten().chain([self.desc.stage.as_str()])
-    }
-
-    /// The purpose that its stages are run for.
-    pub fn role(&self) -> StageRole {
-        match () {
-            () if self.is_compute => StageRole::Compute,
-            () if self.desc.quads => StageRole::Quads,
-            () if self.desc.stage == PATHS_STAGE => StageRole::Paths,
-            () if self.desc.model.is_some() => StageRole::Model,
-            () => StageRole::Screen,
-        }
-    }
-
-    /// Whether this is its name or that of one of its images.
-    pub fn is_called(&self, name: &str) -> bool {
-        self.name() == name || self.desc.draws(name)
-    }
-
-    /// Whether the user can switch it on and off.
-    pub fn has_switch(&self) -> bool {
-        self.desc.name == MODEL || !self.desc.is_built_in()
-    }
-
-    /// Whether it draws the model to the picture besides the model's own pass.
-    pub fn adds_to_model(&self) -> bool {
-        self.phase == RenderPhase::Model && self.desc.model.is_some() && !self.desc.is_built_in()
-    }
-
-    /// Whether its own uniform block has a member of this name.
-    pub fn has_parameter(&self, name: &str) -> bool {
-        self.inputs.values().any(|input| match input {
-            Input::Parameters(_, members) => members.iter().any(|(_, member)| member == name),
-            _ => false,
-        })
-    }
-
-    /// Whether it makes a displayed picture without reading the one before.
-    pub fn covers(&self) -> bool {
-        let reads_picture = || self.inputs.values().any(|input| *input == Input::Picture);
-        self.desc.to_picture() && self.phase == RenderPhase::Display && !reads_picture()
-    }
-
-    /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
-    pub fn is_wanted(&self, switched: &BTreeMap<String, bool>) -> bool {
-        switched.get(self.name()).copied().unwrap_or(self.desc.on)
-    }
-}
 
 /// The declared passes in order, and their textures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -229,18 +96,6 @@ pub struct Graph {
     /// The names of the passes that only work for others: they do not change the picture, and another pass needs them or may need
     /// them.
     pub internal: BTreeSet<String>,
-}
-
-/// A stage that declares a pass.
-pub struct PassStage<'a> {
-    /// The kind of stage.
-    pub kind: StageKind,
-    /// The declarations of its module.
-    pub reflection: &'a Reflection,
-    /// Its source text.
-    pub texts: Texts<'a>,
-    /// Returns the bindings of `interface::SET_PASS` that its outputs depend on.
-    pub live: Box<dyn Fn() -> &'a BTreeSet<u32> + 'a>,
 }
 
 impl Graph {

@@ -17,6 +17,9 @@ pub mod check;
 mod link;
 mod passes;
 mod slot;
+mod state;
+mod update;
+mod watch;
 mod watched;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,126 +44,11 @@ use crate::shader::source::{Source, TreePath};
 use beside::fragment_of;
 use link::Linked;
 use slot::{Done, Slot, Start, build};
-use watched::{View, Watched};
+use watched::View;
 
 pub use slot::Stage;
-
-/// The files that may have changed since the last update.
-#[derive(Clone, Debug)]
-pub enum Change {
-    /// Anything: the first update, which takes modules from disk where it can, and the reload key, which compiles every stage as a
-    /// whole. A stage whose module comes out unchanged remains the same object.
-    All,
-    /// These files.
-    Paths(BTreeSet<TreePath>),
-}
-
-impl Change {
-    /// Combines both changes.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Paths(mut paths), Self::Paths(more)) => {
-                paths.extend(more);
-                Self::Paths(paths)
-            }
-            _ => Self::All,
-        }
-    }
-}
-
-/// The result of one successful update. It is immutable; an edit creates a new set.
-#[derive(Clone, Debug, Default)]
-pub struct ShaderSet {
-    /// Increments with every new set, from 1.
-    pub generation: u64,
-    /// The stages by path. A stage that an edit does not affect is the same `Arc` in both sets.
-    pub stages: BTreeMap<String, Arc<Stage>>,
-    /// Stages that are still to be compiled for this edit, or that failed. [`ShaderSet::stages`] holds their last good
-    /// versions, which no picture may show together with the others.
-    pub pending: BTreeSet<String>,
-    /// Debug modes, ordered by id.
-    pub modes: Vec<Mode>,
-    /// The author's specialization constants, ordered by id.
-    pub constants: Vec<Constant>,
-    /// The author's parameters, ordered by offset.
-    pub parameters: Vec<Parameter>,
-    /// The passes that the tree adds, in order.
-    pub graph: Graph,
-    /// The compiler's warnings, and an error for each file whose text is refused ([`Source::quarantined`]).
-    pub warnings: Vec<Diagnostic>,
-    /// The texts of all files that the stages depend on.
-    pub texts: BTreeMap<TreePath, Arc<str>>,
-    /// The watched expression, and its line now, after edits above it.
-    pub watched: Option<(Expression, u32)>,
-}
-
-impl ShaderSet {
-    /// Whether no stage is still to be compiled. A watched expression that does not compile costs only its own mode.
-    pub fn is_complete(&self) -> bool {
-        self.pending.iter().all(|path| path == expression::STAGE)
-    }
-
-    /// `FEATURE_*` bits of the extensions that the author's `user_surface` brings into the picture. Every lit material has them.
-    pub fn hook_features(&self) -> u32 {
-        let current = self.stages.iter().filter(|(path, _)| !self.pending.contains(*path));
-        current.fold(0, |all, (_, stage)| all | stage.hooks.features)
-    }
-}
-
-/// The stages that an update compiled, and how long it took.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
-    /// Changed files that a stage depends on, as displayed.
-    pub changed: Vec<String>,
-    /// Compiled stages and the time that each took, in milliseconds. An edit of comments compiles none.
-    pub stages: Vec<(String, f64)>,
-    /// Stages among these that do not compile, or contradict the contract.
-    pub failed: Vec<String>,
-    /// After a failed update: edited files, as displayed, that no diagnostic is about. They wait for the repair of the others.
-    pub waiting: Vec<String>,
-    /// Wall time of the whole update, in milliseconds. Stages compile in parallel.
-    pub compile_ms: f64,
-}
-
-/// The outcome of an update.
-#[derive(Clone, Debug)]
-pub enum Update {
-    /// The last set is still current. `cleared`: a failed edit was reverted, so its diagnostics no longer apply.
-    Unchanged {
-        /// Whether to clear the displayed diagnostics.
-        cleared: bool,
-    },
-    /// There is a new set.
-    Ready(Arc<ShaderSet>, Report),
-    /// The update failed; the last good set remains.
-    Failed(Vec<Diagnostic>, Report),
-}
-
-/// The stages of one tree, the last good set, and the failures since.
-pub struct Library {
-    source: Arc<Source>,
-    compiler: Arc<Compiler>,
-    cache: FileCache,
-    /// The entry points that a library is made with, then the stages that declare a pass.
-    slots: Vec<Slot>,
-    /// Number of entry points that a library is made with.
-    fixed: usize,
-    /// Stages in `passes/` that declare no pass, so that nothing draws them.
-    idle: BTreeSet<TreePath>,
-    /// Files of tessellation, geometry, task and mesh stages.
-    beside: BTreeSet<TreePath>,
-    set: Option<Arc<ShaderSet>>,
-    failed: bool,
-    /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
-    relink: bool,
-    /// The expression that is shown over the model.
-    watched: Option<Watched>,
-    /// Whether the source holds a part of a tree, so that annotations may name what is in other files.
-    is_part: bool,
-    /// See [`Library::compile_whole`].
-    is_whole: bool,
-}
+pub use state::Library;
+pub use update::{Change, Report, ShaderSet, Update};
 
 impl Library {
     /// A library with the entry points `stages`, and every other stage of the tree that declares a pass.

@@ -29,7 +29,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
 use notify::Event;
 
 use fingerprint::{Fingerprint, fingerprint};
-use notifier::Notifier;
+use notifier::{Notifier, POLL};
 use state::{Touched, WatchState};
 
 /// A save of one existing, closed file is complete; this delay covers an editor's backup file beside it.
@@ -39,8 +39,6 @@ const SETTLE_SAVE: Duration = Duration::from_millis(2);
 const SETTLE: Duration = Duration::from_millis(30);
 /// A batch is delivered at the latest this long after its first event.
 const SETTLE_CAP: Duration = Duration::from_millis(150);
-/// Polling interval without notifications.
-const POLL: Duration = Duration::from_millis(500);
 /// The environment variable that disables notifications.
 const POLL_VARIABLE: &str = "SPECULA_POLL";
 

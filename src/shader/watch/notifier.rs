@@ -2,12 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 
-use super::POLL;
 use super::mounts::Mounts;
+
+/// Polling interval without notifications.
+pub(super) const POLL: Duration = Duration::from_millis(500);
 
 /// Watches single directories. Directories are named without symbolic links, because events have the name that a directory
 /// was first watched under.

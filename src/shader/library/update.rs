@@ -1,0 +1,114 @@
+//! What an update of a library starts from, and what comes of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::slot::Stage;
+use crate::shader::annotation::{Constant, Mode, Parameter};
+use crate::shader::compile::StageKind;
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::expression::{self, Expression};
+use crate::shader::graph::Graph;
+use crate::shader::source::TreePath;
+
+/// The files that may have changed since the last update.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Anything: the first update, which takes modules from disk where it can, and the reload key, which compiles every stage as a
+    /// whole. A stage whose module comes out unchanged remains the same object.
+    All,
+    /// These files.
+    Paths(BTreeSet<TreePath>),
+}
+
+impl Change {
+    /// Combines both changes.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Paths(mut paths), Self::Paths(more)) => {
+                paths.extend(more);
+                Self::Paths(paths)
+            }
+            _ => Self::All,
+        }
+    }
+}
+
+/// The result of one successful update. It is immutable; an edit creates a new set.
+#[derive(Clone, Debug, Default)]
+pub struct ShaderSet {
+    /// Increments with every new set, from 1.
+    pub generation: u64,
+    /// The stages by path. A stage that an edit does not affect is the same `Arc` in both sets.
+    pub stages: BTreeMap<String, Arc<Stage>>,
+    /// Stages that are still to be compiled for this edit, or that failed. [`ShaderSet::stages`] holds their last good
+    /// versions, which no picture may show together with the others.
+    pub pending: BTreeSet<String>,
+    /// Debug modes, ordered by id.
+    pub modes: Vec<Mode>,
+    /// The author's specialization constants, ordered by id.
+    pub constants: Vec<Constant>,
+    /// The author's parameters, ordered by offset.
+    pub parameters: Vec<Parameter>,
+    /// The passes that the tree adds, in order.
+    pub graph: Graph,
+    /// The compiler's warnings, and an error for each file whose text is refused ([`crate::shader::Source::quarantined`]).
+    pub warnings: Vec<Diagnostic>,
+    /// The texts of all files that the stages depend on.
+    pub texts: BTreeMap<TreePath, Arc<str>>,
+    /// The watched expression, and its line now, after edits above it.
+    pub watched: Option<(Expression, u32)>,
+}
+
+impl ShaderSet {
+    /// Whether no stage is still to be compiled. A watched expression that does not compile costs only its own mode.
+    pub fn is_complete(&self) -> bool {
+        self.pending.iter().all(|path| path == expression::STAGE)
+    }
+
+    /// `FEATURE_*` bits of the extensions that the author's `user_surface` brings into the picture. Every lit material has them.
+    pub fn hook_features(&self) -> u32 {
+        let current = self.stages.iter().filter(|(path, _)| !self.pending.contains(*path));
+        current.fold(0, |all, (_, stage)| all | stage.hooks.features)
+    }
+
+    /// Whether the pre-rasterization stages of the fragment stage `fragment` move the vertices of the model.
+    pub fn moves_vertices(&self, fragment: &str) -> bool {
+        let pass = self.graph.passes.iter().find(|pass| pass.desc.stage == fragment && pass.desc.draws_model());
+        let stages = pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages());
+        let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
+        stages.filter_map(|path| self.stages.get(path)).any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
+    }
+}
+
+/// The stages that an update compiled, and how long it took.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Changed files that a stage depends on, as displayed.
+    pub changed: Vec<String>,
+    /// Compiled stages and the time that each took, in milliseconds. An edit of comments compiles none.
+    pub stages: Vec<(String, f64)>,
+    /// Stages among these that do not compile, or contradict the contract.
+    pub failed: Vec<String>,
+    /// After a failed update: edited files, as displayed, that no diagnostic is about. They wait for the repair of the others.
+    pub waiting: Vec<String>,
+    /// Wall time of the whole update, in milliseconds. Stages compile in parallel.
+    pub compile_ms: f64,
+}
+
+/// The outcome of an update.
+#[derive(Clone, Debug)]
+pub enum Update {
+    /// The last set is still current. `cleared`: a failed edit was reverted, so its diagnostics no longer apply.
+    Unchanged {
+        /// Whether to clear the displayed diagnostics.
+        cleared: bool,
+    },
+    /// There is a new set.
+    Ready(Arc<ShaderSet>, Report),
+    /// The update failed; the last good set remains.
+    Failed(Vec<Diagnostic>, Report),
+}

@@ -1,0 +1,77 @@
+//! Adds the stage of the watched expression to a library, and finds the expression's line again after edits.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::slot::Slot;
+use super::watched::{View, Watched, is_watched};
+use super::{Change, Library};
+use crate::shader::annotation;
+use crate::shader::annotation::pass::MODEL;
+use crate::shader::compile::StageKind;
+use crate::shader::expression::{Expression, Overlay, STAGE, follow};
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::{Read, Snapshot};
+
+impl Library {
+    /// Watches another expression, or none. Returns the paths that the next update must name, if anything differs.
+    pub fn watch(&mut self, expression: Option<Expression>) -> Option<Change> {
+        if self.watched.as_ref().map(|watched| &watched.expression) == expression.as_ref() {
+            return None;
+        }
+        // The same expression with the current place of its line.
+        if let (Some(watched), Some(new)) = (&mut self.watched, &expression)
+            && (Expression { line: watched.line, ..watched.expression.clone() }) == *new
+        {
+            watched.expression = new.clone();
+            return None;
+        }
+        self.watched = expression.map(|expression| Watched { line: expression.line, expression, file: None });
+        Some(Change::Paths(BTreeSet::from([TreePath::from(STAGE)])))
+    }
+
+    /// The watched expression and its line, after edits above it.
+    pub(super) fn watched(&self) -> Option<(Expression, u32)> {
+        self.watched.as_ref().map(|watched| (watched.expression.clone(), watched.line))
+    }
+
+    /// The snapshot for a stage. Finds the line of the watched expression in it.
+    pub(super) fn view<'a>(&mut self, snapshot: Snapshot<'a>) -> View<'a> {
+        self.find_watched();
+        let Some(watched) = &mut self.watched else { return View { snapshot, watched: None } };
+        if let Some((path, old)) = &watched.file
+            && let Ok(new) = snapshot.read(path)
+            && new != *old
+        {
+            watched.line = follow(old, &new, watched.line);
+        }
+        let host = self.slots.iter().map(|slot| &slot.path).find(|path| {
+            StageKind::of(path) == Some(StageKind::Fragment)
+                && annotation::passes_of(&snapshot, path).any(|desc| desc.name == MODEL)
+        });
+        let host = host.cloned().unwrap_or_else(|| TreePath::from("pbr.frag"));
+        let overlay = Overlay::new(&watched.expression, watched.line, &host, &snapshot);
+        watched.file = overlay.file.clone().and_then(|path| {
+            let text = snapshot.read(&path).ok()?;
+            Some((path, text))
+        });
+        let read = |text: &Arc<str>| -> Read { Ok(text.clone()) };
+        overlay.files.iter().for_each(|(path, text)| snapshot.put(path, read(text)));
+        let edited = overlay.edited.iter().map(|(path, text)| (path.clone(), read(text))).collect();
+        let seen = snapshot.over(edited);
+        View { snapshot, watched: Some((seen, overlay)) }
+    }
+
+    /// Adds the stage of the watched expression, or removes it.
+    fn find_watched(&mut self) {
+        let place = self.slots.iter().position(|slot| is_watched(&slot.path));
+        match (&self.watched, place) {
+            (Some(_), None) => self.slots.push(Slot::new(TreePath::from(STAGE))),
+            (None, Some(place)) => {
+                self.slots.remove(place);
+                self.relink = true;
+            }
+            _ => {}
+        }
+    }
+}
