@@ -26,7 +26,7 @@ pub use commands::counts::DrawCounts;
 pub use commands::encoder::{Attachments, Encoder, Rect};
 pub use commands::frames::{Frames, one_shot};
 pub use commands::image_use::Use;
-pub use commands::pass::PassTime;
+pub use commands::pass_timer::PassTime;
 pub use commands::slot::Submission;
 pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};

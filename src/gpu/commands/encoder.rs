@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::counts::Counter;
 use super::image_use::{SHADERS, Use};
-use super::pass::PassTimer;
+use super::pass_timer::PassTimer;
 use crate::gpu::{Buffer, DescriptorSet, Gpu, Image, PassLayout, Pipeline, SetLayouts};
 
 /// A rectangle in pixels.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::counts::DrawCounts;
 use super::encoder::Encoder;
-use super::pass::PassTime;
+use super::pass_timer::PassTime;
 use super::slot::{Slot, Submission, Times};
 use crate::gpu::{Gpu, GpuError};
 

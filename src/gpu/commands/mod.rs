@@ -8,5 +8,6 @@ pub(in crate::gpu) mod encoder;
 pub(in crate::gpu) mod frames;
 pub(in crate::gpu) mod image_use;
 pub(in crate::gpu) mod pass;
+pub(in crate::gpu) mod pass_timer;
 pub(in crate::gpu) mod slot;
 pub(in crate::gpu) mod upload;

@@ -8,7 +8,7 @@ use ash::vk;
 
 use super::counts::DrawCounts;
 use super::encoder::Encoder;
-use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, TimedPass};
+use super::pass_timer::{MAX_TIMESTAMPS, PassTime, PassTimer, TimedPass};
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::{self, Watched};
 use crate::gpu::{Buffer, Gpu, GpuError, Memory, fault};

@@ -7,7 +7,7 @@ use ash::vk;
 use super::buffer::{Buffer, Memory};
 use super::image::{Image, ImageDesc};
 use super::sampler::{Sampler, SamplerDesc};
-use crate::gpu::{Gpu, GpuError, Use, one_shot};
+use crate::gpu::{Gpu, GpuError};
 
 /// Bytes of [`Blank::loops`]: two words that name a loop, and one that is 0 once an iteration limit was exceeded.
 pub(in crate::gpu) const LOOP_WORDS_BYTES: u64 = 12;
@@ -25,6 +25,7 @@ pub(in crate::gpu) struct Blank {
 }
 
 impl Blank {
+    /// Creates the objects; [`super::set_layouts`] makes them ready for use.
     pub(in crate::gpu) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::STORAGE;
@@ -34,14 +35,6 @@ impl Blank {
         let cube = Image::new(gpu, "blank cube", ImageDesc::cube(1, 1, format, usage))?;
         let words = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let loops = Buffer::new(gpu, "loops", LOOP_WORDS_BYTES, words, Memory::Device)?;
-        one_shot(gpu, |encoder| {
-            encoder.clear_loops(&loops);
-            encoder.copies_done();
-            for image in [&image, &array, &cube] {
-                encoder.transition(image, Use::Undefined, Use::Sampled);
-            }
-            Ok(())
-        })?;
         let sampler = Sampler::new(gpu, &SamplerDesc::NEAREST)?;
         let buffer = Buffer::new(gpu, "blank", 16, Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, Memory::Device)?;
         Ok(Self { image, array, cube, sampler, buffer, loops })

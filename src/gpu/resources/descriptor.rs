@@ -48,13 +48,10 @@ pub struct SetLayouts {
 }
 
 impl SetLayouts {
-    /// Creates the layouts of [`interface::BINDINGS`].
-    ///
-    /// # Errors
-    /// The device is out of memory.
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
+    /// [`SetLayouts::new`] with placeholders that are ready for use.
+    pub(super) fn with_blank(gpu: &Arc<Gpu>, blank: Blank) -> Result<Arc<Self>, GpuError> {
         let count = interface::BINDINGS.iter().map(|b| b.set + 1).max().unwrap_or(0);
-        let (blank, pipeline) = (Blank::new(gpu)?, vk::PipelineLayout::null());
+        let pipeline = vk::PipelineLayout::null();
         let mut layouts = Self { gpu: gpu.clone(), sets: Vec::new(), pipeline, blank };
         for set in 0..count {
             let bindings: Vec<_> = interface::BINDINGS

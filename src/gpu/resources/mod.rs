@@ -10,4 +10,5 @@ pub(in crate::gpu) mod pass_layout;
 pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod resource_usage;
 pub(in crate::gpu) mod sampler;
+pub(in crate::gpu) mod set_layouts;
 pub(in crate::gpu) mod statistics;
