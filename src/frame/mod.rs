@@ -8,10 +8,12 @@ mod date;
 mod display;
 mod formats;
 mod keys;
+mod material_variant;
 mod mode_sets;
 mod pipeline_key;
 mod pipelines;
 mod scene;
+mod shared_mode;
 pub mod stages;
 
 use std::collections::BTreeMap;
@@ -25,12 +27,14 @@ pub use display::{Display, Limits};
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
-pub use mode_sets::{SharedMode, mode_sets};
+pub use material_variant::MaterialVariant;
+pub(crate) use material_variant::QUADS;
+pub use mode_sets::mode_sets;
 pub(crate) use pipeline_key::PipelineKey;
-pub(crate) use pipelines::QUADS;
-pub use pipelines::{MaterialVariant, PipelineRequest};
+pub use pipelines::PipelineRequest;
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
+pub use shared_mode::SharedMode;
 
 use glam::Mat4;
 

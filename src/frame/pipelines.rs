@@ -2,35 +2,22 @@
 
 mod hooks;
 mod keys;
+mod modes;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::display::Display;
 use super::formats::{MEAN_FORMAT, TargetFormat};
+use super::material_variant::{MaterialVariant, shared_features};
 use super::{Scene, SharedMode};
-use crate::gpu::{PrimitiveClass, Specialization, vk};
+use crate::gpu::{Specialization, vk};
 use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
 use crate::scene::light_count;
-use crate::settings::{LightSource, Settings};
+use crate::settings::Settings;
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
-
-/// The properties of a material and its primitive that select a pipeline.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct MaterialVariant {
-    /// `interface::ALPHA_*`.
-    pub alpha: u32,
-    /// `interface::FEATURE_*` bits.
-    pub features: u32,
-    /// Kind of primitive.
-    pub class: PrimitiveClass,
-}
-
-/// The placeholder for a material in the pipelines of quads.
-pub(crate) const QUADS: MaterialVariant =
-    MaterialVariant { alpha: interface::ALPHA_OPAQUE, features: 0, class: PrimitiveClass::Triangles };
 
 /// Everything that selects the pipelines of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -177,7 +164,7 @@ impl PipelineRequest {
             sun_count: 0,
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
-            moves_vertices: hooks::moves_vertices(shaders, &stage),
+            moves_vertices: shaders.moves_vertices(&stage),
             through: selection.through,
             stage,
             passes,
@@ -274,18 +261,6 @@ impl PipelineRequest {
         // A stage that has never compiled is not in the graph yet.
         !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
     }
-}
-
-/// The feature bits that all materials of a frame share.
-pub(super) fn shared_features(settings: &Settings) -> u32 {
-    let mut features = 0;
-    if settings.environment.is_lit() {
-        features |= interface::FEATURE_ENVIRONMENT;
-    }
-    if settings.lights.rect.enabled && settings.lights.source != LightSource::None {
-        features |= interface::FEATURE_RECT_LIGHTS;
-    }
-    features
 }
 
 /// The pass whose stage draws the wireframe: that of the mode which draws lines.

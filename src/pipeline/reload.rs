@@ -200,10 +200,11 @@ impl Reloader {
         let start = Instant::now();
         let before = self.current.as_deref();
         let mut problems = beyond_limits(&self.gpu, &shaders, self.library.source());
-        let textures = PassTextures::load(&self.gpu, &shaders.graph, before).unwrap_or_else(|errors| {
-            problems.extend(errors.into_iter().map(|error| self.library.source().explained(error)));
-            Arc::default()
-        });
+        let textures =
+            PassTextures::load(&self.gpu, &shaders.graph, before.map(PipelineSet::textures)).unwrap_or_else(|errors| {
+                problems.extend(errors.into_iter().map(|error| self.library.source().explained(error)));
+                Arc::default()
+            });
         if !problems.is_empty() {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(problems) };
         }

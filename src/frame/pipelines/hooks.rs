@@ -2,7 +2,6 @@
 
 use super::{MaterialVariant, PipelineRequest};
 use crate::interface;
-use crate::shader::{ShaderSet, StageKind};
 
 impl PipelineRequest {
     /// The `FEATURE_*` bits of a material in this frame, without those of the frame itself.
@@ -27,13 +26,4 @@ impl PipelineRequest {
         is_other_mesh
             .then_some("the paths trace the mesh as it was loaded: the shaders move its vertices in the picture only")
     }
-}
-
-/// Whether the pre-rasterization stages of the fragment stage `stage` move the vertices of the model.
-pub(super) fn moves_vertices(shaders: &ShaderSet, stage: &str) -> bool {
-    let pass = shaders.graph.passes.iter().find(|pass| pass.desc.stage == stage && pass.desc.draws_model());
-    let stages =
-        pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages()).filter_map(|path| shaders.stages.get(path));
-    let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
-    stages.into_iter().any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
 }

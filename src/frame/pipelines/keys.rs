@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{MaterialVariant, PipelineRequest, QUADS};
+use super::PipelineRequest;
 use crate::frame::formats::{MEAN_FORMAT, pass_format};
+use crate::frame::material_variant::{MaterialVariant, QUADS};
 use crate::frame::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{

@@ -18,13 +18,13 @@ use std::sync::Arc;
 use image::{DynamicImage, ImageError, ImageReader, ImageResult};
 use rayon::prelude::*;
 
-use super::set::PipelineSet;
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Sampler, SamplerDesc, upload_images, vk};
 use crate::scene::mips::{self, encode_srgb};
 use crate::settings::linear_from_srgb;
 use crate::shader::annotation::texture::Wrap;
 use crate::shader::graph::{Texture, TextureFile, TextureKind};
 use crate::shader::{Diagnostic, Graph};
+use panorama::is_float;
 use shape::{Cut, Shape};
 
 /// A texture on the device, with what it was made from.
@@ -45,8 +45,7 @@ impl PassTextures {
     /// # Errors
     /// A file is no image, sizes do not fit the kind of the texture, or the device has no such image or is out of memory: each
     /// at the line of its annotation.
-    pub fn load(gpu: &Arc<Gpu>, graph: &Graph, before: Option<&PipelineSet>) -> Result<Arc<Self>, Vec<Diagnostic>> {
-        let before = before.map(PipelineSet::textures);
+    pub fn load(gpu: &Arc<Gpu>, graph: &Graph, before: Option<&Arc<Self>>) -> Result<Arc<Self>, Vec<Diagnostic>> {
         let known = |key: &(String, TextureKind), of: &Arc<Texture>| {
             before.and_then(|before| before.0.get(key)).filter(|uploaded| uploaded.of == *of)
         };
@@ -74,11 +73,6 @@ impl PassTextures {
     pub(crate) fn get(&self, name: &str, kind: TextureKind) -> Option<(&Arc<Image>, &Arc<Sampler>)> {
         self.0.get(&(name.to_owned(), kind)).map(|uploaded| (&uploaded.image, &uploaded.sampler))
     }
-}
-
-/// Whether a picture has more than 16 bits a channel, so that values above 1 are kept.
-fn is_float(picture: &DynamicImage) -> bool {
-    matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_))
 }
 
 /// Decodes a texture and uploads it.

@@ -22,7 +22,7 @@ struct Panorama {
 /// The faces of `picture` in the order +X -X +Y -Y +Z -Z, each `side` texels wide: floats for float images, 8 bits for others.
 /// With `srgb`, the colors of the latter are sRGB-encoded, and filtered as linear light.
 pub(super) fn faces(picture: &DynamicImage, side: u32, srgb: bool) -> Vec<DynamicImage> {
-    let is_float = super::is_float(picture);
+    let is_float = is_float(picture);
     let mut texels: Vec<[f32; 4]> = picture.to_rgba32f().pixels().map(|pixel| pixel.0).collect();
     let is_encoded = srgb && !is_float;
     if is_encoded {
@@ -31,6 +31,11 @@ pub(super) fn faces(picture: &DynamicImage, side: u32, srgb: bool) -> Vec<Dynami
     }
     let panorama = Panorama { width: picture.width(), height: picture.height(), texels };
     (0..6).map(|face| panorama.face(face, side, is_float, is_encoded)).collect()
+}
+
+/// Whether the image has floats, which are linear light.
+pub(super) fn is_float(picture: &DynamicImage) -> bool {
+    matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_))
 }
 
 impl Panorama {
