@@ -41,6 +41,7 @@
 //! so an edit that breaks a formula shows, and does not swamp the average. A frame of one path per pixel takes about 13
 //! s of CPU time on lavapipe (shader ball, 960 x 640), and the window waits for it: a frame is not split into tiles.
 
+mod error;
 mod geometry;
 mod materials;
 
@@ -54,26 +55,11 @@ use crate::render::compute;
 use crate::render::environment::maps::GpuEnvironment;
 use crate::render::scene::GpuModel;
 use crate::scene::environment::CubeLuminance;
+pub use error::PathTracingError;
 use geometry::Geometry;
 use materials::{Materials, layers};
 
 const REPEAT: vk::SamplerAddressMode = vk::SamplerAddressMode::REPEAT;
-
-/// Why a model cannot be path-traced.
-#[derive(Debug, thiserror::Error)]
-pub enum PathTracingError {
-    /// The scene has too many triangles.
-    #[error(
-        "random paths trace at most {most} triangles, and this model has more. Modes without `traces` still show it"
-    )]
-    TooManyTriangles {
-        /// The limit.
-        most: usize,
-    },
-    /// A device error.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
 
 /// Identifies the resources that path tracing needs.
 #[derive(Clone)]

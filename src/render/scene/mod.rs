@@ -1,5 +1,6 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set per material.
 
+mod error;
 mod materials;
 mod upload;
 
@@ -12,28 +13,9 @@ use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
 use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
+pub use error::UploadError;
 use materials::{MaterialSets, Textures};
 use upload::{Range, Uploaded, upload};
-
-/// Why a model cannot be uploaded.
-#[derive(Debug, thiserror::Error)]
-pub enum UploadError {
-    /// An image is too large.
-    #[error("image '{name}' is {width}x{height}; this device takes at most {most} pixels a side. Scale it down")]
-    ImageTooLarge {
-        /// Its name.
-        name: String,
-        /// Pixels across.
-        width: u32,
-        /// Pixels down.
-        height: u32,
-        /// The device's limit.
-        most: u32,
-    },
-    /// A device error.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
 
 /// One draw call.
 #[derive(Clone)]

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::PixelAt;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Swapchain, Use, vk};
 use crate::shader::PixelValue;
 
@@ -83,6 +82,17 @@ impl Readback {
         }
         capture
     }
+}
+
+/// The value of one pixel before tone mapping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelAt {
+    /// Pixels from the left and upper edge of the picture.
+    pub at: (u32, u32),
+    /// Its value.
+    pub value: PixelValue,
+    /// [`super::View::picture`] of the picture that the pixel belongs to.
+    pub picture: u64,
 }
 
 /// Copies one pixel per frame of a slot, as part of the frame.

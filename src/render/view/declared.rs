@@ -23,6 +23,8 @@
 //!   pipeline reads `frame.clip_from_world_before`, the window draws once more after the camera has come to rest.
 
 mod blocks;
+mod cache_key;
+mod context;
 mod desc;
 mod images;
 mod lifetimes;
@@ -40,51 +42,20 @@ use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
     SetWriter, Use,
 };
-use crate::interface::{Frame, SET_TASK};
+use crate::interface::SET_TASK;
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Dispatch;
 use crate::shader::graph::{Input, RenderPhase, TextureKind};
 pub(super) use blocks::Blocks;
+use cache_key::PassCacheKey;
+pub(super) use context::{DeclaredPasses, PassContext};
 use images::Images;
 pub use memory::beyond_memory;
 pub(super) use reads::FrameImages;
 use reads::Reads;
-use reuse::PassCacheKey;
 pub(super) use sets::PassSets;
 use sets::Sets;
-
-/// Draws the declared passes of a view, and keeps their images, buffers and descriptor sets between frames.
-pub(super) struct DeclaredPasses {
-    gpu: Arc<Gpu>,
-    layouts: Arc<SetLayouts>,
-    /// Interpolates between texels and between levels.
-    linear: Arc<Sampler>,
-    nearest: Arc<Sampler>,
-    /// Reads as 0. Replaces a missing image, such as that of a pass that is switched off.
-    blank: Arc<Image>,
-    /// Replaces missing textures, by their kind.
-    blanks: BTreeMap<TextureKind, Arc<Image>>,
-    /// Descriptor set 3, through which compute stages report endless loops.
-    task_set: Arc<DescriptorSet>,
-    images: Images,
-    sets: Sets,
-    /// The HDR image after the passes before the tone map, or the image of the shown pass.
-    picture: Option<Arc<Image>>,
-    /// The LDR output, after the passes that follow the tone map.
-    display: Option<Arc<Image>>,
-}
-
-/// The arguments of a frame's passes.
-pub(super) struct PassContext<'a> {
-    pub(super) frame: &'a BoundFrame,
-    pub(super) frame_set: &'a Arc<DescriptorSet>,
-    pub(super) blocks: &'a Blocks,
-    /// The content of the block `Frame`.
-    pub(super) constants: &'a Frame,
-    /// Depth of the model, one sample a pixel.
-    pub(super) depth: Option<&'a Arc<Image>>,
-}
 
 /// Cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and spares.
 const SETS_KEPT: usize = 8;
@@ -275,7 +246,7 @@ impl DeclaredPasses {
     fn cache_key(&self, context: &PassContext<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<PassCacheKey> {
         let keys = context.frame.state.pipelines.pass_keys(pass);
         let pipelines: Vec<_> = keys.iter().filter_map(|key| context.frame.pipelines.get(key)).collect();
-        PassCacheKey::new(pass, index, &pipelines, instances(context.frame, pass), context, &self.images)
+        reuse::cache_key(pass, index, &pipelines, instances(context.frame, pass), context, &self.images)
     }
 
     fn draw(

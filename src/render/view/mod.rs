@@ -31,8 +31,9 @@ use std::sync::Arc;
 use glam::Mat4;
 
 use capture::PixelReadback;
-pub use capture::{Capture, Readback};
+pub use capture::{Capture, PixelAt, Readback};
 pub use declared::beyond_memory;
+pub use passes::Output;
 pub use pixel_modes::PixelModes;
 pub use range_sample::RangeSample;
 use targets::{TargetDesc, Targets};
@@ -48,18 +49,7 @@ use crate::frame::{Display, Limits, TargetFormat};
 use crate::gpu::{
     DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
-use crate::shader::PixelValue;
 use crate::shader::graph::Input;
-
-/// The destination of a view's output.
-pub struct Output<'a> {
-    /// The image. [`View::draw`] leaves it in [`Use::Color`].
-    pub image: &'a Arc<Image>,
-    /// The use that the image is in: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
-    pub before: Use,
-    /// Upper left corner of the output in the image. The rest of the image becomes black.
-    pub at: (u32, u32),
-}
 
 /// How much of a frame [`View::draw`] draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,17 +62,6 @@ pub enum Redraw {
     ToneMap,
     /// Draws the model, but shades only this pixel, counted from the upper left corner.
     Pixel(u32, u32),
-}
-
-/// The value of one pixel before tone mapping.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelAt {
-    /// Pixels from the left and upper edge of the picture.
-    pub at: (u32, u32),
-    /// Its value.
-    pub value: PixelValue,
-    /// [`View::picture`] of the picture that the pixel belongs to.
-    pub picture: u64,
 }
 
 /// The resources of one frame in flight.

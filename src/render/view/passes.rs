@@ -13,15 +13,24 @@
 
 use std::sync::Arc;
 
-use super::Output;
 use super::declared::PassSets;
 use super::model_draws::{ModelDraws, instances};
-use super::targets::Targets;
+use super::targets::{ColorTarget, Targets};
 use crate::frame::{FrameState, MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::ALPHA_BLEND;
 use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
+
+/// The destination of a view's output.
+pub struct Output<'a> {
+    /// The image. [`super::View::draw`] leaves it in [`Use::Color`].
+    pub image: &'a Arc<Image>,
+    /// The use that the image is in: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
+    pub before: Use,
+    /// Upper left corner of the output in the image. The rest of the image becomes black.
+    pub at: (u32, u32),
+}
 
 /// The arguments of all passes of a frame.
 pub(super) struct Passes<'a> {
@@ -34,20 +43,6 @@ pub(super) struct Passes<'a> {
     pub(super) only: Option<Rect>,
     /// The targets of further modes that are drawn at once: color, and multisampled color if there is more than one sample.
     pub(super) more: &'a [ColorTarget],
-}
-
-/// Resolved and multisampled HDR color of one mode.
-pub(super) struct ColorTarget {
-    pub(super) color: Arc<Image>,
-    /// `None` with one sample per pixel.
-    pub(super) multisampled: Option<Arc<Image>>,
-}
-
-impl ColorTarget {
-    /// The image that draws write.
-    fn drawn(&self) -> &Arc<Image> {
-        self.multisampled.as_ref().unwrap_or(&self.color)
-    }
 }
 
 /// Draws in the order that blending and depth require.

@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use super::capture::PixelReadback;
 use super::declared::{FrameImages, PassContext};
-use super::passes::{ColorTarget, Passes, Sorted, sort};
+use super::passes::{Passes, Sorted, sort};
+use super::targets::ColorTarget;
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
 use crate::frame::PipelineRequest;

@@ -2,10 +2,23 @@
 
 use std::sync::Arc;
 
-use super::passes::ColorTarget;
 use crate::frame::TargetFormat;
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, vk};
 use crate::scene::mips;
+
+/// Resolved and multisampled HDR color of one mode.
+pub(super) struct ColorTarget {
+    pub(super) color: Arc<Image>,
+    /// `None` with one sample per pixel.
+    pub(super) multisampled: Option<Arc<Image>>,
+}
+
+impl ColorTarget {
+    /// The image that draws write.
+    pub(super) fn drawn(&self) -> &Arc<Image> {
+        self.multisampled.as_ref().unwrap_or(&self.color)
+    }
+}
 
 /// The properties of a frame that determine its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,7 +17,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::declared::{FrameImages, PassContext};
-use super::passes::{ColorTarget, Passes};
+use super::passes::Passes;
+use super::targets::ColorTarget;
 use super::{BoundFrame, View};
 use crate::frame::{Display, Limits};
 use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, SetLayouts, Use, vk};

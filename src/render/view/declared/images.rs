@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Weak};
 
+use super::cache_key::PassCacheKey;
 use super::desc::{PassDesc, ScratchDesc};
-use super::reuse::PassCacheKey;
-use super::{beyond_memory, lifetimes};
+use super::lifetimes;
+use super::memory::{beyond_memory, buffer_of};
 use crate::frame::PipelineRequest;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{PassFormat, PassTarget};
-use crate::shader::graph::{Graph, Input, RenderPhase, TextureKind};
+use crate::shader::graph::{Graph, RenderPhase, TextureKind};
 
 /// An image of a pass, with the one before.
 #[derive(Clone)]
@@ -384,12 +385,4 @@ fn buffers(graph: &Graph) -> BTreeMap<String, u32> {
         .filter_map(buffer_of)
         .map(|(name, bytes)| (name.to_owned(), bytes))
         .collect()
-}
-
-/// Name and size of a buffer, in bytes.
-pub(super) fn buffer_of(input: &Input) -> Option<(&str, u32)> {
-    match input {
-        Input::Buffer(name, bytes, _) => Some((name, *bytes)),
-        _ => None,
-    }
 }

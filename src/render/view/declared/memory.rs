@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::desc::PassDesc;
-use super::images::buffer_of;
 use super::lifetimes;
 use crate::frame::PipelineRequest;
 use crate::shader::Diagnostic;
 use crate::shader::annotation::pass::{PassFormat, PassSize, PassTarget};
+use crate::shader::graph::Input;
 
 /// An error at the line of the first pass with which the images and buffers of `request` take more than `limit` bytes, for a
 /// frame of this size.
@@ -59,4 +59,12 @@ pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) ->
         }
     }
     None
+}
+
+/// Name and size of a buffer, in bytes.
+pub(super) fn buffer_of(input: &Input) -> Option<(&str, u32)> {
+    match input {
+        Input::Buffer(name, bytes, _) => Some((name, *bytes)),
+        _ => None,
+    }
 }
