@@ -38,7 +38,7 @@ use crate::control::Asked;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
 use crate::pipeline::DiskPipelines;
-use crate::threads::worker::WorkerMessage;
+use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use options::Early;
 use screen::{Next, Screen};

@@ -5,30 +5,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
-use super::{Message, MessageSender, TaskKind};
+use super::message::{Message, MessageSender, TaskKind};
+use super::results::BakeMessage;
 use crate::cancel::Running;
 use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
-use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
+use crate::gpu::{Gpu, fault, return_freed_memory};
 use crate::pipeline::PipelineSet;
 use crate::render::{
-    BakeControl, BakeError, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables,
-    measured_buffer,
+    BakeControl, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables, measured_buffer,
 };
 use crate::scene::MeasuredBrdf;
-
-/// Messages of the baker.
-pub(crate) enum BakeMessage {
-    /// Number of the bake, the fraction that is done, 0..1, and the next pass.
-    Progress(u64, f32, String),
-    /// The result of a bake.
-    Environment(u64, Result<Arc<GpuEnvironment>, BakeError>),
-    /// BRDF lookup tables.
-    Tables(Arc<TablesKey>, Result<Arc<Tables>, GpuError>),
-    /// A measured BRDF.
-    Measured(MeasuredKey, Result<Arc<Buffer>, String>),
-    /// The resources for path tracing.
-    PathTracing(PathTracingKey, Result<Arc<PathTracing>, String>),
-}
 
 /// A running bake.
 struct Bake {

@@ -3,19 +3,12 @@
 
 use std::sync::Arc;
 
+use super::message::{Message, MessageSender, TaskKind};
 use super::newest::Newest;
-use super::{Message, MessageSender, TaskKind};
+use super::results::Checked;
 use crate::gpu::Gpu;
-use crate::learn::{Exercise, Finding, GoalMeter, LearnError};
+use crate::learn::{Exercise, GoalMeter, LearnError};
 use crate::shader::{Compiler, Source};
-
-/// Result of a check.
-pub(crate) struct Checked {
-    /// Number of the request.
-    pub(crate) number: u64,
-    /// A finding for each goal, or the reason why there are none.
-    pub(crate) result: Result<Vec<Finding>, String>,
-}
 
 /// The thread. Dropping this waits for the goal that is being measured.
 pub(crate) struct Checker {

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::message::{Message, MessageSender, TaskKind};
 use super::newest::Newest;
-use super::{Message, MessageSender, TaskKind};
 use crate::frame::{Clock, FrameInputs, Revisions, Scene, TargetFormat};
 use crate::gpu::{Frames, Gpu};
 use crate::headless::{Search, first_not_finite};

@@ -6,23 +6,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
-use super::{DeviceGate, Message, MessageSender, TaskKind};
+use super::gate::DeviceGate;
+use super::message::{Message, MessageSender, TaskKind};
+use super::results::Loaded;
 use crate::cancel::Running;
 use crate::gpu::{Gpu, SetLayouts, fault, return_freed_memory};
 use crate::render::GpuModel;
 use crate::scene::{self, LoadError, LoadOptions, Model};
-
-/// A finished load.
-pub(crate) struct Loaded {
-    /// Number of the load; see [`Loader::is_newest`].
-    pub(crate) number: u64,
-    /// The file; `None` is the built-in model.
-    pub(crate) path: Option<PathBuf>,
-    /// The model on the device, or an error message and the files that were tried.
-    pub(crate) result: Result<Arc<GpuModel>, (String, Vec<PathBuf>)>,
-    /// Duration in milliseconds.
-    pub(crate) ms: f64,
-}
 
 /// A model that is being read. This needs no device, so it starts before the window opens. Dropping this stops the reading before the next
 /// file or image.

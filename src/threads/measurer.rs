@@ -4,8 +4,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::message::{Message, MessageSender, TaskKind};
 use super::newest::{Newest, Turn};
-use super::{Message, MessageSender, TaskKind};
+use super::results::MeasuredCurves;
 use crate::gpu::Gpu;
 use crate::measure::{BrdfMeter, Curves, Material, prepare};
 use crate::settings::Settings;
@@ -20,17 +21,6 @@ pub(crate) struct CurvesRequest {
     pub(crate) tree: Source,
     pub(crate) settings: Settings,
     pub(crate) material: Material,
-}
-
-/// Result of a request for curves.
-pub(crate) struct MeasuredCurves {
-    /// The number of the request.
-    pub(crate) number: u64,
-    /// The curves of the newest shaders, or the reason why there are none.
-    pub(crate) now: Result<Curves, String>,
-    /// The curves of the previous shaders, if they could be measured.
-    pub(crate) before: Option<Curves>,
-    pub(crate) ms: f64,
 }
 
 /// The thread. Dropping this ends its work before the next step and waits for that.

@@ -39,129 +39,37 @@
 pub(crate) mod baker;
 pub(crate) mod checker;
 pub(crate) mod finder;
+mod gate;
 pub(crate) mod loader;
 pub(crate) mod measurer;
+mod message;
 mod newest;
+mod results;
 pub(crate) mod second_tree;
 pub(crate) mod worker;
 
-use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
+use crossbeam_channel::{Sender, unbounded};
 use image::{RgbaImage, imageops};
-use winit::event_loop::EventLoopProxy;
 
 use crate::comparison::{Comparison, Picture, Still};
-use crate::control::Asked;
-use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, Rect, SetLayouts, fault};
-use crate::learn::Exercise;
-use crate::message::{panic_text, warn};
-use crate::picture::Look;
+use crate::render::Readback;
 use crate::render::tools::Tools;
-use crate::render::{PathTracingKey, Readback};
-use crate::scene::BuiltInPictures;
-use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
-use baker::{BakeMessage, Baker};
-use checker::{Checked, Checker};
+use baker::Baker;
+use checker::Checker;
 use finder::Finder;
-use loader::{Loaded, Loader};
+use loader::Loader;
 use measurer::Measurer;
-use second_tree::SecondTreeMessage;
-use worker::{Worker, WorkerMessage};
+use worker::Worker;
 
-/// Messages of the threads to the window.
-pub(crate) enum Message {
-    Worker(WorkerMessage),
-    Loaded(Box<Loaded>),
-    Bake(BakeMessage),
-    /// The diagnostic of a loop that did not end, by the words that name it; `None` if it belongs to older shaders.
-    EndlessLoop([u32; 2], Option<Box<Diagnostic>>),
-    /// Watched files outside the shader tree have changed.
-    FilesChanged(BTreeSet<PathBuf>),
-    /// The difference of the two pictures that the window compares, or the reason why there is none.
-    Compared(u64, Result<Box<Comparison>, String>),
-    /// The picture of a file that the window compares with, or the reason why there is none, by the number of the request.
-    PictureRead(u64, Result<Arc<Picture>, String>),
-    /// The same picture, scaled to the window's frame.
-    PictureFits(u64, Result<Arc<Still>, String>),
-    /// A result of the thread of the second shader tree with this number.
-    SecondTree(u64, SecondTreeMessage),
-    /// The texts of a version of the shaders have been written to its files, or the reason why not.
-    VersionWritten(u64, Result<String, String>),
-    /// A summary of the edits that were written to the shader files, or the reason why none were.
-    Written(Result<String, String>),
-    /// The curves of a pixel's material.
-    Curves(Box<measurer::MeasuredCurves>),
-    /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
-    NotFinite(u64, Box<NotFinite>),
-    /// The settings of a look file, or the reason why it cannot be used.
-    Look(Result<Box<Look>, String>),
-    /// The pictures of the built-in models and environments.
-    Pictures(Box<BuiltInPictures>),
-    /// A message for the user.
-    Say(String),
-    /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
-    Chosen(Result<Option<PathBuf>, String>),
-    /// A folder with the built-in shaders has been written; `None` if the user cancels the dialog, or a message.
-    NewTree(Result<Option<PathBuf>, String>),
-    /// The tree of an exercise has been written to this folder, or a message.
-    Prepared(&'static Exercise, Result<PathBuf, String>),
-    /// The exercise whose tree is in this folder.
-    Exercise(PathBuf, Option<&'static Exercise>),
-    /// The goals of an exercise were measured.
-    Checked(Checked),
-    /// A command from outside.
-    Asked(Box<Asked>),
-    /// A request of a screen reader, or its arrival or end.
-    Accessibility(egui_winit::accesskit_winit::Event),
-    /// Pictures that are done, and of how many, of the capture with this number.
-    Captures(u64, u64, u64),
-    /// The capture with this number has ended.
-    Captured(u64),
-    /// The pipelines of outlines and pictures of textures, or why there are none.
-    Tools(Result<Arc<Tools>, String>),
-    /// A thread has panicked, with this message.
-    Panicked(TaskKind, String),
-}
-
-impl From<egui_winit::accesskit_winit::Event> for Message {
-    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
-        Self::Accessibility(event)
-    }
-}
-
-/// The work of a thread, with its number or key.
-#[derive(Clone)]
-pub(crate) enum TaskKind {
-    Worker,
-    Loader(u64),
-    Baker(u64),
-    Tables(Arc<TablesKey>),
-    PathTracing(PathTracingKey),
-    MeasuredBrdf(MeasuredKey),
-    LoopDiagnosis([u32; 2]),
-    Checker,
-    /// Measures the BRDF.
-    Measurer,
-    /// Looks for the statement that makes NaN.
-    Finder,
-    Capture(u64),
-    /// Compiles and bakes for the second shader tree with this number.
-    SecondTree(u64),
-    /// Scales the picture of a file.
-    ImageScaling(u64),
-    /// Makes the pipelines of outlines and pictures of textures.
-    ToolPipelines,
-    /// Waits for what is outside of Specula, or compares pictures.
-    External,
-}
+pub(crate) use message::{Message, MessageSender, TaskKind};
+pub(crate) use results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
 
 /// One of two pictures that are compared.
 pub(crate) enum Side {
@@ -181,64 +89,6 @@ impl Side {
             }
             Self::Stored(image) => Some(image),
         }
-    }
-}
-
-/// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
-#[derive(Clone)]
-pub(crate) struct MessageSender(EventLoopProxy<Message>);
-
-impl MessageSender {
-    pub(crate) fn new(proxy: EventLoopProxy<Message>) -> Self {
-        Self(proxy)
-    }
-
-    pub(crate) fn send(&self, message: Message) {
-        let _ = self.0.send_event(message);
-    }
-
-    /// A handle with which AccessKit sends messages to the window.
-    pub(crate) fn proxy(&self) -> EventLoopProxy<Message> {
-        self.0.clone()
-    }
-
-    /// Sends the commands from outside, on a thread that lasts as long as the process.
-    pub(crate) fn pass_on(&self, asked: Receiver<Asked>) {
-        let sender = self.clone();
-        let work = move || asked.iter().for_each(|asked| sender.send(Message::Asked(Box::new(asked))));
-        if let Err(error) = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work) {
-            warn(format_args!("no command from outside is carried out: {error}"));
-        }
-    }
-
-    /// Runs `body` on a new thread. If it panics, or the system has no more threads, the window receives a message.
-    fn spawn(&self, task: TaskKind, body: impl FnOnce(&Self) + Send + 'static) -> Option<JoinHandle<()>> {
-        let (sender, its_task) = (self.clone(), task.clone());
-        let thread = std::thread::Builder::new().spawn(move || sender.guarded(its_task, body));
-        thread.map_err(|error| self.send(Message::Panicked(task, error.to_string()))).ok()
-    }
-
-    /// Runs `body`. If it panics, the window receives a message.
-    fn guarded(&self, task: TaskKind, body: impl FnOnce(&Self)) {
-        if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(self))) {
-            self.send(Message::Panicked(task, panic_text(&*panic).to_owned()));
-        }
-    }
-}
-
-/// Lets threads use the device until the window closes. The process must not end while a thread is inside the driver.
-#[derive(Default)]
-pub(crate) struct DeviceGate(Mutex<bool>);
-
-impl DeviceGate {
-    /// Runs `work` unless the window is closing. Closing waits until `work` is done.
-    fn pass<T>(&self, work: impl FnOnce() -> T) -> Option<T> {
-        let closed = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        (!*closed).then(work)
-    }
-
-    fn close(&self) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
     }
 }
 

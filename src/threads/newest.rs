@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel::{Sender, unbounded};
 
-use super::{MessageSender, TaskKind};
+use super::message::{MessageSender, TaskKind};
 
 /// A request with its number.
 type Numbered<T> = (u64, T);

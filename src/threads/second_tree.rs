@@ -10,21 +10,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
+use super::Threads;
+use super::message::{Message, TaskKind};
+use super::results::SecondTreeMessage;
 use super::worker::Snapshot;
-use super::{Message, TaskKind, Threads};
 use crate::frame::FrameState;
 use crate::gpu::SetLayouts;
 use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::render::{BoundFrame, Resources};
 use crate::shader::{Batch, Change, Compiler, Diagnostic, ShaderSet, Source, Watcher};
-
-/// A result of the thread of a second shader tree.
-pub(crate) enum SecondTreeMessage {
-    /// The tree was compiled: its pipelines, unless the picture's stages have errors, and the errors of all stages.
-    Compiled(Option<Arc<PipelineSet>>, Vec<Diagnostic>),
-    /// The frame that [`SecondTree::provide`] was asked for, or the reason why there is none.
-    Provided(Result<Box<BoundFrame>, String>),
-}
 
 /// A frame of the second tree, and the window's resources, which it shares.
 pub(crate) struct Needs {

@@ -1,5 +1,6 @@
 //! The worker compiles shaders and builds pipelines, so that the window never waits for either.
 
+mod job;
 mod thread;
 
 use std::collections::{BTreeSet, VecDeque};
@@ -10,99 +11,15 @@ use std::time::Instant;
 
 use crossbeam_channel::{Sender, unbounded};
 
-use super::{MessageSender, TaskKind};
-use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
+use super::message::{MessageSender, TaskKind};
+use crate::frame::PipelineRequest;
 use crate::gpu::{Gpu, SetLayouts};
-use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
-use crate::pipeline::{PipelineSet, Reload, Reloader};
+use crate::pipeline::{PipelineSet, Reloader};
 use crate::recovery::Recorder;
-use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source, TreePath};
+use crate::shader::{Change, Compiler, Source, TreePath};
+pub(crate) use job::Snapshot;
+use job::{Build, Edit, Job};
 use thread::Thread;
-
-/// The settings, scene and target of the window's current frame. A reload builds their pipelines.
-#[derive(Clone)]
-pub(crate) struct Snapshot {
-    pub(crate) settings: Arc<Settings>,
-    pub(crate) scene: Option<Scene>,
-    pub(crate) target: TargetFormat,
-    /// Suns of the environment: see `Revisions::suns_of`.
-    pub(crate) suns: u32,
-}
-
-impl Snapshot {
-    /// The pipelines that the frame needs from `shaders`.
-    pub(super) fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
-        let request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
-        let mut request = request.for_suns(self.suns);
-        if self.scene.is_none() {
-            // While the model loads, build the pipeline that most models need.
-            let features = FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION;
-            request.materials = BTreeSet::from([MaterialVariant { features, ..Default::default() }]);
-        }
-        request
-    }
-}
-
-/// Messages of the worker.
-pub(crate) enum WorkerMessage {
-    /// A reload is finished.
-    Reloaded {
-        reload: Box<Reload>,
-        /// Milliseconds from the first file event to the settled set of changes.
-        detect_ms: f64,
-        /// The tree that was compiled.
-        source: Source,
-        /// Number of edits that the reload contains, for [`Worker::reloaded`].
-        edits: u64,
-    },
-    /// The stages of the last reload that the frame did not need have been compiled.
-    Completed(Box<Reload>),
-    /// The result of the last [`Worker::build`].
-    Built(Result<(), String>),
-    /// The pipelines of some thumbnails have been built, or cannot be.
-    ThumbnailsBuilt,
-    /// Statistics of a pipeline have been queried, after [`Worker::ask_driver`].
-    DriverTold,
-}
-
-/// Changed files, and the times of the first event and of the settled set.
-struct Edit {
-    change: Change,
-    since: Instant,
-    settled: Instant,
-}
-
-impl Edit {
-    fn new(change: Change, since: Instant) -> Self {
-        Self { change, since, settled: Instant::now() }
-    }
-}
-
-type Build = (Arc<PipelineSet>, Arc<PipelineRequest>);
-
-enum Job {
-    Edit(Edit),
-    OpenTree(Source),
-    /// Reads the same tree from another source, which changes these files.
-    Read(Source, BTreeSet<TreePath>),
-    Build(Build),
-    /// Builds pipelines of thumbnails when idle. Replaces an earlier job of this kind.
-    Thumbnails(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
-    /// Builds pipelines of the inspector's modes when idle, before thumbnails. Replaces an earlier job of this kind.
-    Inspected(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
-    /// Queries the driver's statistics of a frame's pipelines when idle. Replaces an earlier job of this kind.
-    AskDriver(Build),
-    /// The first frame of the last reload is on screen.
-    Shown,
-}
-
-impl Job {
-    /// Whether the job makes a running reload stale.
-    fn is_edit(&self) -> bool {
-        matches!(self, Self::Edit(_) | Self::OpenTree(_) | Self::Read(..))
-    }
-}
 
 /// Sends jobs, and counts those that make a running reload stale.
 #[derive(Clone)]

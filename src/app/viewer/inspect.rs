@@ -10,8 +10,9 @@ use crate::render::Texel;
 use crate::scene::pick;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{PixelValue, ShaderSet};
+use crate::threads::MeasuredCurves;
 use crate::threads::finder::FindRequest;
-use crate::threads::measurer::{CurvesRequest, MeasuredCurves};
+use crate::threads::measurer::CurvesRequest;
 
 /// A click within this many pixels of the pinned one unpins it: the radius of its marker.
 const MARKER: u32 = 6;

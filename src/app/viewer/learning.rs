@@ -16,8 +16,8 @@ use crate::events::{Event, emit};
 use crate::learn::{Exercise, exercise_of, exercises, prepare};
 use crate::settings::Settings;
 use crate::shader::{ShaderSet, TreePath};
+use crate::threads::Checked;
 use crate::threads::Message;
-use crate::threads::checker::Checked;
 
 impl Viewer {
     pub(super) fn learn(&mut self, command: LearnCommand) {

@@ -10,7 +10,7 @@ use crate::app::state::selection::Selected;
 use crate::message;
 use crate::scene::BUILT_IN;
 use crate::settings::{LightSource, SceneSettings};
-use crate::threads::loader::Loaded;
+use crate::threads::Loaded;
 
 impl Viewer {
     pub(super) fn on_loaded(&mut self, loaded: Loaded) {

@@ -18,8 +18,8 @@ use crate::render::{BakeError, wrong_values};
 use crate::scene::environment;
 use crate::settings::GROUND;
 use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
-use crate::threads::baker::BakeMessage;
-use crate::threads::worker::WorkerMessage;
+use crate::threads::BakeMessage;
+use crate::threads::WorkerMessage;
 use crate::threads::{Message, TaskKind};
 
 impl Viewer {

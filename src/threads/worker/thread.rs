@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, bounded};
 
-use super::{Build, Edit, Job, Snapshot, WorkerMessage};
+use super::job::{Build, Edit, Job, Snapshot};
 use crate::file_kind::FileKind;
 use crate::frame::PipelineRequest;
 use crate::gpu::fault;
@@ -20,7 +20,8 @@ use crate::recovery::Recorder;
 use crate::settings::Settings;
 use crate::shader::annotation::neighbors;
 use crate::shader::{Change, ShaderSet, TreePath, text_hash};
-use crate::threads::{Message, MessageSender, TaskKind};
+use crate::threads::message::{Message, MessageSender, TaskKind};
+use crate::threads::results::WorkerMessage;
 
 /// How many times in a row the thread restarts after a panic.
 const RESTARTS: u32 = 3;

@@ -13,7 +13,8 @@ use crate::message::print_error;
 use crate::pipeline::PipelineSet;
 use crate::render::BoundFrame;
 use crate::shader::{Diagnostic, Severity, Source};
-use crate::threads::second_tree::{Needs, SecondTree, SecondTreeMessage};
+use crate::threads::SecondTreeMessage;
+use crate::threads::second_tree::{Needs, SecondTree};
 use crate::threads::worker::Snapshot;
 
 impl Viewer {
