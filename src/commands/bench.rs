@@ -1,14 +1,15 @@
 //! `specula bench reload|frame|load|bake|thumbnails|passes`: measures times on this machine, and prints them with the device's name.
 
+mod args;
 mod edits;
+mod folder;
 mod passes;
+mod samples;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clap::ValueEnum;
 use crossbeam_channel::unbounded;
 use serde_json::{Value, json};
 use specula::cpu_clock::CpuClock;
@@ -18,53 +19,16 @@ use specula::pipeline::Outcome;
 use specula::scene::{LoadTiming, Model};
 use specula::shader::{Batch, Compiler, Source, TreePath, Watcher};
 
-use super::common::{Common, check_validation, compiler};
+use super::common::{check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_json};
-
-/// The process to measure.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum What {
-    /// Time from a save to the end of the first frame with the new shader
-    Reload,
-    /// Time of a frame, and of the first frame in each debug mode
-    Frame,
-    /// Time from opening the model's file to its first frame
-    Load,
-    /// Time to bake an environment, pass by pass, and to read it from the disk cache
-    Bake,
-    /// Time to draw a thumbnail of every debug mode: the first time, with building pipelines, and again
-    Thumbnails,
-    /// Time of a frame with hard shadows, ambient occlusion and bloom, and with 100 passes of one pixel, in turn with one without
-    Passes,
-}
+pub use args::Args;
+use args::What;
+use folder::{TempFolder, copy_tree};
+use samples::{ms, round, summary};
 
 /// Width and height of a thumbnail, pixels.
 const THUMBNAIL: [u32; 2] = [96, 72];
-
-/// Options of `bench`.
-#[derive(clap::Args)]
-pub struct Args {
-    /// The measurement
-    #[arg(value_enum)]
-    what: What,
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
-    /// Number of samples, 1 to 1000
-    #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    samples: u32,
-    /// File to edit for reload, relative to the root of the tree. The edit changes no pixel
-    #[arg(long, value_name = "FILE", default_value = "pbr.frag")]
-    edit: String,
-    /// Replay the edits of this file for reload, with and without compiling only edited functions
-    #[arg(long, value_name = "FILE", hide = true)]
-    edits: Option<PathBuf>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    common: Common,
-}
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
@@ -340,27 +304,6 @@ fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progre
     Ok(result)
 }
 
-fn ms(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
-}
-
-fn round(value: f64) -> f64 {
-    (value * 1000.0).round() / 1000.0
-}
-
-/// Minimum, median and 95th percentile; null without samples. On a shared machine, compare the minimum, since other work can
-/// only add time.
-fn summary(mut values: Vec<f64>) -> Value {
-    values.sort_by(f64::total_cmp);
-    let at = |part: f64| values.get(((values.len() as f64 - 1.0).max(0.0) * part).round() as usize).copied();
-    match (at(0.0), at(0.5), at(0.95)) {
-        (Some(min), Some(median), Some(p95)) => {
-            json!({ "min": round(min), "median": round(median), "p95": round(p95) })
-        }
-        _ => Value::Null,
-    }
-}
-
 fn print_table(result: &Value) {
     for (name, value) in result.as_object().into_iter().flatten() {
         match (value.get("min"), value.get("median"), value.get("p95")) {
@@ -375,34 +318,5 @@ fn print_table(result: &Value) {
             }
             _ => out!("{name:24} {value}"),
         }
-    }
-}
-
-/// Copies every file of a tree into an empty folder.
-fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
-    for path in source.list() {
-        let to = folder.join(path.as_str());
-        let content = source.read_bytes(&path).map_err(|e| Failure::Input(e.to_string()))?;
-        let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
-        made.and_then(|()| std::fs::write(&to, content))
-            .map_err(|e| Failure::Input(format!("{}: {e}", to.display())))?;
-    }
-    Ok(())
-}
-
-/// A temporary folder. Dropping this deletes it.
-struct TempFolder(PathBuf);
-
-impl TempFolder {
-    fn new() -> Result<Self, Failure> {
-        let path = std::env::temp_dir().join(format!("specula-bench-{}", std::process::id()));
-        std::fs::create_dir(&path).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for TempFolder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Command, CommandFactory as _};
+use clap::Command;
 use specula::control::{COMMANDS, Described};
 use specula::message::{nearest, print_output};
 use specula::scene::BUILT_IN;
@@ -11,9 +11,9 @@ use specula::shader::annotation::ParameterType;
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Change, Library, ShaderSet, Update};
 
+use super::Failure;
 use super::common::names::is_word;
 use super::common::{compiler, source};
-use super::{Cli, Failure};
 
 /// Topics that are not commands.
 const SETTINGS: &str = "set";
@@ -32,8 +32,8 @@ pub struct Args {
     shaders: Option<PathBuf>,
 }
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<(), Failure> {
+/// Runs the command. `command` is that of the program.
+pub fn run(args: &Args, mut command: Command) -> Result<(), Failure> {
     if args.topic == [SETTINGS] {
         return print_settings(args.shaders.as_deref());
     }
@@ -41,7 +41,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         print_commands();
         return Ok(());
     }
-    let mut command = Cli::command();
     command.build();
     for name in &args.topic {
         let names: Vec<String> = names(&command).chain([SETTINGS, CONTROL].map(str::to_owned)).collect();
@@ -56,13 +55,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Fails when a word is no command, no file and no built-in model.
-pub fn check_command(word: &Path) -> Result<(), Failure> {
+pub fn check_command(word: &Path, program: &Command) -> Result<(), Failure> {
     let text = word.to_string_lossy();
-    if !is_word(&text) || word.exists() || BUILT_IN.contains(&&*text) || names(&Cli::command()).any(|name| name == text)
-    {
+    if !is_word(&text) || word.exists() || BUILT_IN.contains(&&*text) || names(program).any(|name| name == text) {
         return Ok(());
     }
-    let commands: Vec<String> = names(&Cli::command()).collect();
+    let commands: Vec<String> = names(program).collect();
     let told = format!("there is neither a command nor a file '{text}'.");
     Err(Failure::Usage(match nearest(&text, commands.iter().map(String::as_str).chain(BUILT_IN)) {
         Some(near) => format!("{told} Did you mean '{near}'?"),
@@ -120,22 +118,22 @@ fn print_commands() {
 }
 
 /// Path, kind of value, default, range, unit and meaning.
-type Row = [String; 6];
+type SettingRow = [String; 6];
 
-fn of_setting(setting: &Setting) -> Row {
+fn of_setting(setting: &Setting) -> SettingRow {
     let Setting { path, entry, takes, default, .. } = setting;
     let [takes, unit] = [*takes, entry.unit.name].map(str::to_owned);
     [path.clone(), takes, default.to_string(), entry.valid.text(), unit, setting.doc()]
 }
 
-fn of_factor(factor: &Factor) -> Row {
+fn of_factor(factor: &Factor) -> SettingRow {
     let (takes, entry) = (if factor.is_color() { "3 numbers" } else { "number" }, factor.entry());
     let [takes, default, unit, doc] = [takes, "", entry.unit.name, entry.doc()].map(str::to_owned);
     [factor_path("NAME", *factor), takes, default, entry.valid.text(), unit, doc]
 }
 
 /// The constants, parameters and passes of a tree.
-fn of_tree(shaders: &ShaderSet) -> Vec<Row> {
+fn of_tree(shaders: &ShaderSet) -> Vec<SettingRow> {
     let range = |range: Option<(f64, f64)>| range.map(|(low, high)| format!("{low} to {high}")).unwrap_or_default();
     let setting = |path: &str, takes: &str, default: String, range: String, doc: String| {
         [path.to_owned(), takes.to_owned(), default, range, String::new(), doc]
@@ -185,9 +183,9 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Row> {
     constants.chain(parameters).chain(passes).collect()
 }
 
-fn print_rows(rows: Vec<Row>) {
+fn print_rows(rows: Vec<SettingRow>) {
     let heading = ["Setting", "Value", "Default", "Range", "Unit", "Meaning"].map(str::to_owned);
-    let rows: Vec<Row> = std::iter::once(heading).chain(rows).collect();
+    let rows: Vec<SettingRow> = std::iter::once(heading).chain(rows).collect();
     let widths: [usize; 5] = std::array::from_fn(|i| rows.iter().map(|row| row[i].len()).max().unwrap_or(0));
     let mut group = String::new();
     for [path, takes, default, range, unit, doc] in &rows {

@@ -10,12 +10,14 @@ mod brdf;
 mod check;
 mod common;
 mod diff;
+mod failure;
 mod help;
 mod info;
 mod learn;
 mod limits;
 mod modes;
 mod new;
+mod output;
 mod probe;
 mod progress;
 mod render;
@@ -27,12 +29,11 @@ use std::io::{ErrorKind, IsTerminal as _};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Parser, Subcommand};
-use specula::gpu::GpuError;
-use specula::headless::HeadlessError;
-use specula::message::{lost_output, print_error, print_output, tell};
-use specula::render::UploadError;
-use specula::shader::Diagnostic;
+use clap::{CommandFactory as _, Parser, Subcommand};
+use specula::message::{lost_output, tell};
+
+pub use failure::Failure;
+pub use output::{print_diagnostics, print_json, tell_left_out};
 
 /// A shader playground: save GLSL, see the model change.
 #[derive(Parser)]
@@ -83,54 +84,6 @@ enum Command {
     Help(help::Args),
 }
 
-/// Why a command ends early. `end` prints it.
-#[derive(Debug)]
-pub enum Failure {
-    /// A file is wrong, or a check failed: exit code 1.
-    Input(String),
-    /// A name or value on the command line or in a look file is wrong: exit code 2.
-    Usage(String),
-    /// The user's shaders are wrong: exit code 1.
-    Shaders(Vec<Diagnostic>),
-    /// The command printed the reason already: exit code 1.
-    Printed,
-    /// There is no usable device or display: exit code 3.
-    Device(String),
-    /// The window's process has ended with this exit code, and printed the reason already.
-    Window(u8),
-}
-
-impl Failure {
-    fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
-            Self::Input(_) | Self::Shaders(_) | Self::Printed => 1,
-            Self::Usage(_) => 2,
-            Self::Device(_) => 3,
-            Self::Window(code) => *code,
-        })
-    }
-}
-
-impl From<GpuError> for Failure {
-    fn from(error: GpuError) -> Self {
-        match error {
-            GpuError::EndlessLoop(_) => Self::Input(error.to_string()),
-            _ => Self::Device(error.to_string()),
-        }
-    }
-}
-
-impl From<HeadlessError> for Failure {
-    fn from(error: HeadlessError) -> Self {
-        match error {
-            HeadlessError::Shaders(diagnostics) => Self::Shaders(diagnostics),
-            HeadlessError::Settings(message) => Self::Usage(message),
-            HeadlessError::Gpu(error) | HeadlessError::Upload(UploadError::Gpu(error)) => error.into(),
-            other => Self::Input(other.to_string()),
-        }
-    }
-}
-
 /// Runs the program.
 pub fn start() -> ExitCode {
     let start = Instant::now();
@@ -158,7 +111,7 @@ fn main(start: Instant) -> ExitCode {
         Err(error) => {
             // A misspelled command is read as a model, and clap's message is then about whatever follows it.
             let first = std::env::args_os().nth(1).filter(|_| error.use_stderr());
-            return match first.map_or(Ok(()), |word| help::check_command(word.as_ref())) {
+            return match first.map_or(Ok(()), |word| help::check_command(word.as_ref(), &Cli::command())) {
                 Err(failure) => end(&failure),
                 Ok(()) => match error.print() {
                     Err(lost) if !error.use_stderr() && lost.kind() != ErrorKind::BrokenPipe => {
@@ -171,7 +124,11 @@ fn main(start: Instant) -> ExitCode {
     };
     signals::clean_up_on_end();
     let result = match cli.command {
-        None => cli.view.model().map_or(Ok(()), help::check_command).and_then(|()| view::run(cli.view, start)),
+        None => cli
+            .view
+            .model()
+            .map_or(Ok(()), |word| help::check_command(word, &Cli::command()))
+            .and_then(|()| view::run(cli.view, start)),
         Some(Command::View(args)) => view::run(args, start),
         Some(Command::Render(args)) => render::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
@@ -183,7 +140,7 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Diff(args)) => diff::run(&args),
         Some(Command::Brdf(args)) => brdf::run(args),
         Some(Command::Probe(args)) => probe::run(args),
-        Some(Command::Help(args)) => help::run(&args),
+        Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
     let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));
     result.map_or_else(|failure| end(&failure), |()| ExitCode::SUCCESS)
@@ -201,34 +158,4 @@ fn end(failure: &Failure) -> ExitCode {
         Failure::Printed | Failure::Window(_) => {}
     }
     failure.exit_code()
-}
-
-/// Says how many modes of random paths a command has left out.
-pub fn tell_left_out(count: usize) {
-    match count {
-        0 => {}
-        1 => tell("left out 1 mode of random paths; add --paths, or name it with --mode"),
-        _ => tell(format_args!("left out {count} modes of random paths; add --paths, or name them with --mode")),
-    }
-}
-
-/// Prints a value as indented JSON. serde escapes ASCII control characters; the others, which some terminals obey too, are escaped
-/// here.
-pub fn print_json(value: &impl serde::Serialize) {
-    let text = serde_json::to_string_pretty(value).unwrap_or_default();
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\u{7f}'..='\u{9f}' => out.push_str(&format!("\\u{:04x}", u32::from(c))),
-            c => out.push(c),
-        }
-    }
-    print_output(&out);
-}
-
-/// Prints diagnostics to stderr: `file:line: error: message`, which editors parse, then the source line with its caret.
-pub fn print_diagnostics(diagnostics: &[Diagnostic]) {
-    for diagnostic in diagnostics {
-        print_error(diagnostic.full());
-    }
 }

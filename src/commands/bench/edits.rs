@@ -17,7 +17,9 @@ use specula::headless::Headless;
 use specula::pipeline::Outcome;
 use specula::shader::{Batch, Change, Compiler, Source, Watcher};
 
-use super::{Args, TempFolder, copy_tree, ms, round, summary};
+use super::args::Args;
+use super::folder::{TempFolder, copy_tree};
+use super::samples::{ms, round, summary};
 use crate::commands::Failure;
 use crate::commands::progress::Progress;
 
@@ -33,7 +35,7 @@ struct Edit {
     kind: String,
     file: String,
     from: String,
-    /// What takes the place of `from`. `{n}` stands for a number that differs in each replay.
+    /// The text that replaces `from`. `{n}` stands for a number that differs in each replay.
     to: String,
     /// The debug mode on screen.
     #[serde(default = "final_mode")]

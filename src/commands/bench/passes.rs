@@ -10,7 +10,9 @@ use specula::scene::Model;
 use specula::settings::Settings;
 use specula::shader::{Compiler, Source};
 
-use super::{Args, TempFolder, copy_tree, ms, round, summary};
+use super::args::Args;
+use super::folder::{TempFolder, copy_tree};
+use super::samples::{ms, round, summary};
 use crate::commands::Failure;
 use crate::commands::progress::Progress;
 

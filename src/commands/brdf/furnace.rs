@@ -5,7 +5,7 @@ use specula::measure::{Claim, Grid, Surface};
 use specula::settings::ShaderValue;
 use specula::shader::Constant;
 
-use super::{Opened, Options, SurfaceOptions, listed, short};
+use super::options::{Opened, Options, SurfaceOptions, listed, short};
 use crate::commands::{Failure, print_json};
 
 /// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.

@@ -3,7 +3,7 @@
 use serde_json::json;
 use specula::measure::Grid;
 
-use super::{Opened, Options};
+use super::options::{Opened, Options};
 use crate::commands::{Failure, print_json};
 
 const MOST: f64 = 0.005;

@@ -6,8 +6,8 @@ use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 use super::furnace::extremes;
+use super::options::{Opened, Options, SurfaceOptions, short, unit};
 use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
-use super::{Opened, Options, SurfaceOptions, short, unit};
 use crate::commands::Failure;
 use crate::commands::common::check_out;
 use crate::commands::common::parse::number;

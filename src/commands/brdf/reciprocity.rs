@@ -3,7 +3,7 @@
 use serde_json::json;
 use specula::measure::{Claim, Grid, Surface, Worst};
 
-use super::{Opened, Options, SurfaceOptions, direction, listed};
+use super::options::{Opened, Options, SurfaceOptions, direction, listed};
 use crate::commands::{Failure, print_json};
 
 /// Largest relative difference that rounding explains.

@@ -8,7 +8,7 @@ use specula::render::Capture;
 use specula::scene::{self, LoadOptions};
 use specula::settings::{LightSource, MaterialOverride};
 
-use super::{Options, SurfaceOptions};
+use super::options::{Options, SurfaceOptions};
 use crate::commands::common::names::check_environment;
 use crate::commands::common::{TIMEOUT_S, check_mode, check_validation, compiler, open_gpu, source};
 use crate::commands::progress::Progress;
@@ -41,7 +41,7 @@ pub struct Args {
 
 /// Difference between the split sum and the reference, relative to the mean of the reference. The picture is small: with a sun and a
 /// smooth surface, the result depends on the few pixels of the highlight.
-struct Row {
+struct RoughnessRow {
     roughness: f32,
     /// Mean difference.
     bias: f64,
@@ -109,7 +109,7 @@ fn capture(headless: &mut Headless, mode: &str) -> Result<Capture, Failure> {
     Ok(headless.render()?)
 }
 
-fn compare(roughness: f32, split_sum: &Capture, truth: &Capture, n_dot_v: &Capture) -> Option<Row> {
+fn compare(roughness: f32, split_sum: &Capture, truth: &Capture, n_dot_v: &Capture) -> Option<RoughnessRow> {
     let pixels = split_sum.raw.iter().zip(&truth.raw).zip(&n_dot_v.raw);
     let seen = pixels.filter(|(_, cosine)| cosine[3] == 1.0 && cosine[0] > LEAST_N_DOT_V);
     let (mut count, mut mean, mut bias, mut square) = (0.0, 0.0, 0.0, 0.0);
@@ -122,5 +122,5 @@ fn compare(roughness: f32, split_sum: &Capture, truth: &Capture, n_dot_v: &Captu
             square += (a - b) * (a - b);
         }
     }
-    (mean > 0.0).then(|| Row { roughness, bias: bias / mean, rms: (square / count).sqrt() * count / mean })
+    (mean > 0.0).then(|| RoughnessRow { roughness, bias: bias / mean, rms: (square / count).sqrt() * count / mean })
 }

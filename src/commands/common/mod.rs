@@ -1,5 +1,6 @@
 //! The options that every command takes: settings, shader tree, model, device.
 
+mod files;
 pub mod frames;
 mod look;
 pub mod names;

@@ -7,7 +7,8 @@ use specula::headless::{Headless, Step};
 use specula::picture;
 use specula::pipeline::Outcome;
 
-use super::{Args, Failure, Progress};
+use super::args::Args;
+use super::{Failure, Progress};
 
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;

@@ -1,14 +1,14 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
+mod args;
 mod many;
 mod modes;
 mod warnings;
 mod watch;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
-use specula::capture::Turn;
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
 use specula::headless::Headless;
 use specula::message;
@@ -18,46 +18,13 @@ use specula::recovery::SessionState;
 use specula::render::Capture;
 use specula::shader::{Diagnostic, Mode};
 
-use super::common::frames::Frames;
-use super::common::parse::size;
-use super::common::{Common, check_mode, check_out, check_validation, compiler};
+use super::common::{check_mode, check_out, check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_diagnostics, tell_left_out};
+pub use args::Args;
 use modes::Modes;
 use warnings::Warnings;
 use watch::{Changes, Watch};
-
-/// Options of `render`.
-#[derive(clap::Args)]
-pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
-    /// File to write, .png or .exr (raw values). With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
-    #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
-    out: PathBuf,
-    /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
-    #[arg(long)]
-    paths: bool,
-    /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (all but those of random paths), paths (those), or names such as d,f,v
-    #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
-    sheet: Option<String>,
-    /// Size of each picture on a sheet in pixels
-    #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
-    tile: (u32, u32),
-    /// Write a full turn of N frames: a video (.mp4), an animation (.webp, .gif) or numbered .png files. 25 frames per second without --fps
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    turntable: Option<u32>,
-    /// Whether a turntable turns the camera, the light or the model
-    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
-    turn: Turn,
-    /// Keep running, and render again whenever a shader or the model is saved
-    #[arg(long)]
-    watch: bool,
-    #[command(flatten)]
-    frames: Frames,
-    #[command(flatten)]
-    common: Common,
-}
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {

@@ -1,0 +1,41 @@
+//! Options of `specula render`.
+
+use std::path::PathBuf;
+
+use specula::capture::Turn;
+
+use crate::commands::common::Common;
+use crate::commands::common::frames::Frames;
+use crate::commands::common::parse::size;
+
+/// Options of `render`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
+    pub(super) model: Option<PathBuf>,
+    /// File to write, .png or .exr (raw values). With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
+    #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
+    pub(super) out: PathBuf,
+    /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
+    #[arg(long)]
+    pub(super) paths: bool,
+    /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (all but those of random paths), paths (those), or names such as d,f,v
+    #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
+    pub(super) sheet: Option<String>,
+    /// Size of each picture on a sheet in pixels
+    #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
+    pub(super) tile: (u32, u32),
+    /// Write a full turn of N frames: a video (.mp4), an animation (.webp, .gif) or numbered .png files. 25 frames per second without --fps
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(super) turntable: Option<u32>,
+    /// Whether a turntable turns the camera, the light or the model
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
+    pub(super) turn: Turn,
+    /// Keep running, and render again whenever a shader or the model is saved
+    #[arg(long)]
+    pub(super) watch: bool,
+    #[command(flatten)]
+    pub(super) frames: Frames,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
