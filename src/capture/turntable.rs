@@ -16,7 +16,7 @@ use crate::settings::{CameraSettings, Settings, ViewRange};
 /// be clipped.
 const RANGE_SAMPLES: u32 = 8;
 
-/// What a turntable rotates.
+/// The object that a turntable rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Turn {
     /// The camera around the model.
@@ -58,7 +58,7 @@ pub struct Turntable {
     pub fps: f32,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// What the turntable rotates.
+    /// The object that the turntable rotates.
     pub turn: Turn,
 }
 

@@ -138,7 +138,7 @@ pub struct MeasuredKey {
     revision: u64,
 }
 
-/// What a frame needs that depends on neither camera, time nor size. Frames that differ only by these share it.
+/// The part of a frame that depends on neither camera, time nor size. Frames that differ only by these share it.
 struct Needs {
     pipelines: Arc<PipelineRequest>,
     params: Arc<[u8]>,

@@ -70,7 +70,7 @@ pub struct PipelineRequest {
     pub modes: Vec<SharedMode>,
 }
 
-/// What the settings say about the passes of a frame.
+/// The settings that select the passes of a frame.
 struct Selection<'a> {
     shaders: &'a ShaderSet,
     constants: &'a Specialization,

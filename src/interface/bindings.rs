@@ -89,7 +89,7 @@ bindings! {
     BINDING_TRACED_TEXTURES = SET_FRAME, 18, Sampler2DArray(), Some(Resource::Scene);
     /// The environment's cells, as an alias table.
     BINDING_ENVIRONMENT_CELLS = SET_FRAME, 19, StorageBuffer(), Some(Resource::Scene);
-    /// What loops of a graphics stage report: see [`LOOPS`].
+    /// The report of endless loops of a graphics stage: see [`LOOPS`].
     BINDING_LOOPS = SET_FRAME, 20, StorageBuffer(), None;
     /// The block [`Material`].
     BINDING_MATERIAL = SET_MATERIAL, 0, UniformBuffer(size_of::<Material>()), Some(Resource::Material);
@@ -113,7 +113,7 @@ bindings! {
     BINDING_SMALL_LIGHTS = SET_TASK, 9, UniformBuffer(16384_u32), Some(Resource::Task);
     /// The texels that a task writes with a shared exponent, a word each.
     BINDING_PACKED = SET_TASK, 10, StorageBuffer(), Some(Resource::Task);
-    /// What loops of a task report: see [`LOOPS`].
+    /// The report of endless loops of a compute dispatch: see [`LOOPS`].
     BINDING_TASK_LOOPS = SET_TASK, 8, StorageBuffer(), None;
 }
 

@@ -1,4 +1,4 @@
-//! What the contract says of materials: their features, their textures and their numbers. A material extension of glTF adds its own here;
+//! Materials in the contract: their features, textures and numbers. A material extension of glTF adds its own here;
 //! what it does with them is in `scene::extensions`.
 
 use std::mem::offset_of;
@@ -74,11 +74,11 @@ pub struct Texture {
     pub name: &'static str,
     /// Its descriptor.
     pub binding: Binding,
-    /// What its texels are.
+    /// The meaning of its texels.
     pub content: TextureContent,
 }
 
-/// What the texels of a texture are.
+/// The meaning of a texture's texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureContent {
     /// Colors, sRGB-encoded.

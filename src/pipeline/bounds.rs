@@ -20,7 +20,7 @@ use crate::gpu::{Gpu, GpuError, ResourceUsage, ShaderModule, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::contract::access::resource_of;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::spirv::loops::{Bounds, Overrun, Place};
+use crate::shader::spirv::loops::{Bounds, LoopPlace, Overrun};
 use crate::shader::spirv::reach::{Used, reached};
 use crate::shader::spirv::uses::used_bytes;
 use crate::shader::spirv::{self, Finished, Module, specialize_several};
@@ -135,12 +135,12 @@ pub fn endless_loop(
     source: &Source,
 ) -> Option<Diagnostic> {
     let overrun = Overrun { one, together };
-    let find = |stage: &Arc<Stage>| Some((stage.clone(), Place::find(overrun, &stage.spirv)?));
+    let find = |stage: &Arc<Stage>| Some((stage.clone(), LoopPlace::find(overrun, &stage.spirv)?));
     let (stage, place) = shaders.stages.values().find_map(find)?;
     let rounds = rounds(gpu, stage.kind);
     let snapshot = Snapshot::new(source);
     let diagnostic = match &place {
-        Place { number: Some(_), .. } => {
+        LoopPlace { number: Some(_), .. } => {
             let lines = compiler.compile_with_lines(&snapshot, &stage.path);
             let line = lines.and_then(|words| place.line(&words));
             let message = format!("this loop did not end ({rounds} iterations)");
@@ -158,7 +158,7 @@ pub fn endless_loop(
                 }
             }
         }
-        Place { number: None, .. } => {
+        LoopPlace { number: None, .. } => {
             let message = format!("the loops of this stage did not end together ({rounds} iterations)");
             Diagnostic::error(snapshot.display_path(&stage.path), message)
         }

@@ -147,7 +147,7 @@ pub struct Loss {
     pub reset: Vec<String>,
 }
 
-/// What a process records for its successor: the state of its session, and the texts that the device has not drawn yet.
+/// The record of a process for its successor: the state of its session, and the texts that the device has not drawn yet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecoveryState {

@@ -1,6 +1,6 @@
 //! The texels of a material's textures at a pixel: found by a ray on the CPU, read back from the device.
 //!
-//! What pre-rasterization stages do to vertices and texture coordinates is ignored.
+//! Changes by pre-rasterization stages to vertices and texture coordinates are ignored.
 
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Determines which shader features a material needs. Only features that change the picture count; the others cost
 //! nothing.
 //!
-//! What a material uses are bits of a specialization constant, `FEATURES`; `frame/pipelines.rs` adds those that a whole
+//! The features that a material uses are bits of a specialization constant, `FEATURES`; `frame/pipelines.rs` adds those that a whole
 //! frame shares, and `spirv/hooks.rs` those that the author's hooks set for every lit material
 //! (`PipelineRequest::hook_features`). A branch on an unset bit is gone before the driver compiles, so an extension
 //! costs only the materials that have it.

@@ -63,7 +63,7 @@ mod tests {
     use super::super::value::Value;
     use super::*;
 
-    /// What a path and the value at it mean to `--set` and to a look file.
+    /// How `--set` and a look file read a path and its value.
     #[test]
     fn every_setting_is_read_and_set_by_its_path() {
         let defaults = toml::Value::try_from(Settings::default()).unwrap();

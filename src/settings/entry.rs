@@ -1,4 +1,4 @@
-//! What one setting is, apart from its type and value: meaning, valid values, unit, and its row in a panel.
+//! The description of one setting, apart from its type and value: meaning, valid values, unit, and its row in a panel.
 
 use super::value::Value;
 use crate::message::either;

@@ -10,7 +10,7 @@ use super::value::Value;
 
 /// The type of a setting.
 pub(super) trait Kind {
-    /// What it takes, in words.
+    /// The values that it takes, in words.
     const TAKES: &'static str;
 
     /// The names that it takes if it takes nothing else.

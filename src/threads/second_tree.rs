@@ -18,7 +18,7 @@ use crate::frame::FrameState;
 use crate::gpu::SetLayouts;
 use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::render::{BoundFrame, Resources};
-use crate::shader::{Batch, Change, Compiler, Diagnostic, ShaderSet, Source, Watcher};
+use crate::shader::{Batch, Change, Compiler, ShaderSet, Source, Watcher};
 
 /// A frame of the second tree, and the window's resources, which it shares.
 pub(crate) struct Needs {
@@ -28,7 +28,7 @@ pub(crate) struct Needs {
     pub(crate) state: Arc<FrameState>,
 }
 
-enum Job {
+enum TreeJob {
     Change(Change),
     Provide(Box<Needs>),
 }
@@ -37,7 +37,7 @@ enum Job {
 pub(crate) struct SecondTree {
     // The watcher sends jobs, so it is dropped first.
     _watcher: Option<Watcher>,
-    jobs: Sender<Job>,
+    jobs: Sender<TreeJob>,
     canceled: Arc<AtomicBool>,
     /// Its number, which its messages carry.
     pub(crate) number: u64,
@@ -70,7 +70,7 @@ impl SecondTree {
     /// Builds and bakes what a frame needs. The newest request wins.
     pub(crate) fn provide(&self, needs: Needs) {
         // Fails only after the thread has panicked, which the window reports.
-        let _ = self.jobs.send(Job::Provide(Box::new(needs)));
+        let _ = self.jobs.send(TreeJob::Provide(Box::new(needs)));
     }
 }
 
@@ -80,11 +80,11 @@ impl Drop for SecondTree {
     }
 }
 
-fn watch(source: &Source, jobs: Sender<Job>) -> Result<Watcher, String> {
+fn watch(source: &Source, jobs: Sender<TreeJob>) -> Result<Watcher, String> {
     let tree = source.clone();
     let on_batch = move |batch: Batch| {
         let paths = batch.paths.iter().flat_map(|path| tree.changed(path)).collect();
-        let _ = jobs.send(Job::Change(Change::Paths(paths)));
+        let _ = jobs.send(TreeJob::Change(Change::Paths(paths)));
     };
     Watcher::new(source.root(), &source.files(), on_batch).map_err(|error| error.to_string())
 }
@@ -97,7 +97,7 @@ struct Tree {
 }
 
 impl Tree {
-    fn run(&mut self, inbox: &Receiver<Job>, tell: impl Fn(SecondTreeMessage)) {
+    fn run(&mut self, inbox: &Receiver<TreeJob>, tell: impl Fn(SecondTreeMessage)) {
         let mut change = Some(Change::All);
         loop {
             let mut needs = None;
@@ -105,8 +105,8 @@ impl Tree {
                 let Ok(first) = inbox.recv() else { return };
                 for job in std::iter::once(first).chain(inbox.try_iter()) {
                     match job {
-                        Job::Change(new) => change = Some(change.map_or(new.clone(), |old: Change| old.and(new))),
-                        Job::Provide(newest) => needs = Some(newest),
+                        TreeJob::Change(new) => change = Some(change.map_or(new.clone(), |old: Change| old.and(new))),
+                        TreeJob::Provide(newest) => needs = Some(newest),
                     }
                 }
             }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::counts::DrawCounts;
 use super::encoder::Encoder;
 use super::pass_timer::PassTime;
-use super::slot::{Slot, Submission, Times};
+use super::slot::{FrameSlot, Submission, Times};
 use crate::gpu::{Gpu, GpuError};
 
 /// A ring of frame slots.
 pub struct Frames {
-    slots: Vec<Slot>,
+    slots: Vec<FrameSlot>,
     /// Serial number of each slot's last submission; 0 is none.
     serials: Vec<u64>,
     current: usize,
@@ -26,7 +26,7 @@ impl Frames {
     /// # Errors
     /// The device is out of memory.
     pub fn new(gpu: &Arc<Gpu>, count: usize) -> Result<Self, GpuError> {
-        let slots = (0..count.max(1)).map(|slot| Slot::new(gpu, &format!("frame slot {slot}"), true));
+        let slots = (0..count.max(1)).map(|slot| FrameSlot::new(gpu, &format!("frame slot {slot}"), true));
         let slots = slots.collect::<Result<Vec<_>, _>>()?;
         Ok(Self { serials: vec![0; slots.len()], slots, current: 0, submitted: 0, timed: 0, times: None })
     }
@@ -45,18 +45,18 @@ impl Frames {
     /// that frame copied to a [`crate::gpu::Memory::Readback`] buffer, if [`Encoder::copies_done`] followed the copy. True for a slot
     /// that was never used, false on a lost device.
     pub fn is_finished(&self, slot: usize) -> bool {
-        self.slots.get(slot).is_none_or(Slot::is_finished)
+        self.slots.get(slot).is_none_or(FrameSlot::is_finished)
     }
 
     /// Whether the last frame of `slot` has stages whose loops might not end.
     pub fn has_loops(&self, slot: usize) -> bool {
-        self.slots.get(slot).is_some_and(Slot::has_loops)
+        self.slots.get(slot).is_some_and(FrameSlot::has_loops)
     }
 
     /// The words that name a loop that did not end in the last frame of `slot`; `None` if all ended. SYNC: after that frame's
     /// fence.
     pub fn endless_loop(&self, slot: usize) -> Option<[u32; 2]> {
-        self.slots.get(slot).and_then(Slot::endless_loop)
+        self.slots.get(slot).and_then(FrameSlot::endless_loop)
     }
 
     /// Device time, in milliseconds, of the newest frame known to have finished. `None` before the first, or without timestamps.
@@ -139,7 +139,7 @@ impl Frames {
 /// # Errors
 /// `commands` fails, a loop of a stage does not end, or the device is lost or out of memory.
 pub fn one_shot<T>(gpu: &Arc<Gpu>, commands: impl FnOnce(&mut Encoder) -> Result<T, GpuError>) -> Result<T, GpuError> {
-    let mut slot = Slot::new(gpu, "one-shot commands", false)?;
+    let mut slot = FrameSlot::new(gpu, "one-shot commands", false)?;
     let mut encoder = slot.begin()?;
     let result = commands(&mut encoder)?;
     slot.submit(encoder, Submission::default())?;

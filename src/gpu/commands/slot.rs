@@ -35,7 +35,7 @@ pub(in crate::gpu) struct Times {
 }
 
 /// One command buffer with its fence and timestamps.
-pub(in crate::gpu) struct Slot {
+pub(in crate::gpu) struct FrameSlot {
     gpu: Arc<Gpu>,
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
@@ -53,7 +53,7 @@ pub(in crate::gpu) struct Slot {
     loops: (Option<Arc<Buffer>>, bool),
 }
 
-impl Slot {
+impl FrameSlot {
     /// Creates a slot whose objects are called `name`. `timed` asks for timestamps, if the queue has them.
     pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, name: &str, timed: bool) -> Result<Self, GpuError> {
         // A later step that fails leaves null handles, which `Drop` ignores.
@@ -136,7 +136,7 @@ impl Slot {
         Some([a, b].map(|word| u32::from_ne_bytes(*word))).filter(|words| *words != [0; 2])
     }
 
-    /// The buffer that [`Slot::endless_loop`] reads.
+    /// The buffer that [`FrameSlot::endless_loop`] reads.
     fn loops_buffer(&mut self, size: u64) -> Result<Arc<Buffer>, GpuError> {
         if let Some(buffer) = &self.loops.0 {
             return Ok(buffer.clone());
@@ -166,7 +166,7 @@ impl Slot {
         Ok(encoder)
     }
 
-    /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
+    /// Submits the commands of the last [`FrameSlot::begin`]. If that fails, the slot can begin again.
     pub(in crate::gpu) fn submit(&mut self, mut encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
         self.loops.1 = encoder.loops.is_some();
         if let Some(loops) = encoder.loops.take() {
@@ -239,7 +239,7 @@ fn watch(passes: Option<&[TimedPass]>) -> Option<Watched> {
     })
 }
 
-impl Drop for Slot {
+impl Drop for FrameSlot {
     fn drop(&mut self) {
         // SYNC: the device may still run the commands. An error means a lost device, which runs nothing, or that the wait has timed out.
         // SAFETY: the fence is live.
@@ -267,7 +267,7 @@ mod tests {
         let gpu = Gpu::new(&GpuOptions::default()).unwrap();
         let device = &gpu.device;
         let buffer = Buffer::new(&gpu, "kept", 4, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Device).unwrap();
-        let mut slot = Slot::new(&gpu, "hangs", false).unwrap();
+        let mut slot = FrameSlot::new(&gpu, "hangs", false).unwrap();
         slot.timeout = Duration::ZERO;
         let mut encoder = slot.begin().unwrap();
         encoder.keep(&buffer);

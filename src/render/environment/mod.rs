@@ -27,7 +27,7 @@
 //! parameters is not cached on disk. Images are half floats: a map with a brighter sun is scaled down, and
 //! `Frame::environment_intensity` scales back.
 //!
-//! What every pixel reads, irradiance and specular levels, is in octahedral maps (`ibl/maps/octahedral.glsl`) instead
+//! Irradiance and prefiltered mips, which every pixel reads, are in octahedral maps (`ibl/maps/octahedral.glsl`) instead
 //! of cube maps, with three mantissas and one exponent in 32 bits a texel (`ibl/maps/shared_exponent.glsl`): lavapipe
 //! reads that in two thirds of the time. A shader cannot write this format, so it writes words to a buffer, which the
 //! device copies to the image; the CPU reads them back only for the cache. A tile has a border of one texel, which

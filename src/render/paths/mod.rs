@@ -17,7 +17,7 @@
 //! | textures | base color, metallic-roughness and emission as 256 x 256 layers of one array | `materials.rs` | 256 KiB each, at most 256 |
 //! | alias table | over 256 x 256 x 6 cells of the environment's cube map | `scene/environment/importance.rs` | 4.5 MiB |
 //!
-//! What a hit lacks compared with a fragment is listed in `paths/scene.glsl`: normal textures, all extensions but
+//! `paths/scene.glsl` lists the properties that a fragment has and a hit lacks: normal textures, all extensions but
 //! specular factors, mip levels, the second of two TEXCOORD sets. Both faces of every triangle stop rays. At most 2^21
 //! triangles are traced, so that each buffer stays within the 128 MiB that every device has; beyond that, the mode says
 //! so. `user_surface` changes what a hit has as well (`hooked_surface`).

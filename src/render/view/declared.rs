@@ -7,7 +7,7 @@
 //! exceeding it is an error at the line of the pass for commands, and a notice over the last frame in a window. Between
 //! passes every image is in `Use::Sampled`.
 //!
-//! What a pipeline reads is known from its optimized modules: bindings, and bytes of the block `Frame`
+//! The optimized modules tell which resources a pipeline reads: bindings, and bytes of the block `Frame`
 //! (`gpu::ResourceUsage`). A branch that a constant switches off does not count. Three decisions follow:
 //!
 //! - An image is reused if it would be the same (`reuse.rs`): nothing differs in its pipelines, the images and textures

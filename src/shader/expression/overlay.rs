@@ -11,7 +11,7 @@ use crate::message::did_you_mean;
 use crate::shader::compile::include::files_of;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::syntax::{functions, within};
-use crate::shader::glsl::{Code, Entry};
+use crate::shader::glsl::{Code, StageMain};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::Module;
@@ -208,7 +208,7 @@ fn stage_text(
     outside: Option<&str>,
 ) -> Result<BTreeMap<TreePath, Arc<str>>, String> {
     let text = snapshot.read(host).map_err(|error| format!("{host} {error}"))?;
-    let Entry { main, color, include } = Entry::of(&text)?;
+    let StageMain { main, color, include } = StageMain::of(&text)?;
     let code = Code::new(&text);
     let mut edits: Vec<(Range<usize>, &str)> = vec![(main, "watched_main"), (include.bytes, LIBRARY)];
     let has_chosen = closure.iter().filter_map(|path| snapshot.read(path).ok());

@@ -8,7 +8,7 @@ use super::token::{Token, code};
 
 /// The parts.
 #[derive(Debug)]
-pub struct Entry<'a> {
+pub struct StageMain<'a> {
     /// The bytes of the name `main`.
     pub main: Range<usize>,
     /// The name of the color that the stage writes.
@@ -17,11 +17,11 @@ pub struct Entry<'a> {
     pub include: Include<'a>,
 }
 
-impl<'a> Entry<'a> {
+impl<'a> StageMain<'a> {
     /// Finds the parts in a text.
     ///
     /// # Errors
-    /// What the text lacks: the end of a message that begins with the file.
+    /// The part that the text lacks: the end of a message that begins with the file.
     pub fn of(text: &'a str) -> Result<Self, &'static str> {
         let tokens = code(text);
         let functions = functions(&tokens);
@@ -44,10 +44,10 @@ mod tests {
     #[test]
     fn the_parts_are_outside_of_functions() {
         let text = "#include \"a.glsl\"\n#include \"b.glsl\"\nvoid f() { main(); }\nout vec4 shown;\nvoid main() {}\n";
-        let entry = Entry::of(text).unwrap();
+        let entry = StageMain::of(text).unwrap();
         assert_eq!((entry.main.start, entry.color, entry.include.name), (78, "shown", "a.glsl"));
-        assert_eq!(Entry::of("void f() { main(); }").unwrap_err(), "has no main()");
-        assert_eq!(Entry::of("void main() { }").unwrap_err(), "has no `out vec4` color");
-        assert_eq!(Entry::of("out vec4 c; void main() { }").unwrap_err(), "includes no file");
+        assert_eq!(StageMain::of("void f() { main(); }").unwrap_err(), "has no main()");
+        assert_eq!(StageMain::of("void main() { }").unwrap_err(), "has no `out vec4` color");
+        assert_eq!(StageMain::of("out vec4 c; void main() { }").unwrap_err(), "includes no file");
     }
 }

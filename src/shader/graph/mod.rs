@@ -72,7 +72,7 @@ use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath, embedded};
 use super::spirv::primitive::Primitive;
-use crate::interface::{StageRole, VERTEX_BINDINGS};
+use crate::interface::VERTEX_BINDINGS;
 use contradiction::contradiction;
 pub use inputs::read_later;
 pub use pass::{GraphPass, Input, Inputs, RenderPhase};

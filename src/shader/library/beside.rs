@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Library;
-use super::slot::Slot;
+use super::slot::StageSlot;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::graph::stage_beside;
@@ -47,7 +47,7 @@ impl Library {
         self.relink |= self.slots.len() != known;
         for path in found {
             if self.slots.iter().all(|slot| slot.path != path) {
-                self.slots.push(Slot::new(path));
+                self.slots.push(StageSlot::new(path));
                 self.relink = true;
             }
         }

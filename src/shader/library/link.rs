@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::passes::modes_of;
-use super::slot::Slot;
+use super::slot::StageSlot;
 use super::watched::is_watched;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::interface::StageRole;
@@ -46,8 +46,8 @@ impl Library {
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
         // has compiled, since its parameters are its own.
         // A watched expression that does not compile is left out in any case.
-        let may_lack = |slot: &Slot| is_partial || is_watched(&slot.path);
-        let is_unseen = |slot: &&Slot| may_lack(slot) && slot.good.is_none() && !slot.is_good();
+        let may_lack = |slot: &StageSlot| is_partial || is_watched(&slot.path);
+        let is_unseen = |slot: &&StageSlot| may_lack(slot) && slot.good.is_none() && !slot.is_good();
         let mut replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
         replacing.insert(TreePath::from(expression::STAGE));
         let is_shared = |place: usize, path: &TreePath| place < self.fixed || replacing.contains(path);

@@ -22,28 +22,25 @@ mod update;
 mod watch;
 mod watched;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::shader::annotation::texture::is_image_extension;
-use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::Compiler;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, unique};
-use crate::shader::expression::{self, Expression};
+use crate::shader::expression;
 use crate::shader::glsl::is_same_code;
-use crate::shader::graph::Graph;
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{Source, TreePath};
 use beside::fragment_of;
 use link::Linked;
-use slot::{Done, Slot, Start, build};
+use slot::{Done, StageSlot, Start, build};
 use watched::View;
 
 pub use slot::Stage;
@@ -53,7 +50,7 @@ pub use update::{Change, Report, ShaderSet, Update};
 impl Library {
     /// A library with the entry points `stages`, and every other stage of the tree that declares a pass.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
-        let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
+        let slots: Vec<StageSlot> = stages.iter().map(|path| StageSlot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
         let (fixed, beside) = (slots.len(), BTreeSet::new());
         let (set, failed, relink, watched, is_part, is_whole) = (None, false, false, None, false, false);
@@ -99,7 +96,7 @@ impl Library {
     /// Every path whose change can affect the result, including paths where an include was not found.
     pub fn dependencies(&self) -> BTreeSet<TreePath> {
         let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);
-        out.extend(self.slots.iter().flat_map(Slot::dependencies).cloned());
+        out.extend(self.slots.iter().flat_map(StageSlot::dependencies).cloned());
         out.retain(|path| !expression::is_virtual(path));
         out
     }
@@ -135,7 +132,7 @@ impl Library {
         let (first, rest): (Vec<_>, Vec<_>) = stale.compile.into_iter().partition(|(_, path)| is_first(path));
         let is_whole = matches!(change, Change::All);
         self.compile(&first, &view, is_whole, &mut report, || false);
-        let is_complete = rest.is_empty() && self.slots.iter().all(Slot::is_good);
+        let is_complete = rest.is_empty() && self.slots.iter().all(StageSlot::is_good);
         if !is_complete && first.iter().any(|(index, _)| self.slots[*index].is_new()) {
             for (index, _) in &rest {
                 self.slots[*index].current = None;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::beside::{fragment_of, may_be_beside};
-use super::slot::Slot;
+use super::slot::StageSlot;
 use super::{Change, Library};
 use crate::interface;
 use crate::shader::annotation::pass::{MODEL, PassDesc, PassTarget};
@@ -58,7 +58,7 @@ impl Library {
                     self.slots.remove(place);
                     self.relink = true;
                 }
-                None if is_pass(path) => self.slots.push(Slot::new(path.clone())),
+                None if is_pass(path) => self.slots.push(StageSlot::new(path.clone())),
                 _ => {}
             }
         }

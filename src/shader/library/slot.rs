@@ -165,7 +165,7 @@ pub(super) struct Broken {
 pub(super) type Outcome = Result<Built, Broken>;
 
 /// The state of one stage between updates.
-pub(super) struct Slot {
+pub(super) struct StageSlot {
     pub path: TreePath,
     /// The result for the latest text.
     pub current: Option<Outcome>,
@@ -173,7 +173,7 @@ pub(super) struct Slot {
     pub good: Option<Built>,
 }
 
-impl Slot {
+impl StageSlot {
     /// A stage that was not compiled yet.
     pub fn new(path: TreePath) -> Self {
         Self { path, current: None, good: None }
@@ -195,7 +195,7 @@ impl Slot {
         self.current.as_ref().is_none_or(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))
     }
 
-    /// What the next compilation starts from. If `is_whole`, it takes nothing from an earlier one.
+    /// The start of the next compilation. If `is_whole`, it takes nothing from an earlier one.
     pub fn start(&self, is_whole: bool) -> Start<'_> {
         match self.base() {
             _ if self.current.is_none() && self.good.is_none() => Start::Disk,
@@ -276,7 +276,7 @@ pub(super) struct Done {
     pub ms: Option<f64>,
 }
 
-/// What the compilation of a stage can start from.
+/// An earlier result that the compilation of a stage can start from.
 #[derive(Clone, Copy)]
 pub(super) enum Start<'a> {
     /// The text alone.

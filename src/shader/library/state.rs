@@ -1,9 +1,9 @@
-//! What a library remembers between updates.
+//! The state that a library keeps between updates.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::slot::Slot;
+use super::slot::StageSlot;
 use super::update::ShaderSet;
 use super::watched::Watched;
 use crate::shader::compile::Compiler;
@@ -16,7 +16,7 @@ pub struct Library {
     pub(super) compiler: Arc<Compiler>,
     pub(super) cache: FileCache,
     /// The entry points that a library is made with, then the stages that declare a pass.
-    pub(super) slots: Vec<Slot>,
+    pub(super) slots: Vec<StageSlot>,
     /// Number of entry points that a library is made with.
     pub(super) fixed: usize,
     /// Stages in `passes/` that declare no pass, so that nothing draws them.

@@ -1,4 +1,4 @@
-//! What an update of a library starts from, and what comes of it.
+//! Changes that update a library, and the outcomes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

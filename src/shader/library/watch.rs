@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::slot::Slot;
+use super::slot::StageSlot;
 use super::watched::{View, Watched, is_watched};
 use super::{Change, Library};
 use crate::shader::annotation;
@@ -66,7 +66,7 @@ impl Library {
     fn find_watched(&mut self) {
         let place = self.slots.iter().position(|slot| is_watched(&slot.path));
         match (&self.watched, place) {
-            (Some(_), None) => self.slots.push(Slot::new(TreePath::from(STAGE))),
+            (Some(_), None) => self.slots.push(StageSlot::new(TreePath::from(STAGE))),
             (None, Some(place)) => {
                 self.slots.remove(place);
                 self.relink = true;

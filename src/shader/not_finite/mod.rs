@@ -38,7 +38,7 @@ use super::source::snapshot::{Read, Snapshot};
 use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use report::{ELSEWHERE, NotFinite};
 use stage::FUNCTION;
-use statement::{Found, Traced, of_return, of_simple};
+use statement::{Traced, TracedValue, of_return, of_simple};
 use types::{Types, structs};
 
 /// A place that makes a value which is traced.
@@ -222,7 +222,7 @@ impl Writer<'_, '_> {
             StatementKind::Jump => of_return(tokens, kind, self.types),
             _ => Vec::new(),
         };
-        for Found { traced, shown } in found {
+        for TracedValue { traced, shown } in found {
             let start = match &traced {
                 Traced::Value(bytes) => bytes.start,
                 Traced::After(_) => shown.start,

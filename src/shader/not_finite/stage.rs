@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::types::{FLOATS, OTHERS};
 use crate::shader::contract;
-use crate::shader::glsl::Entry;
+use crate::shader::glsl::StageMain;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 
@@ -17,7 +17,7 @@ pub(super) const MARK: f32 = 4242.0;
 
 /// The text of the stage, and of the file that it includes first. `text` already calls the functions.
 pub(super) fn texts(text: &str, host: &TreePath, snapshot: &Snapshot<'_>) -> Result<(String, String), String> {
-    let Entry { main, color, include } = Entry::of(text).map_err(|lack| format!("{host} {lack}"))?;
+    let StageMain { main, color, include } = StageMain::of(text).map_err(|lack| format!("{host} {lack}"))?;
     let found = host.sibling(include.name).filter(|path| snapshot.read(path).is_ok());
     let name = found.map_or(include.name.to_owned(), |path| path.to_string());
 

@@ -18,7 +18,7 @@ pub(super) enum Traced {
 
 /// A value that is traced, and the bytes of the code that makes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Found {
+pub(super) struct TracedValue {
     pub traced: Traced,
     pub shown: Range<usize>,
 }
@@ -44,13 +44,13 @@ fn is_made<'a>(value: &'a [Token<'a>], types: &Types) -> Option<&'a str> {
 }
 
 /// Finds the traced value of `return e;`. `kind` is the type that the function returns.
-pub(super) fn of_return(tokens: &[Token<'_>], kind: &str, types: &Types) -> Vec<Found> {
+pub(super) fn of_return(tokens: &[Token<'_>], kind: &str, types: &Types) -> Vec<TracedValue> {
     let [first, value @ .., _] = tokens else { return Vec::new() };
     if first.text != "return" || !(FLOATS.contains(&kind) || is_made(value, types) == Some(kind)) {
         return Vec::new();
     }
     let Some(bytes) = range(value) else { return Vec::new() };
-    vec![Found { traced: Traced::Value(bytes), shown: first.bytes.start..tokens[tokens.len() - 1].bytes.end }]
+    vec![TracedValue { traced: Traced::Value(bytes), shown: first.bytes.start..tokens[tokens.len() - 1].bytes.end }]
 }
 
 /// Finds the traced values of a declaration, an assignment or a call, with its `;`. `opaque`: variables that are structs or arrays.
@@ -59,7 +59,7 @@ pub(super) fn of_simple(
     is_in_block: bool,
     types: &Types,
     opaque: &BTreeSet<String>,
-) -> Vec<Found> {
+) -> Vec<TracedValue> {
     const QUALIFIERS: [&str; 5] = ["const", "precise", "highp", "mediump", "lowp"];
     let [statement @ .., _] = tokens else { return Vec::new() };
     let qualifiers = statement.iter().take_while(|token| QUALIFIERS.contains(&token.text)).count();
@@ -74,7 +74,7 @@ pub(super) fn of_simple(
         _ => parts(rest).into_iter().filter_map(|part| assigned(part, types, opaque)).map(Traced::Value).collect(),
     };
     let Some(shown) = range(tokens) else { return Vec::new() };
-    found.into_iter().map(|traced| Found { traced, shown: shown.clone() }).collect()
+    found.into_iter().map(|traced| TracedValue { traced, shown: shown.clone() }).collect()
 }
 
 fn declared(kind: &str, names: &[Token<'_>], is_const: bool, is_in_block: bool, types: &Types) -> Vec<Traced> {

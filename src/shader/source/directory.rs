@@ -11,7 +11,7 @@ const MAX_NESTED_LINKS: usize = 2;
 
 /// An entry that [`walk`] visits. `path` is the walk's directory joined with the names on the way.
 #[derive(Clone, Copy, Debug)]
-pub enum Entry<'a> {
+pub enum FolderEntry<'a> {
     /// A directory, before its entries are read. The walk's own directory comes first.
     Directory {
         /// The name under which the walk reached it.
@@ -36,9 +36,9 @@ pub enum Entry<'a> {
 /// Visits everything below `directory`, in no particular order. `keep` decides by name whether the walk visits an entry. The
 /// walk follows a link to a directory of the tree unless that directory contains the link. Returns whether it has visited all: it ends
 /// after [`MOST_ENTRIES`].
-pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(Entry<'_>)) -> bool {
+pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(FolderEntry<'_>)) -> bool {
     let Ok(real) = directory.canonicalize() else { return true };
-    visit(Entry::Directory { path: directory, real: &real });
+    visit(FolderEntry::Directory { path: directory, real: &real });
     let mut walk = Walk { keep, above: vec![real], links: 0, left: MOST_ENTRIES };
     walk.descend(directory, visit);
     walk.left > 0
@@ -48,7 +48,7 @@ pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut
 pub fn files(directory: &Path, keep: impl Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut out = Vec::new();
     walk(directory, keep, &mut |entry| {
-        if let Entry::File { path } = entry {
+        if let FolderEntry::File { path } = entry {
             out.push(path.to_owned());
         }
     });
@@ -66,7 +66,7 @@ struct Walk<F> {
 }
 
 impl<F: Fn(&str) -> bool> Walk<F> {
-    fn descend(&mut self, directory: &Path, visit: &mut dyn FnMut(Entry<'_>)) {
+    fn descend(&mut self, directory: &Path, visit: &mut dyn FnMut(FolderEntry<'_>)) {
         let Ok(entries) = std::fs::read_dir(directory) else { return };
         for entry in entries.flatten() {
             let path = entry.path();
@@ -79,17 +79,17 @@ impl<F: Fn(&str) -> bool> Walk<F> {
             }
             let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
             if is_link && let Some(folder) = self.above.last() {
-                visit(Entry::Link { path: &path, folder });
+                visit(FolderEntry::Link { path: &path, folder });
             }
             if path.is_file() {
-                visit(Entry::File { path: &path });
+                visit(FolderEntry::File { path: &path });
             } else if path.is_dir() && self.above.len() < MAX_DEPTH {
                 self.enter(&path, is_link, visit);
             }
         }
     }
 
-    fn enter(&mut self, directory: &Path, is_link: bool, visit: &mut dyn FnMut(Entry<'_>)) {
+    fn enter(&mut self, directory: &Path, is_link: bool, visit: &mut dyn FnMut(FolderEntry<'_>)) {
         let Ok(real) = directory.canonicalize() else { return };
         // A link may lead to a parent of the walk's first directory, so comparing for equality is not enough.
         let is_circle = self.above.iter().any(|above| above.starts_with(&real));
@@ -97,7 +97,7 @@ impl<F: Fn(&str) -> bool> Walk<F> {
         if is_link && (is_circle || !is_inside || self.links >= MAX_NESTED_LINKS) {
             return;
         }
-        visit(Entry::Directory { path: directory, real: &real });
+        visit(FolderEntry::Directory { path: directory, real: &real });
         self.links += usize::from(is_link);
         self.above.push(real);
         self.descend(directory, visit);

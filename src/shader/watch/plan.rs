@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::trail::{Trail, follow};
-use crate::shader::source::directory::{self, Entry};
+use crate::shader::source::directory::{self, FolderEntry};
 
 /// Directories and files at one moment. Directories are named without symbolic links, as events name them; files by the
 /// names that the watcher was given.
@@ -42,16 +42,16 @@ impl Plan {
         plan.files.remove(root);
         if end.is_some() {
             directory::walk(root, is_watched, &mut |entry| match entry {
-                Entry::Directory { path, real } => {
+                FolderEntry::Directory { path, real } => {
                     watch(real, true);
                     plan.places.entry(real.to_owned()).or_default().tree_names.insert(path.to_owned());
                 }
-                Entry::Link { path, folder } => {
+                FolderEntry::Link { path, folder } => {
                     let Some(name) = path.file_name() else { return };
                     let trail = follow(&folder.join(name), &mut *watch);
                     plan.add(path, trail);
                 }
-                Entry::File { path } => {
+                FolderEntry::File { path } => {
                     // A link was added with the file to which it leads.
                     if !plan.files.contains_key(path)
                         && let Ok(real) = path.canonicalize()

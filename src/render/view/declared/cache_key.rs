@@ -1,4 +1,4 @@
-//! What an image of a pass was drawn from.
+//! The inputs that an image of a pass was drawn from.
 
 use std::any::Any;
 use std::sync::{Arc, Weak};

@@ -1,4 +1,4 @@
-//! What a view keeps for the declared passes, and what a frame gives them.
+//! The state that a view keeps for the declared passes, and the arguments of a frame.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -33,7 +33,7 @@ struct PassImages {
     is_drawn: bool,
     /// The number of the drawing that the newest image holds; 0: it was cleared.
     drawing: u64,
-    /// What that drawing depends on, if the next frame may reuse it.
+    /// The inputs of that drawing, if the next frame may reuse it.
     cache_key: Option<PassCacheKey>,
 }
 

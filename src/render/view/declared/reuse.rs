@@ -11,7 +11,7 @@ use crate::shader::GraphPass;
 use crate::shader::annotation::pass::PassTarget;
 use crate::shader::graph::Input;
 
-/// What a pass depends on in this frame. `None` if some of it changes with every frame, or cannot be compared.
+/// The inputs of a pass in this frame. `None` if one of them changes with every frame, or cannot be compared.
 ///
 /// `pipelines`: those that draw it. `instances`: how often each draws the model; 0: not at all. `index`: its place in
 /// `PipelineRequest::passes`.

@@ -6,7 +6,7 @@ use json::validation::Checked;
 
 use super::conductor;
 use super::reader::Reader;
-use super::textures::{Collector, Origin, Slot};
+use super::textures::{Collector, Origin, TextureSlot};
 use crate::interface as contract;
 use crate::scene::error::Problem;
 use crate::scene::extensions::{EXTENSIONS, SPECULAR_GLOSSINESS};
@@ -97,9 +97,9 @@ fn metallic_roughness(
     material.numbers.metallic_factor =
         clamp(pbr.metallic_factor.0, 0.0..=1.0, &at("metallicFactor"), &mut collector.warnings)?;
     material.numbers.roughness_factor = roughness(pbr.roughness_factor.0, &at("roughnessFactor"))?;
-    let slot = pbr.base_color_texture.as_ref().map(Slot::new);
+    let slot = pbr.base_color_texture.as_ref().map(TextureSlot::new);
     collector.bind(material, contract::TEXTURE_BASE_COLOR, slot, &at("baseColorTexture"))?;
-    let slot = pbr.metallic_roughness_texture.as_ref().map(Slot::new);
+    let slot = pbr.metallic_roughness_texture.as_ref().map(TextureSlot::new);
     collector.bind(material, contract::TEXTURE_METALLIC_ROUGHNESS, slot, &at("metallicRoughnessTexture"))
 }
 
@@ -114,7 +114,7 @@ fn relief(
         let place = format!("{place}.normalTexture");
         material.numbers.normal_scale = values::finite(normal.scale, &format!("{place}.scale"))?;
         let others = normal.extensions.as_ref().map(|extensions| &extensions.others);
-        let slot = Slot::raw(normal.index.value(), normal.tex_coord, others, &place)?;
+        let slot = TextureSlot::raw(normal.index.value(), normal.tex_coord, others, &place)?;
         collector.bind(material, contract::TEXTURE_NORMAL, Some(slot), &place)?;
     }
     if let Some(occlusion) = &source.occlusion_texture {
@@ -123,7 +123,7 @@ fn relief(
         material.numbers.occlusion_strength =
             clamp(occlusion.strength.0, 0.0..=1.0, &strength, &mut collector.warnings)?;
         let others = occlusion.extensions.as_ref().map(|extensions| &extensions.others);
-        let slot = Slot::raw(occlusion.index.value(), occlusion.tex_coord, others, &place)?;
+        let slot = TextureSlot::raw(occlusion.index.value(), occlusion.tex_coord, others, &place)?;
         collector.bind(material, contract::TEXTURE_OCCLUSION, Some(slot), &place)?;
     }
     Ok(())
@@ -148,7 +148,7 @@ fn emission(
         return Err(Problem::invalid(place, "a finite emission", emission.to_string()));
     }
     material.numbers.emissive_factor = emission.to_array();
-    let slot = source.emissive_texture.as_ref().map(Slot::new);
+    let slot = source.emissive_texture.as_ref().map(TextureSlot::new);
     collector.bind(material, contract::TEXTURE_EMISSIVE, slot, &at("emissiveTexture"))
 }
 

@@ -1,6 +1,6 @@
 //! Reads the members of one material extension.
 
-use super::textures::{Collector, Slot};
+use super::textures::{Collector, TextureSlot};
 use crate::scene::error::Problem;
 use crate::scene::gltf::values::{Extensions, Fields};
 use crate::scene::material::Material;
@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
 
     /// The texture at a member, as `interface::TEXTURE_*`.
     pub fn texture(&mut self, key: &str, texture: u32) -> Result<(), Problem> {
-        let slot = Slot::of(&self.fields, key)?;
+        let slot = TextureSlot::of(&self.fields, key)?;
         self.collector.bind(self.material, texture, slot, &self.fields.at(key))
     }
 }

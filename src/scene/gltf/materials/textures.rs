@@ -41,13 +41,13 @@ pub enum Origin {
 }
 
 /// A textureInfo, which is a material's reference to a texture.
-pub struct Slot {
+pub struct TextureSlot {
     texture: usize,
     uv_set: u32,
     transform: Option<TextureTransform>,
 }
 
-impl Slot {
+impl TextureSlot {
     /// Reads a textureInfo that the parser knows.
     pub fn new(info: &json::texture::Info) -> Self {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
@@ -91,14 +91,14 @@ impl<'a> Collector<'a> {
         &mut self,
         material: &mut Material,
         texture: u32,
-        slot: Option<Slot>,
+        slot: Option<TextureSlot>,
         place: &str,
     ) -> Result<(), Problem> {
         material.textures[texture as usize] = slot.map(|slot| self.texture_use(&slot, place)).transpose()?;
         Ok(())
     }
 
-    fn texture_use(&mut self, slot: &Slot, place: &str) -> Result<TextureUse, Problem> {
+    fn texture_use(&mut self, slot: &TextureSlot, place: &str) -> Result<TextureUse, Problem> {
         let textures = &self.root.textures;
         let Some(texture) = textures.get(slot.texture) else {
             return Err(out_of_range(place, "textures", slot.texture, textures.len()));

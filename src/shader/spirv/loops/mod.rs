@@ -35,7 +35,7 @@ mod rewrite;
 mod rounds;
 
 pub use bounds::Bounds;
-pub use place::{Overrun, Place};
+pub use place::{LoopPlace, Overrun};
 pub use rewrite::bound;
 
 #[cfg(test)]

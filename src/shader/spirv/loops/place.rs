@@ -11,7 +11,7 @@ use crate::shader::spirv::reach::file_of;
 /// wait for them.)
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overrun {
-    /// The loop that took at least half of an invocation's budget, as [`Place::find`] knows it; 0 if there is none.
+    /// The loop that took at least half of an invocation's budget, as [`LoopPlace::find`] knows it; 0 if there is none.
     pub one: u32,
     /// A module whose loops used up a budget together; 0 if there is none.
     pub together: u32,
@@ -19,7 +19,7 @@ pub struct Overrun {
 
 /// The loop that an [`Overrun`] names.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct LoopPlace {
     /// Number of the loop among the loops of its function before specialization; `None` if several loops used up the
     /// budget together.
     pub number: Option<usize>,
@@ -27,7 +27,7 @@ pub struct Place {
     pub function: String,
 }
 
-impl Place {
+impl LoopPlace {
     /// Finds the loop in a module before specialization. `None` if the overrun is of another module.
     pub fn find(overrun: Overrun, words: &[u32]) -> Option<Self> {
         let seed = seed(words);

@@ -122,15 +122,15 @@ fn an_overrun_finds_its_loop() {
         blocks.filter(|block| block.structure(&module).1.is_some()).map(|block| block.label).collect()
     };
     let seed = seed(&words);
-    let places: Vec<Place> = labels
+    let places: Vec<LoopPlace> = labels
         .iter()
-        .map(|label| Place::find(Overrun { one: name(seed, *label), together: 0 }, &words).expect("a loop"))
+        .map(|label| LoopPlace::find(Overrun { one: name(seed, *label), together: 0 }, &words).expect("a loop"))
         .collect();
     let functions: Vec<(Option<usize>, &str)> = places.iter().map(|p| (p.number, p.function.as_str())).collect();
     assert_eq!(functions, [(Some(0), "main"), (Some(0), "f(")]);
     let together = Overrun { one: 0, together: name(seed, 0) };
-    assert_eq!(Place::find(together, &words), Some(Place { number: None, function: String::new() }));
-    assert_eq!(Place::find(Overrun { one: 1, together: 0 }, &words), None);
+    assert_eq!(LoopPlace::find(together, &words), Some(LoopPlace { number: None, function: String::new() }));
+    assert_eq!(LoopPlace::find(Overrun { one: 1, together: 0 }, &words), None);
 }
 
 #[test]

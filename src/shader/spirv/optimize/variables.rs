@@ -16,7 +16,7 @@ pub(super) struct Leaf {
 
 /// The place that a pointer points to.
 #[derive(Clone)]
-pub(super) struct Place {
+pub(super) struct VariablePart {
     /// The first leaf of its variable.
     first: usize,
     /// The type of its variable.
@@ -27,7 +27,7 @@ pub(super) struct Place {
 /// The variables that become values.
 pub(super) struct Variables {
     pub(super) leaves: Vec<Leaf>,
-    pub(super) pointers: HashMap<Id, Place>,
+    pub(super) pointers: HashMap<Id, VariablePart>,
     /// Leaves of each type.
     counts: HashMap<Id, usize>,
 }
@@ -82,7 +82,7 @@ impl Variables {
         }
         for (pointer, variable) in owner {
             if let (Some(first), Some(path)) = (firsts[variable], paths.remove(&pointer)) {
-                this.pointers.insert(pointer, Place { first, kind: candidates[variable].1, path });
+                this.pointers.insert(pointer, VariablePart { first, kind: candidates[variable].1, path });
             }
         }
         this
@@ -125,7 +125,7 @@ impl Variables {
     }
 
     /// The first leaf at a place, the type there, and the part of the path within a leaf.
-    pub(super) fn locate<'a>(&self, optimizer: &Optimizer, place: &'a Place) -> (usize, Id, &'a [u32]) {
+    pub(super) fn locate<'a>(&self, optimizer: &Optimizer, place: &'a VariablePart) -> (usize, Id, &'a [u32]) {
         let (mut leaf, mut kind) = (place.first, place.kind);
         for (depth, index) in place.path.iter().enumerate() {
             let Some(parts) = optimizer.parts(kind) else { return (leaf, kind, &place.path[depth..]) };
