@@ -37,7 +37,27 @@ const float iSampleRate = 44100.0;
 #define u_resolution (iResolution.xy)
 #define u_mouse (iMouse.xy)
 #define v_texcoord (toyFragCoord.xy / iResolution.xy)
+
+// The same under the names of GLSL ES 1.00 and of Shadertoy's first years.
+#define iGlobalTime iTime
 #define texture2D texture
+#define textureCube texture
+#define texture2DProj textureProj
+#define texture2DLod textureLod
+#define texture2DLodEXT textureLod
+#define textureCubeLodEXT textureLod
+#define texture2DGradEXT textureGrad
+#define gl_FragDepthEXT gl_FragDepth
+
+#ifdef TOY_FILE
+#define toyES 1
+// Precisions mean nothing here, and must not tell two declarations of a function apart.
+#define lowp
+#define mediump
+#define highp
+// The argument of a macro that is called with none.
+#define toy_nothing
+#endif
 
 // gl_FragCoord and gl_FragColor of the file.
 vec4 toyFragCoord;
@@ -78,8 +98,15 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord);
 void Main() { mainImage(toyFragColor, toyFragCoord.xy); }
 #endif
 
+#ifdef TOY_VARIABLES
+void toy_variables();
+#endif
+
 void main() {
     toy_begin();
+#ifdef TOY_VARIABLES
+    toy_variables();
+#endif
     Main();
     toy_end();
 }

@@ -28,6 +28,7 @@ use super::{Failure, print_json, tell_left_out};
     \"NaN\": the value is NaN or infinite. `not_finite` is then the first statement that made NaN or infinity.\n\
     The pixel has one sample in its center: view.msaa is 1, so that no edge mixes two surfaces. An accumulating mode is the mean of \
     view.frames frames.\n\
+    Where there is no model, as in a Shadertoy file, passes have values: `pass:image` is what is shown.\n\
     `textures` lists the texel of level 0 at the pixel in each texture of the material, as stored and as a linear number, unfiltered.\n\
     The falloff of a spot light is the square of angle_scale * cosine + angle_offset, clamped to 0..1 \
     (KHR_lights_punctual)."
@@ -81,8 +82,15 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let Chosen { modes, left_out } = chosen(&headless.shaders(), &slugs, args.paths)?;
     let state = headless.frame_state()?;
     progress.say("reading the pixel");
-    let hit = is_hit(&mut headless, args.at)?;
-    let shown = if hit { modes.as_slice() } else { &[] };
+    let hit = state.pipelines.draws_model && is_hit(&mut headless, args.at)?;
+    let modes: Vec<Mode> = match (hit, slugs.is_empty()) {
+        (true, _) => modes,
+        // Only passes have a value where there is no model. A toy has no model at all.
+        (false, false) => modes.into_iter().filter(|mode| mode.pass.is_some()).collect(),
+        (false, true) if !state.pipelines.draws_model => modes_of_passes(modes, &state),
+        (false, true) => Vec::new(),
+    };
+    let shown = modes.as_slice();
     let read = headless.pixel_with(args.at, shown, |step| progress.step(step))?;
     let values: Vec<_> = shown.iter().zip(read).collect();
     let texels = if hit { headless.texels(args.at)? } else { Vec::new() };
@@ -132,6 +140,12 @@ fn chosen(shaders: &ShaderSet, slugs: &[String], paths: bool) -> Result<Chosen, 
     let (modes, left_out): (Vec<&Mode>, Vec<&Mode>) =
         wanted.partition(|mode| paths || !mode.follows_paths() || is_named(mode));
     Ok(Chosen { modes: modes.into_iter().cloned().collect(), left_out: left_out.len() })
+}
+
+/// The modes of the passes that the picture consists of.
+fn modes_of_passes(modes: Vec<Mode>, state: &FrameState) -> Vec<Mode> {
+    let is_drawn = |name: &String| state.pipelines.passes.iter().any(|pass| pass.desc.draws(name));
+    modes.into_iter().filter(|mode| mode.pass.as_ref().is_some_and(is_drawn)).collect()
 }
 
 /// The first statement that computes NaN or infinity: in the final picture, or else in the first of these modes that has one.

@@ -6,6 +6,7 @@ use super::{Headless, HeadlessError};
 use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, ProvideError, Redraw, View};
+use crate::shader::{Diagnostic, Severity};
 
 /// Progress of rendering or of a readout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +77,11 @@ impl Headless {
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
+    /// Warnings about loops that were cut short since the last call, though they end.
+    pub fn take_cut_short(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.cut_short)
+    }
+
     /// The limits of the values in the last frame, if its range is automatic.
     pub fn measured_limits(&self) -> Option<Limits> {
         self.view.measured_limits()
@@ -140,7 +146,14 @@ impl Headless {
         self.frames.wait()?;
         self.view.take_range_sample(slot);
         match self.frames.endless_loop(self.frames.current()) {
-            Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
+            Some(words) => match self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words))) {
+                // A loop that ends, but takes too many rounds, costs only its own pixels.
+                HeadlessError::Shaders(found) if found.iter().all(|d| d.severity == Severity::Warning) => {
+                    self.cut_short = found;
+                    Ok(result)
+                }
+                error => Err(error),
+            },
             None => Ok(result),
         }
     }

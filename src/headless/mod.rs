@@ -22,7 +22,7 @@ use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, beyond_me
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Compiler, Severity, ShaderSet, Source};
+use crate::shader::{Compiler, Diagnostic, Severity, ShaderSet, Source};
 
 pub use draw::Step;
 pub use error::HeadlessError;
@@ -46,6 +46,8 @@ pub struct Headless {
     sequence: Sequence,
     is_linear: bool,
     upload_ms: f64,
+    /// See [`Headless::take_cut_short`].
+    cut_short: Vec<Diagnostic>,
 }
 
 impl Headless {
@@ -157,6 +159,7 @@ impl Headless {
             sequence: Sequence::default(),
             is_linear: false,
             upload_ms: 0.0,
+            cut_short: Vec::new(),
         };
         this.target()?;
         this.set_model(model)?;

@@ -24,7 +24,7 @@ use crate::shader::spirv::loops::{Bounds, LoopPlace, Overrun};
 use crate::shader::spirv::reach::{Used, reached};
 use crate::shader::spirv::uses::used_bytes;
 use crate::shader::spirv::{self, Finished, Module, specialize_several};
-use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
+use crate::shader::{Compiler, Diagnostic, Severity, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Loop iterations that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so on a GPU
 /// of any size the first of them take between a tenth of a second (short iterations) and a second (long ones).
@@ -143,7 +143,10 @@ pub fn endless_loop(
         LoopPlace { number: Some(_), .. } => {
             let lines = compiler.compile_with_lines(&snapshot, &stage.path);
             let line = lines.and_then(|words| place.line(&words));
-            let message = format!("this loop did not end ({rounds} iterations)");
+            let message = match place.is_finite {
+                true => format!("this loop takes more than {rounds} iterations"),
+                false => format!("this loop did not end ({rounds} iterations)"),
+            };
             match line {
                 Some((file, line)) => {
                     let path = TreePath::from(file.as_str());
@@ -163,7 +166,14 @@ pub fn endless_loop(
             Diagnostic::error(snapshot.display_path(&stage.path), message)
         }
     };
-    Some(source.explained(diagnostic).with_help(
-        "it was cut short, so the result is wrong. Repair its condition, or set back the value that it depends on",
-    ))
+    let diagnostic = source.explained(diagnostic);
+    Some(match place.is_finite {
+        // There is a picture to show.
+        true => Diagnostic { severity: Severity::Warning, ..diagnostic }.with_help(
+            "it was cut short; where, the picture is magenta. Let it take fewer, also with the loops around it",
+        ),
+        false => diagnostic.with_help(
+            "it was cut short, so the result is wrong. Repair its condition, or set back the value that it depends on",
+        ),
+    })
 }

@@ -7,3 +7,4 @@ mod keys;
 mod model;
 mod textures;
 mod toys;
+mod web;

@@ -6,6 +6,7 @@ mod modes;
 mod warnings;
 mod watch;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 
@@ -136,9 +137,19 @@ fn again(
 ) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_files = take_files(headless, args, watch, changes)?;
-    let reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
+    let known: BTreeSet<String> = headless.shaders().stages.keys().cloned().collect();
+    let mut reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
     // A changed text may name other files.
     watch.follow(headless);
+    // The picture may read a pass that is new.
+    if headless.shaders().pending.iter().any(|stage| !known.contains(stage)) {
+        complete(headless, args, true)?;
+    }
+    // A file that no stage depended on before.
+    if reload.report.changed.is_empty() {
+        let there = changes.paths.iter().filter(|path| path.exists());
+        reload.report.changed = there.map(|path| path.display().to_string()).collect();
+    }
     let mut first_frame_ms = 0.0;
     if new_files || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();
@@ -346,6 +357,7 @@ fn capture(
     progress.begin("picture", place, &headless.settings_mut().mode);
     headless.set_linear(picture::holds_light(&args.out));
     let capture = headless.render_with(|step| progress.step(step))?;
+    tell(args, &headless.take_cut_short());
     if let Some(paths_per_pixel) = headless.paths_per_pixel()? {
         let ms = begin.elapsed().as_secs_f64() * 1e3;
         let mode = headless.settings_mut().mode.clone();

@@ -236,7 +236,9 @@ fn make(gpu: &Arc<Gpu>, of: &Arc<Texture>, shape: &Shape, content: &Content) -> 
     let wrap = match of.desc.wrap {
         Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
         Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+        Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
     };
-    let sampler = SamplerDesc { wrap_u: wrap, wrap_v: wrap, wrap_w: wrap, ..SamplerDesc::LINEAR };
+    let [min, mag] = of.desc.nearest.map(|nearest| if nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR });
+    let sampler = SamplerDesc { min, mag, wrap_u: wrap, wrap_v: wrap, wrap_w: wrap, ..SamplerDesc::LINEAR };
     Ok(Uploaded { of: of.clone(), image, sampler: Sampler::new(gpu, &sampler)? })
 }

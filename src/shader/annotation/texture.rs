@@ -16,6 +16,8 @@ pub enum Wrap {
     Repeat,
     /// The texels at the edge are repeated.
     Clamp,
+    /// The texture repeats, every other time as its mirror image.
+    Mirror,
 }
 
 /// A declared texture: one or more image files of the tree.
@@ -34,6 +36,8 @@ pub struct TextureDesc {
     pub wrap: Wrap,
     /// Whether it has mip levels.
     pub mips: bool,
+    /// Whether the nearest texel is read where the texture is made smaller, and where it is made larger.
+    pub nearest: [bool; 2],
     /// Whether the first row of each picture, face, layer and slice is at the bottom, as in OpenGL.
     pub flip: bool,
     /// Number of layers or slices in one image, 1 to 65536.
@@ -47,6 +51,9 @@ pub struct TextureDesc {
 pub fn is_image_extension(extension: &str) -> bool {
     ["png", "jpg", "jpeg", "hdr", "exr", "cube"].iter().any(|known| known.eq_ignore_ascii_case(extension))
 }
+
+/// The values of `min=` and `mag=`.
+const IS_NEAREST: [(&str, bool); 2] = [("nearest", true), ("linear", false)];
 
 /// Parses the rest of a `//@texture`.
 pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureDesc, Box<Diagnostic>> {
@@ -67,6 +74,7 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureDesc, Box<Diagnostic>> 
         srgb: true,
         wrap: Wrap::Repeat,
         mips: false,
+        nearest: [false; 2],
         flip: false,
         layers: None,
         place,
@@ -78,11 +86,16 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureDesc, Box<Diagnostic>> 
             "linear" => desc.srgb = false,
             "repeat" => desc.wrap = Wrap::Repeat,
             "clamp" => desc.wrap = Wrap::Clamp,
+            "mirror" => desc.wrap = Wrap::Mirror,
+            "min" => desc.nearest[0] = cursor.one_of(word, &IS_NEAREST)?,
+            "mag" => desc.nearest[1] = cursor.one_of(word, &IS_NEAREST)?,
             "mips" => desc.mips = true,
             "flip" => desc.flip = true,
             "layers" => desc.layers = Some(layers(cursor)?),
             other => {
-                let message = format!("expected srgb, linear, repeat, clamp, mips, flip or layers=, found `{other}`");
+                let message = format!(
+                    "expected srgb, linear, repeat, clamp, mirror, min=, mag=, mips, flip or layers=, found `{other}`"
+                );
                 return Err(cursor.error(bytes, message));
             }
         }

@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::hooks::other_parameters;
+use super::include::meant;
 use super::names::Names;
+use super::places::StageFiles;
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
 use crate::shader::glsl::{Line, Token, TokenKind, assigns, code, find_word, includes, lines};
@@ -21,6 +23,7 @@ pub fn parse(
     dependencies: &BTreeSet<TreePath>,
 ) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let mut out: Vec<Diagnostic> = Vec::new();
+    let files = StageFiles { snapshot, all: dependencies };
     let names = LazyCell::new(|| {
         let text = |path| snapshot.read(path).ok();
         Names::of(dependencies.iter().filter_map(|path| Some((path, text(path)?))))
@@ -40,8 +43,17 @@ pub fn parse(
         let printed = path.map_or_else(|| file.to_owned(), |path| snapshot.display_path(path));
         let text = path.and_then(|path| snapshot.read(path).ok());
         let diagnostic = diagnose(printed, line, message, text.as_deref(), stage);
-        let diagnostic = Diagnostic { severity, ..diagnostic };
+        let mut diagnostic = Diagnostic { severity, ..diagnostic };
         let (token, said) = split_token(message);
+        if token == "#include" && said.contains(NOT_FOUND) {
+            let name = said.trim_start_matches('"').split('"').next().unwrap_or_default();
+            let meant = path.and_then(|path| meant(snapshot, path, name));
+            diagnostic.help = meant.map(|name| format!("did you mean `{name}`?"));
+        }
+        if said.starts_with("syntax error") && diagnostic.help.is_none() {
+            let unended = path.and_then(|path| files.unended_before(path, &diagnostic));
+            diagnostic = unended.unwrap_or(diagnostic);
+        }
         let call = diagnostic.excerpt.as_deref().filter(|_| said.starts_with("no matching overloaded function found"));
         if let Some(error) = call.and_then(|call| other_parameters(token, call, snapshot, dependencies)) {
             out.push(error);
@@ -59,7 +71,19 @@ pub fn parse(
             out.push(diagnostic);
         }
     }
-    out.into_iter().partition(|diagnostic| diagnostic.severity == Severity::Error)
+    let placed = out.into_iter().map(|diagnostic| match diagnostic.line {
+        Some(_) => diagnostic,
+        None => files.linked(diagnostic),
+    });
+    placed.partition(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
+/// The message about an include that was not found, behind its name.
+pub const NOT_FOUND: &str = "\" not found; looked for ";
+
+/// Whether a diagnostic is about an include that was not found.
+pub(super) fn is_missing_include(diagnostic: &Diagnostic) -> bool {
+    diagnostic.message.contains(NOT_FOUND)
 }
 
 /// Help text for a location that pass.glsl also declares.
@@ -191,6 +215,7 @@ fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
         said.strip_prefix("Linking ").and_then(|rest| rest.split_once(" stage: ")).map_or(said, |(_, said)| said);
     let diagnostic = Diagnostic::error(file, said.trim_end_matches(':'));
     if said.starts_with("Missing entry point") {
+        let diagnostic = diagnostic.on_line(1, Some(lines.first().map_or("", |line| line.raw)));
         return diagnostic.with_help("a stage needs `void main() { ... }`; files meant to be included end in .glsl");
     }
     if said.starts_with("#version") || said.starts_with("version") {
@@ -233,9 +258,15 @@ fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: 
 /// The last line of code before `index`, if it looks like a statement without `;`. Skips blank lines and directives.
 fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
     let before = lines.get(..index)?.iter().rev().find(|line| line.is_code())?;
-    let tokens = before.tokens();
-    let opens_block = matches!(tokens.first()?.text, "if" | "for" | "while" | "else" | "switch" | "do");
-    (is_value(tokens.last()?) && !opens_block).then_some(before.number)
+    is_unended(before).then_some(before.number)
+}
+
+/// Whether a line looks like a statement without `;`.
+pub(super) fn is_unended(line: &Line<'_>) -> bool {
+    let tokens = line.tokens();
+    let opens_block =
+        tokens.first().is_some_and(|first| matches!(first.text, "if" | "for" | "while" | "else" | "switch" | "do"));
+    tokens.last().is_some_and(is_value) && !opens_block
 }
 
 /// Whether a token can end a value.

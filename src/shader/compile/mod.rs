@@ -6,6 +6,8 @@ pub mod include;
 pub mod log;
 pub mod module_cache;
 mod names;
+mod own;
+mod places;
 mod unbound;
 mod uniform;
 
@@ -191,7 +193,7 @@ impl Compiler {
                 Some(error) => failed(error),
                 None => self.compile_text(snapshot, stage, &text, kind),
             },
-            Err(error) => failed(Diagnostic::error(file(), format!("{} {error}", file()))),
+            Err(error) => failed(include::unreadable(snapshot, stage, &error)),
         }
     }
 
@@ -248,6 +250,7 @@ impl Compiler {
         let includes = Includes::new(snapshot, path.clone());
         let outcome = options(kind).and_then(|options| self.run(options, &includes, path, text, kind));
         let ms = start.elapsed().as_secs_f64() * 1e3;
+        let unreadable = includes.take_unreadable();
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
             Ok((spirv, warnings)) => (Ok(spirv), warnings),
@@ -255,8 +258,15 @@ impl Compiler {
         };
         let (mut errors, warnings) = log::parse(&text, path, snapshot, &dependencies);
         // A stray `#else` can hide the rest of the file that includes it, and still compile.
-        let causes = unbalanced(snapshot, &dependencies, result.is_ok());
+        let causes = match unreadable.is_empty() {
+            true => unbalanced(snapshot, &dependencies, result.is_ok()),
+            false => unreadable,
+        };
         let result = if causes.is_empty() { result } else { Err(()) };
+        // An include that is missing explains all other errors.
+        if errors.iter().any(log::is_missing_include) {
+            errors.retain(log::is_missing_include);
+        }
         if !causes.is_empty() {
             errors = causes;
         } else if errors.is_empty() {
@@ -268,17 +278,42 @@ impl Compiler {
     /// Returns the module and the log of warnings, or the log of errors. File names in the log are tree paths.
     fn run<'a>(
         &self,
+        options: CompileOptions<'a>,
+        includes: &'a Includes<'_>,
+        path: &TreePath,
+        text: &str,
+        kind: StageKind,
+    ) -> Result<(Vec<u32>, String), String> {
+        let mut again = options.clone();
+        let log = match self.run_once(options, includes, path, text, kind) {
+            Err(log) => log,
+            good => return good,
+        };
+        let names = own::refused(&log, includes.snapshot());
+        if names.is_empty() {
+            return Err(log);
+        }
+        names.iter().for_each(|name| again.add_macro_definition(name, Some(&own::renamed(name))));
+        let result = self.run_once(again, includes, path, text, kind);
+        let (mut words, warnings) = result.map_err(|log| own::named_again(&log, &names))?;
+        own::restore(&mut words, &names);
+        Ok((words, own::named_again(&warnings, &names)))
+    }
+
+    fn run_once<'a>(
+        &self,
         mut options: CompileOptions<'a>,
         includes: &'a Includes<'_>,
         path: &TreePath,
         text: &str,
         kind: StageKind,
     ) -> Result<(Vec<u32>, String), String> {
+        let text = includes.begin(text);
         options.set_include_callback(|name, _type, _including, depth| {
             let (path, content) = includes.resolve(name, depth)?;
             Ok(ResolvedInclude { resolved_name: path.to_string(), content })
         });
-        match self.shaderc.compile_into_spirv(text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
+        match self.shaderc.compile_into_spirv(&text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
                 assign_set(&mut words, SET_PASS, kind.first_binding(), &includes.unbound());

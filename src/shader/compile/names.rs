@@ -258,7 +258,7 @@ fn macros(text: &str) -> impl Iterator<Item = Declared> {
 }
 
 /// Words that can precede a name and are no type.
-const NO_TYPES: &[&str] = &[
+pub(super) const NO_TYPES: &[&str] = &[
     "return",
     "else",
     "case",

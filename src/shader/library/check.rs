@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::missing::folded;
 use super::{Change, Library, Update};
 use crate::shader::compile::StageKind;
 use crate::shader::compile::include::files_of;
@@ -65,7 +66,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
         .collect();
     out.extend(found);
     out.sort_by_key(|diagnostic| diagnostic.severity);
-    unique(out)
+    folded(unique(out))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@
 mod beside;
 pub mod check;
 mod link;
+mod missing;
 mod passes;
 mod slot;
 mod state;
@@ -23,7 +24,7 @@ mod watch;
 mod watched;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -269,7 +270,11 @@ impl Library {
             Err(diagnostics) => {
                 self.failed = true;
                 let explained = diagnostics.into_iter().map(|diagnostic| self.source.explained(diagnostic));
-                let mut diagnostics = unique(explained.chain(self.source.refusals()).collect());
+                let diagnostics = unique(explained.chain(self.source.refusals()).collect());
+                let mut diagnostics = match self.source.root().filter(|root| !root.is_dir()) {
+                    Some(root) => vec![gone(root)],
+                    None => self.with_renamed(diagnostics, snapshot),
+                };
                 let waiting = self.waiting(&diagnostics, snapshot);
                 if let Some(first) = diagnostics.first_mut().filter(|_| !waiting.is_empty()) {
                     first.notes.push(format!("other edits wait until this is repaired: {}", waiting.join(", ")));
@@ -289,6 +294,12 @@ impl Library {
             .filter(|path| is_of_author(path) && diagnostics.iter().all(|diagnostic| diagnostic.file != *path))
             .collect()
     }
+}
+
+/// The error about a tree whose folder is gone, in place of one for each of its stages.
+fn gone(root: &Path) -> Diagnostic {
+    let error = Diagnostic::error(root.display().to_string(), "the folder of the shaders is gone");
+    error.with_help("the picture comes from its last version; move it back, or open another tree")
 }
 
 /// Whether a file, as displayed, is one on disk: the stages of a single opened file are written by Specula.

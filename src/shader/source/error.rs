@@ -41,3 +41,13 @@ pub enum SourceError {
     #[error("cannot be read: {0}")]
     Io(String),
 }
+
+impl SourceError {
+    /// The line of the file that is wrong, from 1.
+    pub fn line(&self) -> Option<u32> {
+        match self {
+            Self::NotUtf8 { line } | Self::Nul { line } => Some(*line),
+            _ => None,
+        }
+    }
+}

@@ -81,10 +81,12 @@ pub(super) fn check_text(bytes: Vec<u8>) -> Result<String, SourceError> {
         let line = line_of(error.utf8_error().valid_up_to(), error.as_bytes());
         SourceError::NotUtf8 { line }
     })?;
-    Ok(match text.strip_prefix('\u{feff}') {
+    let text = match text.strip_prefix('\u{feff}') {
         Some(rest) => rest.to_owned(),
         None => text,
-    })
+    };
+    // Line breaks of an old Mac, which only the compiler would know.
+    Ok(if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n") } else { text })
 }
 
 /// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.

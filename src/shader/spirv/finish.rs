@@ -1,6 +1,7 @@
-//! The last step before the driver: loops that end, copies for hits, optimization.
+//! The last step before the driver: initial values, loops that end, copies for hits, optimization.
 
 use super::hits::separate_hits;
+use super::initial::initialize;
 use super::loops::{self, Bounds};
 use super::module::Module;
 use super::optimize::optimized;
@@ -21,6 +22,7 @@ pub fn finish(words: Vec<u32>, original: &[u32], bounds: &Bounds) -> Finished {
     let Some(mut module) = Module::parse(&words) else {
         return Finished { unoptimized: words.len(), words, is_bounded: false };
     };
+    initialize(&mut module);
     let is_bounded = loops::bound(&mut module, original, bounds);
     separate_hits(&mut module);
     let words = module.write();

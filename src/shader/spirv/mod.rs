@@ -11,6 +11,7 @@ mod fold;
 mod hash;
 mod hits;
 pub mod hooks;
+mod initial;
 pub mod link;
 pub mod loops;
 mod module;
@@ -23,6 +24,7 @@ mod specialize;
 pub mod uses;
 mod validate;
 
+pub use bindings::rename_functions;
 pub use finish::{Finished, finish};
 pub use hash::behavior_hash;
 pub use module::Module;

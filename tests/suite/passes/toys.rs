@@ -231,7 +231,7 @@ fn errors_have_the_lines_of_the_author() {
     let wrong = IMAGE.replace("fragColor = vec4(material", "fragColor = vec4(materials");
     render(folder.path(), &[("toy.glsl", &wrong)], &[]).expect(1, &["toy.glsl:9:", "'materials'"]);
     render(folder.path(), &[("none.glsl", "float f() { return 1.0; }\n")], &[])
-        .expect(1, &["none.glsl: error: expected `void mainImage"]);
+        .expect(1, &["none.glsl:1:1: error: expected `void mainImage"]);
     let missing = "#iChannel0 \"no.png\"\nvoid mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p); }\n";
     render(folder.path(), &[("no.glsl", missing)], &[]).expect(1, &["no.glsl:1:13: error: \"no.png\" not found"]);
     run(folder.path(), &["render", "gone.glsl"]).expect(1, &["gone.glsl: there is no such file"]);
@@ -269,13 +269,8 @@ fn errors_quote_the_author() {
             vec!["t.glsl:1:", "help: write `#iKeyboard` on a line of its own", "Key_LeftArrow"],
         ),
         (
-            "uniform sampler2D u_tex0;\nvoid main() { gl_FragColor = texture2D(u_tex0, gl_FragCoord.xy); }\n"
-                .to_owned(),
-            vec!["t.glsl:1:19: error: nothing gives the image `u_tex0`", "`//@texture u_tex0 \"image.png\"`"],
-        ),
-        (
-            format!("uniform float speed;\n{}", image("c = vec4(speed);")),
-            vec!["t.glsl:1:15: error: `speed` is a float outside a block", "float speed;   //@ui \"Speed\" 0..1 = 0.5"],
+            "uniform sampler2D photo;\nvoid main() { gl_FragColor = texture2D(photo, gl_FragCoord.xy); }\n".to_owned(),
+            vec!["t.glsl:1:19: error: nothing gives the image `photo`", "`//@texture photo \"image.png\"`"],
         ),
     ] {
         let stderr = render(folder.path(), &[("t.glsl", &text)], &[]).expect(1, &told).stderr.clone();
@@ -283,11 +278,11 @@ fn errors_quote_the_author() {
         assert!(!foreign.iter().any(|word| stderr.contains(word)), "{text}{stderr}");
         assert!(stderr.lines().any(|line| line.contains("| ") && line.contains('^')), "{text}{stderr}");
     }
-    // The block that the help shows is one that works.
-    let slider = format!(
-        "uniform Sliders {{\n    float speed;   //@ui \"Speed\" 0..1 = 0.5\n}};\n{}",
-        image("c = vec4(speed);")
-    );
-    render(folder.path(), &[("t.glsl", &slider)], &["--set", "speed=1"]).expect(0, &[]);
-    assert_eq!(pixel(folder.path(), 3, 3), [255; 4]);
+    // A block of sliders, and a uniform of its own.
+    let block = "uniform Sliders {\n    float speed;   //@ui \"Speed\" 0..1 = 0.5\n};\n";
+    for declared in [block, "uniform float speed;\n"] {
+        let slider = format!("{declared}{}", image("c = vec4(speed);"));
+        render(folder.path(), &[("t.glsl", &slider)], &["--set", "speed=1"]).expect(0, &[]);
+        assert_eq!(pixel(folder.path(), 3, 3), [255; 4]);
+    }
 }

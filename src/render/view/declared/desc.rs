@@ -46,6 +46,11 @@ impl PassDesc {
         }
     }
 
+    /// Whether another desc has the same properties but its size.
+    pub(super) fn is_resized(&self, other: &Self) -> bool {
+        Self { size: other.size, mips: other.mips, ..*self } == *other
+    }
+
     /// Number of texels in all levels, the previous frame's image included.
     pub(super) fn texels(&self) -> u64 {
         let level = |level: u32| u64::from((self.size.0 >> level).max(1)) * u64::from((self.size.1 >> level).max(1));

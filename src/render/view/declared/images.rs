@@ -67,6 +67,8 @@ pub(super) struct Images {
     drawings: u64,
     /// Images and buffers that were never drawn to.
     fresh: (Vec<Arc<Image>>, Vec<Arc<Buffer>>),
+    /// Kept images of another size, and the new ones that get their content.
+    resized: Vec<(Arc<Image>, Arc<Image>)>,
 }
 
 /// An image of this kind that reads as 0.
@@ -214,17 +216,34 @@ impl Images {
                 (0..if desc.keeps { 2 } else { 1 }).map(|_| self.cleared(gpu, name, new)).collect::<Result<_, _>>()?
             }
         };
+        let (mut newest, mut drawing) = (0, 0);
+        let is_other_size = |known: &&PassImages| desc.keeps && known.desc.is_resized(&desc);
+        if let Some(known) = last.passes.get(name).filter(is_other_size) {
+            newest = known.newest;
+            self.drawings += 1;
+            drawing = self.drawings;
+            for (from, to) in known.images.iter().zip(&images) {
+                self.resized.extend(last.drawn(from).map(|from| (from, to.clone())));
+            }
+        }
         Ok(PassImages {
             desc,
             is_shared,
             images,
             first_level,
             depth,
-            newest: 0,
+            newest,
             is_drawn: false,
-            drawing: 0,
+            drawing,
             cache_key: None,
         })
+    }
+
+    /// The image with the content that an image has or will have. `None` if it was never drawn to.
+    fn drawn(&self, image: &Arc<Image>) -> Option<Arc<Image>> {
+        let source = self.resized.iter().find(|(_, to)| Arc::ptr_eq(to, image)).map(|(from, _)| from.clone());
+        let is_fresh = self.fresh.0.iter().any(|fresh| Arc::ptr_eq(fresh, image));
+        source.or_else(|| (!is_fresh).then(|| image.clone()))
     }
 
     /// A new image, which the next frame clears to 0.
@@ -277,6 +296,7 @@ impl Images {
             pass.images.clone()
         });
         self.fresh = (images.collect(), self.buffers.values().cloned().collect());
+        self.resized.clear();
     }
 
     /// Begins a frame: clears images and buffers that were never drawn to.
@@ -286,6 +306,13 @@ impl Images {
             encoder.transition(image, Use::Undefined, Use::CopyTo);
             encoder.clear_image(image);
             encoder.transition(image, Use::CopyTo, Use::Sampled);
+        }
+        for (from, to) in std::mem::take(&mut self.resized) {
+            encoder.transition(&from, Use::Sampled, Use::CopyFrom);
+            encoder.transition(&to, Use::Sampled, Use::CopyTo);
+            encoder.copy_image_to(&from, &to, (0, 0));
+            encoder.transition(&from, Use::CopyFrom, Use::Sampled);
+            encoder.transition(&to, Use::CopyTo, Use::Sampled);
         }
         buffers.iter().for_each(|buffer| encoder.clear_buffer(buffer));
         if !buffers.is_empty() {

@@ -1,7 +1,15 @@
 //! Changes the text of an opened file so that it compiles in a pass. Each line keeps its number.
+//!
+//! Directives and declarations that the stage replaces become comments or blanks. Names that toy.glsl gives to what Vulkan lacks, and
+//! names that are words of GLSL 4.60, are replaced by names of the same length. Only initial values and arguments that an author may
+//! leave out in WebGL make a line longer.
 
-use super::channel::{Channel, channel, channels, samplers};
-use crate::shader::glsl::{TokenKind, code, find_word, includes, lines, tokens};
+use std::ops::Range;
+
+use super::channel::{CHANNELS, Channel, channel, channels, samplers};
+use super::declared::{Storage, declarations, has_texture, is_built_in};
+use super::initial::initial_values;
+use crate::shader::glsl::{Token, TokenKind, code, find_word, includes, lines, tokens};
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
 pub(super) const COMMON: &str = "common";
@@ -9,14 +17,55 @@ pub(super) const COMMON: &str = "common";
 /// The line that declares functions about keys. The form is that of editors' Shadertoy extensions.
 pub(super) const KEY_FUNCTIONS: &str = "#iKeyboard";
 
-/// The uniforms of glslViewer and of the Book of Shaders, which toy.glsl defines.
-const UNIFORMS: [&str; 6] = ["u_time", "u_delta", "u_frame", "u_date", "u_resolution", "u_mouse"];
-/// Names that a shader of OpenGL uses, with names of the same length that toy.glsl defines.
-const OPENGL: [(&str, &str); 2] = [("gl_FragCoord", "toyFragCoord"), ("gl_FragColor", "toyFragColor")];
+/// Names that a shader of WebGL uses, with names of the same length that toy.glsl defines.
+const WEBGL: [(&str, &str); 3] =
+    [("gl_FragCoord", "toyFragCoord"), ("gl_FragColor", "toyFragColor"), ("GL_ES", "toyES")];
 
-/// Whether a text has Shadertoy's form.
+/// Words of GLSL 4.60 that are names in GLSL ES 1.00 or 3.00.
+const NAMES_OF_ES: [&str; 24] = [
+    "active",
+    "buffer",
+    "centroid",
+    "coherent",
+    "common",
+    "filter",
+    "image1D",
+    "image2D",
+    "image3D",
+    "noperspective",
+    "partition",
+    "patch",
+    "precise",
+    "readonly",
+    "resource",
+    "restrict",
+    "sample",
+    "sampler",
+    "shared",
+    "smooth",
+    "subpassInput",
+    "subroutine",
+    "textureBuffer",
+    "writeonly",
+];
+
+/// Extensions of WebGL, whose features GLSL 4.60 has.
+const EXTENSIONS: [&str; 4] = ["GL_OES_", "GL_EXT_shader_texture_lod", "GL_EXT_frag_depth", "GL_EXT_draw_buffers"];
+
+/// An object-like macro of toy.glsl that stands for nothing.
+const NOTHING: &str = "toy_nothing";
+
+/// Bytes of a text, and what replaces them.
+pub(super) type Edit = (Range<usize>, String);
+
+/// Whether a text has Shadertoy's form, and no entry point of its own.
 pub(super) fn is_shadertoy(text: &str) -> bool {
-    uses(text, "mainImage")
+    uses(text, "mainImage") && !has_main(text)
+}
+
+/// Whether a text defines `main`.
+pub(super) fn has_main(text: &str) -> bool {
+    text.contains("main") && code(text).windows(3).any(|t| (t[0].text, t[1].text, t[2].text) == ("void", "main", "("))
 }
 
 /// Whether the code of a text has this word.
@@ -32,16 +81,6 @@ pub(super) fn has_key_functions(text: &str) -> bool {
 /// Whether a text reads the image with the state of the keys.
 pub(super) fn reads_keyboard(text: &str) -> bool {
     has_key_functions(text) || channels(text).iter().any(|(_, channel)| *channel == Channel::Keyboard)
-}
-
-/// The names of the outputs that a text declares.
-pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
-    text.lines().filter(|line| is_replaced(line)).filter_map(|line| {
-        let tokens = code(line);
-        let declared = tokens.split(|token| token.text == ";").next()?;
-        let is_output = declared.iter().any(|token| token.text == "out");
-        declared.last().filter(|_| is_output).map(|name| name.text)
-    })
 }
 
 /// The files that a text names in its channels and includes. A name may have a `*`.
@@ -61,54 +100,135 @@ pub(super) fn texture_name(pass: &str, channel: usize) -> String {
 
 /// The text as a pass compiles it.
 pub(super) fn adapted(text: &str, pass: &str) -> String {
-    let is_shadertoy = is_shadertoy(text);
-    let has_main = !is_shadertoy && uses(text, "main");
+    let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).collect();
+    let code = code(text);
+    let mut edits = directives(text, pass);
+    edits.extend(words(&all, has_main(text)));
+    edits.extend(empty_arguments(&all));
+    edits.extend(replaced_declarations(text, &code));
+    edits.extend(initial_values(&code));
+    apply(text, edits)
+}
+
+/// The message with the names that the author has written.
+pub(super) fn with_names(message: &str) -> String {
+    let names = NAMES_OF_ES.iter().map(|name| (*name, renamed(name)));
+    let webgl = WEBGL.iter().map(|(name, own)| (*name, (*own).to_owned()));
+    names.chain(webgl).fold(message.replace("'Main'", "'main'"), |message, (name, own)| message.replace(&own, name))
+}
+
+fn renamed(name: &str) -> String {
+    format!("{}_", &name[..name.len() - 1])
+}
+
+fn apply(text: &str, mut edits: Vec<Edit>) -> String {
+    // Of two edits that overlap, the one that begins first or is longer holds.
+    edits.sort_by_key(|(bytes, _)| (bytes.start, std::cmp::Reverse(bytes.end)));
+    let (mut out, mut end) = (String::with_capacity(text.len() + 64), 0);
+    for (bytes, by) in edits.into_iter().filter(|(bytes, by)| !bytes.is_empty() || !by.is_empty()) {
+        if bytes.start >= end {
+            out += &text[end..bytes.start];
+            out += &by;
+            end = bytes.end;
+        }
+    }
+    out + &text[end..]
+}
+
+/// Spaces in place of these bytes; line breaks stay.
+fn blank(text: &str, bytes: Range<usize>) -> Edit {
+    let spaces = text[bytes.clone()].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' });
+    (bytes, spaces.collect())
+}
+
+/// Lines that name channels and keys, versions, and extensions of WebGL.
+fn directives(text: &str, pass: &str) -> Vec<Edit> {
     let samplers = samplers(text);
-    let mut out = String::with_capacity(text.len() + 64);
-    for line in text.split_inclusive('\n') {
-        match channel(line).map(|(number, channel)| (number, channel.with(samplers[number]))) {
+    let mut start = 0;
+    let edit = |with_break: &str| {
+        let line = with_break.trim_end_matches(['\n', '\r']);
+        let bytes = start..start + line.len();
+        start += with_break.len();
+        let words: Vec<&str> = tokens(line).map(|token| token.text).take(3).collect();
+        let is_replaced = match words.as_slice() {
+            ["#", "extension", name] => EXTENSIONS.iter().any(|known| name.starts_with(known)),
+            ["#", word, ..] => ["version", "iChannel", "iKeyboard"].iter().any(|known| word.starts_with(known)),
+            _ => false,
+        };
+        match channel(line).map(|(number, channel)| (number, channel.with(&samplers[number]))) {
             Some((number, Channel::Image(file, sampler))) => {
                 let name = texture_name(pass, number);
-                out += &format!("//@texture {name} \"{file}\" {}\n", sampler.options());
+                Some((bytes, format!("//@texture {name} \"{file}\" {}", sampler.options())))
             }
-            Some(_) => out += &format!("//{line}"),
-            None if is_replaced(line) => out += &format!("//{line}"),
-            None => out += &with_own_names(line, has_main),
+            Some(_) => Some((bytes, format!("//{line}"))),
+            None => is_replaced.then(|| (bytes, format!("//{line}"))),
         }
-    }
-    out
+    };
+    text.split_inclusive('\n').filter_map(edit).collect()
 }
 
-/// Whether the stage says this instead: a version, a uniform of toy.glsl, an input or output, or a channel's further line.
-fn is_replaced(line: &str) -> bool {
-    let words: Vec<&str> =
-        tokens(line).filter(|token| token.kind != TokenKind::Comment).map(|token| token.text).collect();
-    let is_global = || words.ends_with(&[";"]) && (words[0] == "layout" || !words.contains(&"("));
-    match words.as_slice() {
-        ["#", word, ..] => ["version", "iChannel", "iKeyboard"].iter().any(|known| word.starts_with(known)),
-        ["uniform", ..] => words.iter().any(|word| UNIFORMS.contains(word)),
-        ["varying", ..] => true,
-        ["in" | "out", ..] => is_global(),
-        ["layout", ..] => is_global() && words.contains(&"out"),
-        _ => false,
-    }
+/// Names that toy.glsl or GLSL 4.60 uses otherwise.
+fn words(all: &[Token<'_>], has_main: bool) -> Vec<Edit> {
+    let own = |(at, token): (usize, &Token<'_>)| {
+        let is_name = || all.get(at + 1).is_none_or(|next| next.kind != TokenKind::Word);
+        match token.text {
+            "main" => has_main.then(|| "Main".to_owned()),
+            // A qualifier or a type comes before another word.
+            word if NAMES_OF_ES.contains(&word) => is_name().then(|| renamed(word)),
+            word => WEBGL.iter().find(|(name, _)| *name == word).map(|(_, own)| (*own).to_owned()),
+        }
+        .map(|own| (token.bytes.clone(), own))
+    };
+    all.iter().enumerate().filter_map(own).collect()
 }
 
-/// The line with names that toy.glsl gives to what Vulkan has not, or has otherwise. They are as long as those of the file.
-fn with_own_names(line: &str, has_main: bool) -> String {
-    let main = has_main.then_some(("main", "Main"));
-    OPENGL.iter().copied().chain(main).fold(line.to_owned(), |line, (from, to)| {
-        let mut line = line;
-        while let Some(range) = find_word(&line, from) {
-            line.replace_range(range, to);
+/// An argument for calls `F()` of macros `F(x)`: glslang counts none there, and C one that is empty.
+fn empty_arguments(all: &[Token<'_>]) -> Vec<Edit> {
+    let is = |at: usize, text: &str| all.get(at).is_some_and(|token| token.text == text);
+    let with_one_parameter = |at: usize| {
+        let touches = || all[at + 2].bytes.end == all[at + 3].bytes.start;
+        all[at].kind == TokenKind::Directive && is(at + 1, "define") && is(at + 3, "(") && is(at + 5, ")") && touches()
+    };
+    let macros: Vec<&str> = (0..all.len()).filter(|at| with_one_parameter(*at)).map(|at| all[at + 2].text).collect();
+    let is_empty = |at: &usize| macros.contains(&all[*at].text) && is(at + 1, "(") && is(at + 2, ")");
+    let edit = |at: usize| (all[at + 2].bytes.start..all[at + 2].bytes.start, NOTHING.to_owned());
+    if macros.is_empty() { Vec::new() } else { (0..all.len()).filter(is_empty).map(edit).collect() }
+}
+
+/// Declarations that the stage replaces, and default precisions, which WebGL needs and Vulkan ignores.
+fn replaced_declarations(text: &str, code: &[Token<'_>]) -> Vec<Edit> {
+    let mut edits = Vec::new();
+    for (at, _) in code.iter().enumerate().filter(|(_, token)| token.text == "precision") {
+        if let Some(end) = code[at..].iter().find(|token| token.text == ";") {
+            edits.push(blank(text, code[at].bytes.start..end.bytes.end));
         }
-        line
-    })
+    }
+    for declaration in declarations(code) {
+        let is_replaced = |name: &str| is_built_in(name) && !has_texture(text, name);
+        let mut names = declaration.names.iter().map(|name| name.text);
+        let is_gone = declaration.storage == Storage::Output || names.all(is_replaced);
+        if is_gone || declaration.is_moved() {
+            edits.push(blank(text, declaration.bytes.clone()));
+        } else if !declaration.is_opaque() {
+            // It becomes a variable.
+            edits.push(blank(text, declaration.qualifiers.clone()));
+        }
+        // Its slider is declared elsewhere.
+        let note = declaration.note(text).map(|note| note.start - "//@ui".len());
+        edits.extend(note.map(|start| (start..start + "//@".len(), "// ".to_owned())));
+    }
+    edits
+}
+
+/// The number of the channel that a sampler of glslViewer's names stands for: `u_tex0`.
+pub(super) fn channel_of(name: &str) -> Option<usize> {
+    let number = ["u_texture_", "u_texture", "u_tex"].iter().find_map(|prefix| name.strip_prefix(prefix))?;
+    number.parse().ok().filter(|number| *number < CHANNELS)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::channel::Sampler;
+    use super::super::declared::outputs;
     use super::*;
 
     #[test]
@@ -118,21 +238,23 @@ mod tests {
         let found = adapted(text, "image");
         assert_eq!(found.lines().count(), text.lines().count());
         assert_eq!(found.lines().last(), Some("void Main() { shown = vec4(toyFragCoord.xy, main_, 1.0); }"));
-        assert_eq!(found.lines().filter(|line| line.starts_with("//")).count(), 3);
-        assert_eq!(outputs(text).collect::<Vec<_>>(), ["shown"]);
+        let is_code = |line: &&str| !line.trim().is_empty() && !line.starts_with("//");
+        assert_eq!(found.lines().filter(is_code).count(), 1, "{found}");
+        assert_eq!(outputs(&code(text)), ["shown"]);
     }
 
     #[test]
     fn channels_name_files() {
         let text = "#iChannel0 \"file://./a.png\"\n#iChannel1 \"self\"\n  #iChannel2 \"blur.glsl\"\n\
                     #iChannel0::WrapMode \"Repeat\"\n#iChannel7 \"x.png\"\n#iChannel3 \"file://keyboard\"\n#iKeyboard\n";
+        let found: Vec<(usize, Channel)> = channels(text);
         let expected = [
-            (0, Channel::Image("a.png".into(), Sampler::Flat)),
+            (0, Channel::Image("a.png".into(), samplers(text)[0].clone())),
             (1, Channel::This),
             (2, Channel::Drawing("blur.glsl".into())),
             (3, Channel::Keyboard),
         ];
-        assert_eq!(channels(text), expected);
+        assert_eq!(found, expected);
         assert_eq!(named_files(text), ["a.png", "blur.glsl"]);
         let found = adapted(text, "image");
         assert!(found.starts_with("//@texture image_channel0 \"a.png\" linear mips flip\n"), "{found}");
@@ -149,5 +271,51 @@ mod tests {
         assert_eq!(lines[3], "//@texture image_channel1 \"noise.png\" linear mips");
         assert!(lines[1].starts_with("//#") && lines[2].starts_with("//#"), "{found}");
         assert_eq!(named_files(text), ["sky/day_*.png", "noise.png"]);
+    }
+
+    #[test]
+    fn channels_have_filters_and_wrap_modes() {
+        let options =
+            |more: &str| adapted(&format!("#iChannel0 \"a.png\"\n{more}"), "p").lines().next().unwrap().to_owned();
+        let line = |options: &str| format!("//@texture p_channel0 \"a.png\" linear {options}flip");
+        for (more, expected) in [
+            ("#iChannel0::WrapMode \"Clamp\"", "mips clamp "),
+            ("#iChannel0::WrapMode \"Mirror\"", "mips mirror "),
+            ("#iChannel0::MinFilter \"Linear\"", ""),
+            ("#iChannel0::MinFilter \"NearestMipMapLinear\"", "mips min=nearest "),
+            ("#iChannel0::MinFilter \"Nearest\"\n#iChannel0::MagFilter \"Nearest\"", "min=nearest mag=nearest "),
+        ] {
+            assert_eq!(options(more), line(expected), "{more}");
+        }
+    }
+
+    #[test]
+    fn names_of_es_stay_names() {
+        let text = "struct S { float sample; };\nfloat buffer(float filter, sampler2D sampler) { return filter; }\n\
+                    void f() { S s; s.sample = buffer(1.0, x) ; }\n";
+        let found = adapted(text, "image");
+        assert_eq!(found.len(), text.len());
+        for word in ["sample", "buffer", "filter", "sampler"] {
+            assert!(find_word(&found, word).is_none(), "{word}: {found}");
+        }
+        assert_eq!(with_names("'sampl_' : no such field"), "'sample' : no such field");
+        let qualifiers = "shared float x;\nprecise float y;\nbuffer B { float z; };\n";
+        assert_eq!(adapted(qualifiers, "image"), qualifiers);
+    }
+
+    #[test]
+    fn a_macro_may_be_called_with_an_empty_argument() {
+        let text = "#define F(x) 1.0 x\n#define G() 2.0\n#define H (1.0)\nfloat a = F() + F(+ 1.0) + G();\n";
+        assert_eq!(adapted(text, "image").lines().last(), Some("float a = F(toy_nothing) + F(+ 1.0) + G();"));
+    }
+
+    #[test]
+    fn uniforms_and_varyings_become_variables() {
+        let text = "uniform float speed; //@ui \"Speed\" 0..2 = 1\nlayout(location = 1) uniform highp vec2 mouse, other[2];\n\
+                    varying vec2 vUv;\nuniform float iTime;\nuniform sampler2D picture;\nuniform Sliders { float x; };\n";
+        let found = adapted(text, "image");
+        let lines: Vec<&str> = found.lines().map(str::trim).collect();
+        assert_eq!(lines[..4], ["// ui \"Speed\" 0..2 = 1", "highp vec2 mouse, other[2];", "", ""]);
+        assert_eq!(lines[4..], ["uniform sampler2D picture;", "uniform Sliders { float x; };"]);
     }
 }

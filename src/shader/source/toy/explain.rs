@@ -3,11 +3,12 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::adapt::{COMMON, has_key_functions, outputs};
-use super::channel::{Channel, channel, samplers};
+use super::adapt::{COMMON, has_key_functions, with_names};
+use super::channel::{Channel, Sampler, channel, samplers};
+use super::declared::outputs;
 use super::{STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::glsl::{find_word, lines};
+use crate::shader::glsl::{code, find_word, lines};
 
 /// Shadertoy's entry point.
 const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
@@ -31,7 +32,7 @@ impl Toy {
         let Ok(text) = self.text(&file) else { return diagnostic };
         let pass = self.drawings().into_iter().find(|drawing| drawing.file == file).map(|drawing| drawing.pass);
         let pass = pass.as_deref().unwrap_or(COMMON);
-        self.with_help(with_words(quoted(diagnostic, &text, pass), &text), &text)
+        self.with_help(without_body(with_words(quoted(diagnostic, &text, pass), &text), &text), &text)
     }
 
     fn with_help(&self, diagnostic: Diagnostic, text: &str) -> Diagnostic {
@@ -57,10 +58,10 @@ impl Toy {
 fn quoted(diagnostic: Diagnostic, text: &str, pass: &str) -> Diagnostic {
     let line = diagnostic.line.and_then(|line| text.lines().nth((line as usize).checked_sub(1)?));
     let Some(line) = line.filter(|line| diagnostic.excerpt.as_deref() != Some(*line)) else { return diagnostic };
-    let diagnostic = Diagnostic { excerpt: Some(line.to_owned()), ..diagnostic };
+    let diagnostic = marked(diagnostic, line);
     let Some((number, Channel::Image(file, _))) = channel(line) else { return diagnostic };
     // The compiled line is an annotation, whose words the author has not written.
-    let adapted = Channel::Image(file.clone(), super::channel::Sampler::Flat).with(samplers(text)[number]);
+    let adapted = Channel::Image(file.clone(), Sampler::default()).with(&samplers(text)[number]);
     let Channel::Image(adapted, _) = adapted else { return diagnostic };
     let message = diagnostic.message.replace(&super::adapt::texture_name(pass, number), &format!("iChannel{number}"));
     let message = message.replace(&format!(" and embedded:{adapted}"), "");
@@ -69,6 +70,18 @@ fn quoted(diagnostic: Diagnostic, text: &str, pass: &str) -> Diagnostic {
     match name_in(line) {
         Some(bytes) => diagnostic.under(bytes),
         None => diagnostic,
+    }
+}
+
+/// The diagnostic about a compiled line at the author's `line`, with the caret under the same word. What was inserted moves it.
+fn marked(diagnostic: Diagnostic, line: &str) -> Diagnostic {
+    let compiled = diagnostic.excerpt.clone().unwrap_or_default();
+    let at = Diagnostic { excerpt: Some(line.to_owned()), ..diagnostic };
+    let Some(column) = at.column.filter(|_| compiled.chars().count() != line.chars().count()) else { return at };
+    let word: String = compiled.chars().skip(column as usize - 1).take(at.length as usize).collect();
+    match find_word(line, &with_names(&word)) {
+        Some(bytes) => at.under(bytes),
+        None => Diagnostic { column: None, length: 0, ..at },
     }
 }
 
@@ -81,9 +94,9 @@ fn name_in(line: &str) -> Option<Range<usize>> {
 
 /// The message with the names that the author has written.
 fn with_words(diagnostic: Diagnostic, text: &str) -> Diagnostic {
-    let color = outputs(text).next().unwrap_or("gl_FragColor");
-    let message = diagnostic.message.replace("toyFragColor", color).replace("toyFragCoord", "gl_FragCoord");
-    Diagnostic { message: message.replace("'Main'", "'main'"), ..diagnostic }
+    let color = outputs(&code(text)).first().copied().unwrap_or("gl_FragColor");
+    let message = with_names(&diagnostic.message.replace("toyFragColor", color));
+    Diagnostic { message, ..diagnostic }
 }
 
 /// The linker's message about an entry point with other arguments, at the line of the entry point.

@@ -14,7 +14,9 @@
 mod adapt;
 mod beside;
 mod channel;
+mod declared;
 mod explain;
+mod initial;
 mod noise;
 mod problems;
 
@@ -26,8 +28,10 @@ use super::pattern::{FACES, Pattern};
 use super::read::{check_text, names_in, read_anywhere, read_bytes, read_file};
 use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
-use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
-use channel::{Channel, Sampler, channels};
+use crate::shader::glsl::{code, includes};
+use adapt::{COMMON, adapted, channel_of, has_key_functions, is_shadertoy, uses};
+use channel::{Channel, Kind, channels};
+use declared::{BEFORE, Variable, assignments, globals, narrowed, outputs, sliders, variables};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -37,6 +41,10 @@ const STAGES: &str = "passes";
 const NOISE: &str = "opened/noise.png";
 /// The pass that draws the state of the keys, for files that read it.
 const KEYBOARD: &str = "toy_keyboard";
+/// The library with the sliders for uniforms.
+const SLIDERS: &str = "toy/sliders.glsl";
+/// The pass that shows the image of a file that reads its own image of the previous frame.
+const SHOWN: &str = "toy_shown";
 /// Shadertoy has four buffers.
 const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buffer_d"];
 
@@ -94,6 +102,9 @@ impl Toy {
             let pass = self.drawings().into_iter().find(|drawing| drawing.file == relative).map(|drawing| drawing.pass);
             return Ok(adapted(&text, pass.as_deref().unwrap_or(COMMON)));
         }
+        if path.as_str() == SLIDERS {
+            return Ok(self.sliders(&self.drawings()));
+        }
         if below(path.as_str(), STAGES).is_some() {
             let drawings = self.drawings();
             if let Some(index) = drawings.iter().position(|drawing| stage_path(&drawing.pass) == *path) {
@@ -102,6 +113,10 @@ impl Toy {
             if *path == stage_path(KEYBOARD) && self.reads_keyboard(&drawings) {
                 let annotation = format!("//@pass {KEYBOARD} \"Keyboard\" size=256x3 format=rgba8");
                 return Ok(format!("{annotation}\n#version 460\n#include \"toy/keyboard.glsl\"\n"));
+            }
+            if *path == stage_path(SHOWN) && keeps_image(&drawings) {
+                let annotation = format!("//@pass {SHOWN} \"{}\" to=picture after=tonemap", self.name());
+                return Ok(format!("{annotation}\n#version 460\n#include \"toy/shown.glsl\"\n"));
             }
         }
         let bytes = embedded::read(None, path).ok_or(SourceError::Missing)?;
@@ -129,7 +144,8 @@ impl Toy {
     pub fn list(&self) -> Vec<TreePath> {
         let drawings = self.drawings();
         let keyboard = self.reads_keyboard(&drawings).then(|| stage_path(KEYBOARD));
-        let stages = drawings.iter().map(|drawing| stage_path(&drawing.pass)).chain(keyboard);
+        let shown = keeps_image(&drawings).then(|| stage_path(SHOWN));
+        let stages = drawings.iter().map(|drawing| stage_path(&drawing.pass)).chain(keyboard).chain(shown);
         let mut out: Vec<TreePath> = embedded::list(None).into_iter().chain(stages).collect();
         out.sort();
         out.dedup();
@@ -151,14 +167,19 @@ impl Toy {
             let path = self.folder().join(&file);
             let shown = path.display().to_string();
             match self.text(&file) {
-                Ok(_) if !is_shadertoy(&text) && !uses(&text, "main") => {
+                Ok(_) if !uses(&text, "mainImage") && !uses(&text, "main") => {
                     let message = "expected `void mainImage(out vec4 fragColor, in vec2 fragCoord)` or `void main()`";
-                    out.push(Diagnostic::error(shown.clone(), message));
+                    let first = text.lines().next().unwrap_or_default();
+                    out.push(Diagnostic::error(shown.clone(), message).on_line(1, Some(first)).under(0..first.len()));
                 }
                 // The line that names a file reports that it is missing.
                 Err(SourceError::Missing) if file != self.name() => {}
                 Ok(_) => {}
-                Err(error) => out.push(Diagnostic::error(shown.clone(), format!("{shown} {error}"))),
+                Err(error) => {
+                    let line = error.line();
+                    let error = Diagnostic::error(shown.clone(), format!("{shown} {error}"));
+                    out.push(line.map_or(error.clone(), |line| error.on_line(line, None)));
+                }
             }
             out.extend(problems::problems(&shown, &text, self.folder()));
         }
@@ -186,8 +207,11 @@ impl Toy {
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
         let stages = self.drawings().into_iter().map(|drawing| drawing.pass).chain(BUFFERS.map(str::to_owned));
-        let stages = stages.chain([KEYBOARD.to_owned()]);
-        std::iter::once(opened_path(&relative)).chain(stages.map(|pass| stage_path(&pass))).collect()
+        let stages = stages.chain([KEYBOARD.to_owned(), SHOWN.to_owned()]);
+        [opened_path(&relative), TreePath::from(SLIDERS)]
+            .into_iter()
+            .chain(stages.map(|pass| stage_path(&pass)))
+            .collect()
     }
 
     /// The files that a name with a `*` stands for: those that exist, and the faces of a cube map, which may not exist yet.
@@ -263,33 +287,86 @@ impl Toy {
         drawings.iter().map(|drawing| &drawing.text).chain(&common).any(|text| adapt::reads_keyboard(text))
     }
 
+    /// The block with the sliders of all files, which share it.
+    fn sliders(&self, drawings: &[Drawing]) -> String {
+        let common = self.common();
+        let own = drawings.iter().map(|drawing| (drawing.file.as_str(), drawing.text.as_str()));
+        let common = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
+        sliders(&self.variables(common.chain(own)))
+    }
+
+    /// The variables of files and of what they include, each name once.
+    fn variables<'a>(&self, files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Vec<Variable> {
+        let mut open: Vec<(TreePath, String)> =
+            files.into_iter().map(|(file, text)| (TreePath::from(file), text.to_owned())).collect();
+        let (mut out, mut seen): (Vec<Variable>, BTreeSet<TreePath>) = Default::default();
+        while let Some((path, text)) = open.pop() {
+            for variable in variables(&text) {
+                if out.iter().all(|known| known.name != variable.name) {
+                    out.push(variable);
+                }
+            }
+            for name in includes(&text).map(|include| include.name) {
+                let places = path.sibling(name).into_iter().chain(TreePath::parse(name));
+                let found = places.filter_map(|place| Some((self.text(place.as_str()).ok()?, place)));
+                let found = { found }.next().filter(|(_, place)| seen.insert(place.clone()));
+                open.extend(found.map(|(text, place)| (place, text)));
+            }
+        }
+        out
+    }
+
     /// The text of a stage.
     fn stage(&self, drawings: &[Drawing], index: usize) -> String {
         let Drawing { pass, file, text } = &drawings[index];
-        let is_image = index + 1 == drawings.len();
-        let goes = if is_image { "to=picture after=tonemap" } else { "keep format=rgba32f" };
-        let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n");
-        if !is_image {
+        let is_picture = index + 1 == drawings.len() && !keeps_image(drawings);
+        let goes = if is_picture { "to=picture after=tonemap" } else { "keep format=rgba32f" };
+        let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n#define TOY_FILE\n");
+        if !is_picture {
             out += "#define TOY_BUFFER\n";
         }
         if !is_shadertoy(text) {
             out += "#define TOY_MAIN\n";
         }
-        out += "#include \"toy.glsl\"\n";
         let common = self.common();
         let shared = common.as_ref().map_or("", |(_, text)| text);
+        let files = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
+        let own = self.variables(files.chain([(file.as_str(), text.as_str())]));
+        if !own.is_empty() {
+            out += "#define TOY_VARIABLES\n";
+        }
+        out += "#include \"toy.glsl\"\n";
+        if !self.sliders(drawings).is_empty() {
+            out += &format!("#include \"{SLIDERS}\"\n");
+        }
+        out += &globals(&own);
+        out += &narrowed(text);
         out += &declarations(drawings, index, shared);
         if has_key_functions(text) || has_key_functions(shared) {
             out += "#include \"toy/keys.glsl\"\n";
         }
-        for name in adapt::outputs(text) {
+        for name in outputs(&code(text)) {
             out += &format!("#define {name} toyFragColor\n");
         }
         for file in common.iter().map(|(file, _)| file).chain([file]) {
             out += &format!("#include \"{OPENED}/{file}\"\n");
         }
-        out
+        if own.is_empty() { out } else { out + &assignments(&own) }
     }
+}
+
+/// Whether the last drawing's image of the previous frame is read, so that it cannot be drawn to the picture itself.
+fn keeps_image(drawings: &[Drawing]) -> bool {
+    let Some(image) = drawings.last() else { return false };
+    let reads = |drawing: &Drawing| {
+        let is_own = drawing.file == image.file;
+        channels(&drawing.text).iter().any(|(_, channel)| match channel {
+            Channel::This => is_own,
+            Channel::Drawing(file) => *file == image.file,
+            Channel::Image(..) | Channel::Keyboard => false,
+        })
+    };
+    drawings.iter().any(reads) || BEFORE.iter().any(|name| uses(&image.text, name))
 }
 
 /// Declares the channels that a drawing, or the text that all files share, uses.
@@ -299,11 +376,12 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
     let (mut lines, mut sizes) = (BTreeSet::new(), Vec::new());
     for (number, buffer) in BUFFERS.iter().enumerate() {
         let name = format!("iChannel{number}");
-        if !uses(text, &name) && !uses(shared, &name) {
+        let aliases = aliases(text, number);
+        if aliases.is_empty() && !uses(text, &name) && !uses(shared, &name) {
             sizes.push("vec3(0.0)".to_owned());
             continue;
         }
-        let mut kind = Sampler::Flat;
+        let mut kind = Kind::Flat;
         // A channel reads what was drawn earlier in this frame, or otherwise the previous frame.
         let of_frame = |place: usize| match place < index {
             true => drawings[place].pass.clone(),
@@ -314,7 +392,7 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
             Some(Channel::This) => Some(format!("before_{pass}")),
             Some(Channel::Drawing(file)) => drawn(&|drawing| drawing.file == *file),
             Some(Channel::Image(_, sampler)) => {
-                kind = *sampler;
+                kind = sampler.kind;
                 Some(adapt::texture_name(pass, number))
             }
             Some(Channel::Keyboard) => Some(KEYBOARD.to_owned()),
@@ -322,20 +400,36 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
         };
         let sampler = sampler.unwrap_or_else(|| {
             lines.insert(format!("//@texture {pass}_noise \"{NOISE}\" linear mips\n"));
+            lines.insert("#include \"toy/kinds.glsl\"\n".to_owned());
             format!("{pass}_noise")
         });
         sizes.push(match kind {
-            Sampler::Volume => format!("vec3(textureSize({name}, 0))"),
-            Sampler::Flat | Sampler::Cube => format!("vec3(textureSize({name}, 0), 1.0)"),
+            Kind::Volume => format!("vec3(textureSize({name}, 0))"),
+            Kind::Flat | Kind::Cube => format!("vec3(textureSize({name}, 0), 1.0)"),
         });
         lines.insert(format!("uniform {} {sampler};\n", kind.glsl()));
-        lines.insert(format!("#define {name} {sampler}\n"));
+        lines.extend(aliases.iter().chain([&name]).map(|name| format!("#define {name} {sampler}\n")));
+    }
+    for name in BEFORE.iter().filter(|name| uses(text, name)) {
+        lines.insert(format!("uniform sampler2D before_{pass};\n#define {name} before_{pass}\n"));
     }
     if has_key_functions(text) || has_key_functions(shared) {
         lines.insert(format!("uniform sampler2D {KEYBOARD};\n"));
     }
     lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
     lines.into_iter().collect()
+}
+
+/// The samplers and sizes of glslViewer's names that a text declares for a channel: `u_tex0`, `u_tex0Resolution`.
+fn aliases(text: &str, number: usize) -> Vec<String> {
+    let code = code(text);
+    let declared = declared::declarations(&code).into_iter().flat_map(|declaration| declaration.names);
+    let of_channel = declared.map(|name| name.text.strip_suffix("Resolution").unwrap_or(name.text));
+    let mut names: Vec<String> =
+        of_channel.filter(|name| channel_of(name) == Some(number)).map(str::to_owned).collect();
+    names.retain(|name| !declared::has_texture(text, name));
+    names.dedup();
+    names
 }
 
 /// The name of the pass of a file other than Shadertoy's buffers.

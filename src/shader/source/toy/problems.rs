@@ -7,15 +7,13 @@ use std::path::Path;
 
 use super::adapt::KEY_FUNCTIONS;
 use super::beside::{is_there, not_found};
-use super::channel::{CHANNELS, Channel, Sampler, channel, channels, samplers};
+use super::channel::{CHANNELS, Channel, Kind, OPTIONS, Sampler, channel, channels, samplers};
 use crate::message::{did_you_mean, either};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{Line, is_word, lines};
 use crate::shader::source::TreePath;
 
 const CHANNEL: &str = "#iChannel";
-/// The options of a channel in editors' Shadertoy extensions. All but `Type` change nothing.
-const OPTIONS: [&str; 4] = ["Type", "WrapMode", "MinFilter", "MagFilter"];
 /// The directives of GLSL that begin with the same letter.
 const DIRECTIVES: [&str; 4] = ["#if", "#ifdef", "#ifndef", "#include"];
 
@@ -83,24 +81,23 @@ impl Known<'_> {
         let begin = start + raw[start..].len() - raw[start..].trim_start_matches(':').len();
         let end = begin + raw[begin..].find(|c| !is_word(c)).unwrap_or(raw[begin..].len());
         let option = &raw[begin..end];
-        if !OPTIONS.contains(&option) || begin - start != 2 {
-            let hint = did_you_mean(option, OPTIONS);
-            let message = format!("expected `::` and {}, found `{}`.{hint}", either(&OPTIONS), &raw[start..end]);
+        let names = OPTIONS.map(|(name, _)| name);
+        let Some((_, values)) = OPTIONS.iter().find(|(name, _)| *name == option).filter(|_| begin - start == 2) else {
+            let hint = did_you_mean(option, names);
+            let message = format!("expected `::` and {}, found `{}`.{hint}", either(&names), &raw[start..end]);
             return Err((start..end, message, String::new()));
-        }
-        if option != "Type" {
-            return Ok(());
-        }
-        let names = Sampler::NAMES.map(|(name, _)| name);
-        let either = either(&names.map(|name| format!("\"{name}\"")));
-        let bytes = quoted(raw, end, "::Type", &format!("the types are {either}"))?;
-        let name = &raw[bytes.clone()];
-        let Some((name, sampler)) = Sampler::NAMES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) else {
-            let message = format!("expected {either}, found \"{name}\".{}", did_you_mean(name, names));
-            return Err((visible(&bytes), message, String::new()));
         };
+        let quotes: Vec<String> = values.iter().map(|name| format!("\"{name}\"")).collect();
+        let either = either(&quotes);
+        let bytes = quoted(raw, end, &format!("::{option}"), &format!("it is {either}"))?;
+        let name = &raw[bytes.clone()];
+        if !values.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            let hint = did_you_mean(name, values.iter().copied());
+            return Err((visible(&bytes), format!("expected {either}, found \"{name}\".{hint}"), String::new()));
+        }
         let is_image = |(other, channel): &(usize, Channel)| *other == number && matches!(channel, Channel::Image(..));
-        if *sampler != Sampler::Flat && !self.channels.iter().any(is_image) {
+        let is_several = option == "Type" && self.samplers[number].kind != Kind::Flat;
+        if is_several && !self.channels.iter().any(is_image) {
             let message = format!("iChannel{number} names no image file, so it cannot be a {name}");
             let help = format!("name the files on a line of its own: `#iChannel{number} \"sky_{{}}.png\"`");
             return Err((bytes, message, help));
@@ -135,7 +132,7 @@ impl Known<'_> {
             let help = "the `{}` stands for the faces or slices; the name of a folder is written out";
             return refuse(format!("\"{name}\": expected one `{{}}`, in the name of the file"), help);
         }
-        if several == 1 && self.samplers[number] == Sampler::Flat {
+        if several == 1 && self.samplers[number].kind == Kind::Flat {
             let message = "a `{}` stands for several files, but nothing says which kind of image they make";
             let help = format!(
                 "add a line `#iChannel{number}::Type \"CubeMap\"` for six faces, or `#iChannel{number}::Type \"Volume\"` for slices"

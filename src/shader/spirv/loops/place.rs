@@ -2,6 +2,7 @@
 
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::rounds::{self, Loop};
 use crate::shader::spirv::module::{Id, Module};
 use crate::shader::spirv::op::Op;
 use crate::shader::spirv::reach::file_of;
@@ -25,6 +26,8 @@ pub struct LoopPlace {
     pub number: Option<usize>,
     /// glslang's name of its function, which has the types of the parameters: `f(vf3;`. Empty if it is unknown.
     pub function: String,
+    /// Whether the loop ends after more rounds than it may take.
+    pub is_finite: bool,
 }
 
 impl LoopPlace {
@@ -33,13 +36,16 @@ impl LoopPlace {
         let seed = seed(words);
         if overrun.one == 0 {
             let is_module = overrun.together == name(seed, 0);
-            return is_module.then(|| Self { number: None, function: String::new() });
+            return is_module.then(|| Self { number: None, function: String::new(), is_finite: false });
         }
         let module = Module::parse(words)?;
         module.functions.iter().find_map(|function| {
             let mut headers = function.blocks.iter().filter(|block| block.structure(&module).1.is_some());
             let number = headers.position(|block| overrun.one == name(seed, block.label))?;
-            Some(Self { number: Some(number), function: module.name(function.id).unwrap_or_default() })
+            let found = rounds::find(&module, function);
+            let is_it = |of: &&Loop| overrun.one == name(seed, function.blocks[of.header].label);
+            let is_finite = found.iter().find(is_it).is_some_and(|of| of.is_finite);
+            Some(Self { number: Some(number), function: module.name(function.id).unwrap_or_default(), is_finite })
         })
     }
 

@@ -28,6 +28,8 @@ pub(super) struct Loop {
     pub(super) parent: Option<usize>,
     /// The largest number of rounds; `None` if it is unknown or above [`MOST`].
     pub(super) rounds: Option<u64>,
+    /// Whether the loop ends, though it may take more than [`MOST`] rounds.
+    pub(super) is_finite: bool,
 }
 
 /// Finds the loops of a function of a module.
@@ -49,7 +51,7 @@ pub(super) fn find(module: &Module, function: &Function) -> Vec<Loop> {
         let mut outside =
             (0..blocks.len()).filter(|from| !members.contains(from) && next(*from).any(|to| to == header));
         let before = outside.next().filter(|_| outside.next().is_none());
-        loops.push((Loop { header, merge, before, members, parent: None, rounds: None }, continues));
+        loops.push((Loop { header, merge, before, members, parent: None, rounds: None, is_finite: false }, continues));
     }
     for index in 0..loops.len() {
         let header = loops[index].0.header;
@@ -68,7 +70,11 @@ pub(super) fn find(module: &Module, function: &Function) -> Vec<Loop> {
             values.rounds(&Rounds { of, continues: *continues, inner, next: &next })
         })
         .collect();
-    loops.into_iter().zip(rounds).map(|((found, _), rounds)| Loop { rounds, ..found }).collect()
+    let known = |((found, _), rounds): ((Loop, usize), Option<u64>)| {
+        let (is_finite, rounds) = (rounds.is_some(), rounds.filter(|rounds| *rounds <= MOST));
+        Loop { rounds, is_finite, ..found }
+    };
+    loops.into_iter().zip(rounds).map(known).collect()
 }
 
 /// The ways through one round of a loop.
@@ -110,6 +116,8 @@ struct Values<'a> {
     made_by: HashMap<Id, (usize, Op, &'a [u32])>,
     /// Variables that are only loaded and stored whole.
     stores: HashMap<Id, Vec<Store>>,
+    /// Their initial values.
+    initial: HashMap<Id, Id>,
 }
 
 impl<'a> Values<'a> {
@@ -118,7 +126,8 @@ impl<'a> Values<'a> {
             let blocks = function.blocks.iter().enumerate();
             blocks.flat_map(|(block, b)| b.body.iter().enumerate().map(move |(at, i)| (block, at, i.op, &module[*i])))
         };
-        let is_local = |(.., op, i): &(usize, usize, Op, &[u32])| *op == Op::Variable && i[3..] == [storage::FUNCTION];
+        let is_local = |(.., op, i): &(usize, usize, Op, &[u32])| *op == Op::Variable && i[3] == storage::FUNCTION;
+        let initial = all().filter(is_local).filter_map(|(.., i)| Some((i[2], *i.get(4)?))).collect();
         let mut stores: HashMap<Id, Vec<Store>> = all().filter(is_local).map(|(.., i)| (i[2], Vec::new())).collect();
         let mut made_by = HashMap::new();
         for (block, at, op, i) in all() {
@@ -136,7 +145,7 @@ impl<'a> Values<'a> {
                 made_by.insert(i[2], (block, op, i));
             }
         }
-        Self { module, function, made_by, stores }
+        Self { module, function, made_by, stores, initial }
     }
 
     /// The largest number of rounds of a loop.
@@ -164,7 +173,7 @@ impl<'a> Values<'a> {
             self.variables(condition, of, DEPTH, &mut variables);
             variables.into_iter().filter_map(|v| self.counted(v, condition, on, rounds)).min()
         });
-        limits.min().filter(|rounds| *rounds <= MOST)
+        limits.min()
     }
 
     /// Adds the conditions that hold if `condition` does: each part of `a && b`.
@@ -218,6 +227,9 @@ impl<'a> Values<'a> {
             let last = stores.iter().filter(|store| store.block == before).max_by_key(|store| store.at)?;
             self.module.number(last.value)
         });
+        // A loop that runs once and alone changes the variable begins with the initial value.
+        let is_alone = || of.parent.is_none() && stores.len() == 1;
+        let first = first.or_else(|| self.module.number(*self.initial.get(&variable).filter(|_| is_alone())?));
         let limited = self.limited(first, variable, condition, step.value, of).filter(|_| on);
         limited.or_else(|| self.run(first?, variable, condition, on, step.value, of))
     }

@@ -4,6 +4,7 @@ use crate::shader::compile::Compiler;
 use crate::shader::source::Source;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::specialize;
+use crate::shader::spirv::initial::initialize;
 use crate::shader::spirv::module::Module;
 use crate::shader::spirv::module::{Block, Id, Instruction};
 use crate::shader::spirv::op::Op;
@@ -27,6 +28,8 @@ fn module(functions: &str, main: &str) -> Vec<u32> {
 fn counting(words: &[u32]) -> usize {
     let specialized = specialize(words, &[]);
     let mut module = Module::parse(&specialized).expect("a module");
+    initialize(&mut module);
+    let specialized = module.write();
     if !bound(&mut module, words, &BOUNDS) {
         assert_eq!(module.write(), specialized, "a module without such loops stays as it is");
         return 0;
@@ -56,6 +59,7 @@ fn a_loop_with_a_constant_end_is_left_alone() {
         "for (uint n = 512u; n > 0u; n >>= 1) color += x;",
         "for (int i = 0; i < 8; ++i) for (int j = 0; j < 8; ++j) color += x;",
         "for (int i = 0; i < 8 && color.x < 2.0; ++i) color += x;",
+        "for (float i; i++ < 8.0;) color += x;",
     ] {
         assert_counting(main, 0);
     }
@@ -87,6 +91,8 @@ fn every_other_loop_counts() {
         ("for (int i = 0; i < 8 || color.x < 2.0; ++i) color += x;", 1),
         ("for (float t = 0.0; t < 1.0; t += 1e-9) color += x;", 1),
         ("for (int i = int(given.x); i < 8; ++i) color += x;", 1),
+        ("int i; if (color.x > 2.0) i = int(given.x); for (; i < 8; ++i) color += x;", 1),
+        ("int j; while (color.x < 2.0) for (; j < 8; ++j) color += x;", 2),
         // The number of rounds is known and too large.
         ("for (int i = 0; i < 1000000; ++i) color += x;", 1),
         ("for (int i = 0; i < 1000; ++i) for (int j = 0; j < 1000; ++j) color += x;", 2),
@@ -113,6 +119,20 @@ fn loops_in_functions_count_with_those_around_the_call() {
 }
 
 #[test]
+fn a_loop_of_too_many_rounds_is_told_from_one_without_an_end() {
+    for (main, is_finite) in
+        [("for (int i = 0; i < 1000000; ++i) color += x;", true), ("while (color.x < 2.0) color.x *= 0.5;", false)]
+    {
+        let words = module("", main);
+        let all = Module::parse(&words).unwrap();
+        let blocks = all.functions.iter().flat_map(|function| &function.blocks);
+        let label = blocks.into_iter().find(|block| block.structure(&all).1.is_some()).unwrap().label;
+        let place = LoopPlace::find(Overrun { one: name(seed(&words), label), together: 0 }, &words).unwrap();
+        assert_eq!(place.is_finite, is_finite, "{main}");
+    }
+}
+
+#[test]
 fn an_overrun_finds_its_loop() {
     let function = "vec4 f() { vec4 y = x;\n while (y.x < 2.0)\n  y *= 0.5; return y; }";
     let words = module(function, "for (int i = 0; i < 8; ++i) color += x;\ncolor = f();");
@@ -129,7 +149,7 @@ fn an_overrun_finds_its_loop() {
     let functions: Vec<(Option<usize>, &str)> = places.iter().map(|p| (p.number, p.function.as_str())).collect();
     assert_eq!(functions, [(Some(0), "main"), (Some(0), "f(")]);
     let together = Overrun { one: 0, together: name(seed, 0) };
-    assert_eq!(LoopPlace::find(together, &words), Some(LoopPlace { number: None, function: String::new() }));
+    assert_eq!(LoopPlace::find(together, &words), Some(LoopPlace { number: None, function: String::new(), is_finite: false }));
     assert_eq!(LoopPlace::find(Overrun { one: 1, together: 0 }, &words), None);
 }
 

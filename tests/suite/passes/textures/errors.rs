@@ -124,7 +124,7 @@ fn errors_have_their_line_and_the_picture_stays() {
         (
             "//@texture t \"a.png\" cube",
             "vec4(1.0)",
-            "4:22: error: expected srgb, linear, repeat, clamp, mips, flip or layers=",
+            "4:22: error: expected srgb, linear, repeat, clamp, mirror, min=, mag=, mips, flip or layers=",
         ),
     ] {
         let text = columns(uniforms, &[value.to_owned()]);

@@ -1,0 +1,219 @@
+//! Toys written for a browser, with what WebGL allows and Vulkan's GLSL does not: `specula FILE.glsl`.
+
+use std::fs;
+use std::path::Path;
+
+use specula::headless::Headless;
+use specula::settings::Settings;
+use specula::shader::Source;
+
+use crate::support::process::{Finished, Running, run, specula};
+use crate::support::{compiler, gpu};
+
+/// Writes the files and renders the first of them, 32 x 16 pixels.
+fn render(folder: &Path, files: &[(&str, &str)], options: &[&str]) -> Finished {
+    for (name, text) in files {
+        fs::create_dir_all(folder.join(name).parent().unwrap()).unwrap();
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let common = ["render", files[0].0, "--size", "32x16", "--validate", "--out", "shot.png"];
+    run(folder, &[&common, options].concat())
+}
+
+fn pixel(folder: &Path, x: u32, y: u32) -> [u8; 4] {
+    image::open(folder.join("shot.png")).unwrap().to_rgba8().get_pixel(x, y).0
+}
+
+const GREEN: [u8; 4] = [0, 255, 0, 255];
+
+/// Fails unless the first file draws green.
+#[track_caller]
+fn is_green(files: &[(&str, &str)]) {
+    let folder = tempfile::tempdir().unwrap();
+    render(folder.path(), files, &[]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 9, 9), GREEN, "{files:#?}");
+}
+
+#[test]
+fn names_and_macros_of_webgl_work() {
+    is_green(&[(
+        "toy.glsl",
+        "#version 300 es\n#extension GL_OES_standard_derivatives : enable\n#ifdef GL_ES\nprecision highp float;\n#define ONE(x) 1.0 x\n\
+         #else\n#error not WebGL\n#endif\nstruct S { float sample; };\nfloat fma(float a, float b, float c) { return a * b + c; }\n\
+         float min3(float a, float b, float c) { return min(a, min(b, c)); }\n\
+         lowp float buffer(mediump float filter) { return filter; }\n\
+         void mainImage(out highp vec4 c, in mediump vec2 p) {\n    S s = S(fma(1.0, 0.5, 0.5));\n    \
+         c = vec4(iGlobalTime, min3(s.sample, ONE(), buffer(2.0)), 0.0, 1.0) + 0.0 * texture2D(iChannel0, p);\n}\n",
+    )]);
+    is_green(&[
+        (
+            "a.frag",
+            "#include \"lib/a.glsl\"\n#include \"lib/a.glsl\"\nvoid main() { gl_FragColor = vec4(0.0, one(), 0.0, 1.0); }\n",
+        ),
+        ("lib/a.glsl", "#pragma once\nfloat one() { return 1.0; }\n"),
+    ]);
+    // A channel without a file may be read as a cube map.
+    is_green(&[(
+        "toy.glsl",
+        "void mainImage(out vec4 c, in vec2 p) { c = vec4(0, 1, 0, 1) + 0.0 * texture(iChannel1, vec3(p, 1.0)); }\n",
+    )]);
+}
+
+#[test]
+fn declared_uniforms_have_their_values() {
+    is_green(&[(
+        "toy.glsl",
+        "uniform vec3 iResolution;\nuniform float iTime, time;\nuniform vec2 mouse, resolution;\nuniform sampler2D iChannel0;\n\
+         out vec4 fragColor;\nvoid mainImage(out vec4 c, in vec2 p) {\n    \
+         c = vec4(time, resolution == iResolution.xy && mouse == vec2(0.0), iTime, 1.0); }\n\
+         void main() { mainImage(fragColor, gl_FragCoord.xy); }\n",
+    )]);
+    is_green(&[(
+        "toy.frag",
+        "uniform sampler2D u_tex0;\nuniform vec2 u_tex0Resolution;\nvarying vec2 vUv;\nuniform mat4 camera;\n\
+         void main() { vec4 noise = texture2D(u_tex0, vUv);\n    \
+         gl_FragColor = vec4(camera[0][0], u_tex0Resolution == vec2(256.0) && noise != vec4(0.0), 0.0, 1.0); }\n",
+    )]);
+    let folder = tempfile::tempdir().unwrap();
+    let image =
+        "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0) + vec4(0, gain, 0, 0); }\n";
+    let files = [
+        ("toy.glsl", image),
+        ("common.glsl", "uniform float gain;\nuniform vec3 tint; //@ui \"Tint\" color = 0 0 1\n"),
+        ("buffer_a.glsl", "void mainImage(out vec4 c, in vec2 p) { c = vec4(tint, 1.0) * step(gain, 0.5); }\n"),
+    ];
+    render(folder.path(), &files, &[]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 3, 3), [0, 0, 255, 255]);
+    render(folder.path(), &files, &["--set", "gain=1"]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 3, 3), GREEN);
+}
+
+#[test]
+fn variables_that_are_not_set_start_at_0() {
+    is_green(&[(
+        "toy.glsl",
+        "float unset;\nvoid add(out float a, inout float b) { a += 0.5; b += a; }\nvoid mainImage(out vec4 O, vec2 U) {\n    \
+         float i, d, sum; vec3 p; vec2 q[3];\n    for (O *= i; i++ < 4.0; sum += d) { float own; own += 0.125; d = own; \
+         for (float j; j++ < 2.0;) O.b += 0.0; }\n    float a; add(a, sum); add(a, unset);\n    \
+         O.r += p.x + q[int(U.x) % 3].y; O.g += sum == 1.0 && unset == 0.5 ? 1.0 : 0.0; O.a = 1.0;\n}\n",
+    )]);
+}
+
+#[test]
+fn options_of_channels_act() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut image = image::RgbImage::new(2, 1);
+    image.put_pixel(1, 0, image::Rgb([255; 3]));
+    image.save(folder.path().join("q.png")).unwrap();
+    let shown = |options: &str| {
+        let text = format!(
+            "#iChannel0 \"q.png\"\n{options}void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, vec2(p.x / 16.0, 0.5)); }}\n"
+        );
+        render(folder.path(), &[("toy.glsl", &text)], &[]).expect(0, &[]);
+        [6, 9, 22, 30].map(|x| pixel(folder.path(), x, 3)[0])
+    };
+    let blended = shown("");
+    assert!(blended[0] > 20 && blended[0] < 235, "{blended:?}");
+    let nearest = "#iChannel0::MinFilter \"Nearest\"\n#iChannel0::MagFilter \"Nearest\"\n";
+    assert_eq!(shown(nearest), [0, 255, 0, 255]);
+    assert_eq!(shown(&format!("{nearest}#iChannel0::WrapMode \"Clamp\"\n")), [0, 255, 255, 255]);
+    assert_eq!(shown(&format!("{nearest}#iChannel0::WrapMode \"Mirror\"\n")), [0, 255, 255, 0]);
+}
+
+/// The file adds an eighth in each frame, and the picture has the first row of GLSL below.
+#[test]
+fn a_file_reads_its_own_image() {
+    let body = "void mainImage(out vec4 c, in vec2 p) { vec4 old = texelFetch(SELF, ivec2(p), 0);\n\
+        c = p.y < 8.0 ? vec4(old.r + 0.125) : vec4(0.0); }\n";
+    let folder = tempfile::tempdir().unwrap();
+    for head in
+        ["#iChannel0 \"self\"\n#define SELF iChannel0\n", "uniform sampler2D backbuffer;\n#define SELF backbuffer\n"]
+    {
+        render(folder.path(), &[("toy.glsl", &format!("{head}{body}"))], &["--frames", "4"]).expect(0, &[]);
+        assert_eq!([pixel(folder.path(), 5, 14), pixel(folder.path(), 5, 1)], [[128, 128, 128, 255], [0, 0, 0, 255]]);
+    }
+}
+
+#[test]
+fn a_probe_of_a_toy_gives_its_colors() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = "void mainImage(out vec4 c, in vec2 p) { c = 0.5 * texelFetch(iChannel0, ivec2(p), 0); }\n";
+    let buffer = "void mainImage(out vec4 c, in vec2 p) { c = vec4(2.0, p.y, -1.0, 1.0); }\n";
+    render(folder.path(), &[("toy.glsl", image), ("buffer_a.glsl", buffer)], &[]).expect(0, &[]);
+    let probe = ["probe", "--shaders", "toy.glsl", "--size", "32x16", "--at", "3,14", "--json"];
+    let found = run(folder.path(), &probe);
+    let found = found.expect(0, &[]).json();
+    assert_eq!(found["hit"], false, "{found}");
+    assert_eq!(found["modes"]["pass:buffer_a"].as_array().unwrap()[..3], [2.0, 1.5, -1.0], "{found}");
+    assert_eq!(found["modes"]["pass:image"].as_array().unwrap()[..2], [1.0, 0.75_f64], "{found}");
+    let text = run(folder.path(), &probe[..7]);
+    assert!(text.stdout.contains("pass:image") && !text.stdout.contains("does not cover"), "{text:#?}");
+}
+
+#[test]
+fn a_loop_of_too_many_rounds_is_a_warning_and_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    float a = 0.0;\n    if (int(p.x) == 31)\n        \
+        for (int y = 0; y < 5000; y++)\n            for (int x = 0; x < 200; x++) a += 1.0;\n    c = vec4(0.0, 1.0, 0.0 * a, 1.0);\n}\n";
+    let said = render(folder.path(), &[("toy.glsl", text)], &[]);
+    said.expect(0, &["toy.glsl:4", "warning: this loop takes more than ", "iterations"]);
+    assert!(!said.stderr.contains("did not end"), "{said:#?}");
+    assert_eq!(pixel(folder.path(), 3, 3), GREEN);
+}
+
+#[test]
+fn a_buffer_that_appears_is_drawn_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let save = |name: &str, text: &str| {
+        fs::write(path("new"), text).unwrap();
+        fs::rename(path("new"), path(name)).unwrap();
+    };
+    let image = "void mainImage(out vec4 c, in vec2 p) { c = vec4(texelFetch(iChannel0, ivec2(0), 0).rgb, 1.0); }\n";
+    save("toy.glsl", image);
+    let options = ["render", "toy.glsl", "--size", "32x16", "--watch", "--events", "json", "--out", "shot.png"];
+    let mut running = Running::start(specula(folder.path()).args(options));
+    running.event("completed");
+    save("buffer_a.glsl", "void mainImage(out vec4 c, in vec2 p) { c = vec4(0, 1, 0, 1); }\n");
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 3, 3), GREEN);
+    fs::write(path("blur.glsl"), "void mainImage(out vec4 c, in vec2 p) { c = vec4(1, 0, 0, 1); }\n").unwrap();
+    save("toy.glsl", &format!("#iChannel0 \"blur.glsl\"\n{image}"));
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 3, 3), [255, 0, 0, 255]);
+    let stderr = running.stderr();
+    assert!(stderr.contains("buffer_a.glsl") && !stderr.contains("removed"), "{stderr}");
+}
+
+/// The buffer draws in the first two frames only. What a larger picture adds is 0.
+#[test]
+fn buffers_survive_a_resize() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("toy.glsl", "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }\n");
+    write(
+        "buffer_a.glsl",
+        "#iChannel0 \"self\"\nvoid mainImage(out vec4 c, in vec2 p) {\n    \
+         c = iFrame < 2 ? vec4(0, p.y < 1.0, 1.0, 1.0) : texelFetch(iChannel0, ivec2(p), 0); }\n",
+    );
+    let source = Source::find(&folder.path().join("toy.glsl")).unwrap();
+    let model = crate::support::model("shader-ball");
+    let settings = Settings::default();
+    let (mut headless, _) = Headless::new(gpu(), compiler(), source, model, settings, (16, 8)).unwrap();
+    headless.render().unwrap();
+    for _ in 0..3 {
+        headless.render_next().unwrap();
+    }
+    for (size, filled) in [((24, 12), (16, 8)), ((8, 4), (8, 4)), ((16, 6), (8, 4))] {
+        headless.set_size(size).unwrap();
+        let capture = headless.render_next().unwrap();
+        // The first row of the buffer is the lowest of the picture.
+        let color = |x: u32, up: u32| {
+            let at = ((size.1 - 1 - up) * size.0 + x) as usize * 4;
+            [capture.rgba8[at], capture.rgba8[at + 1], capture.rgba8[at + 2]]
+        };
+        assert_eq!([color(0, 0), color(filled.0 - 1, filled.1 - 1)], [[0, 255, 255], [0, 0, 255]], "{size:?}");
+        assert_eq!(color(size.0 - 1, size.1 - 1) == [0, 0, 0], size != filled, "{size:?}");
+    }
+    crate::support::assert_validated();
+}
