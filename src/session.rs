@@ -144,6 +144,7 @@ impl Session {
         if let Some(model) = self.model.as_ref().filter(|model| !model.instances.is_empty()) {
             problems.extend(model.unknown_part(&self.settings.scene));
             problems.extend(model.unknown_material(self.settings.materials.keys()));
+            problems.extend(model.unknown_camera(&self.settings.camera));
         }
         problems
     }

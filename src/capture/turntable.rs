@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
 use crate::frame::{Display, Limits};
 use crate::message::did_you_mean;
-use crate::scene::{Model, frame};
+use crate::scene::{Model, view_of};
 use crate::settings::{CameraSettings, Settings, ViewRange};
 
 /// Frames at equal angles that are drawn first to find one range for the whole animation, if a mode's range is automatic.
@@ -152,10 +152,10 @@ fn steady(camera: &CameraSettings, model: &Model, aspect: f32) -> CameraSettings
     let bounds = &model.bounds;
     let at = |azimuth: f32| {
         let camera = CameraSettings { azimuth, ..camera.clone() };
-        frame(bounds, &model.outline, &camera, aspect)
+        view_of(model, &camera, aspect)
     };
     let view = at(camera.azimuth);
-    if camera.eye.is_some() || camera.target.is_some() {
+    if camera.eye.is_some() || camera.target.is_some() || model.camera(&camera.name).is_some() {
         return CameraSettings { eye: Some(view.eye.into()), target: Some(view.target.into()), ..camera.clone() };
     }
     let views = || (0..24).map(|step| at(step as f32 * 15.0)).chain([view]);

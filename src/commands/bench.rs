@@ -70,7 +70,8 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Prog
     };
     let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
     let model = args.common.model_silently(args.model.as_deref())?;
-    let settings = args.common.settings()?;
+    let mut settings = args.common.settings()?;
+    args.common.fit(&model, &mut settings)?;
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.render()?;
 
@@ -232,8 +233,9 @@ fn load(
         let begin = Instant::now();
         let (source, settings) = (args.common.source()?, args.common.settings()?);
         let (mut load_ms, mut timing) = (0.0, LoadTiming::default());
-        let (mut headless, reload) = Headless::start(gpu, compiler, source, settings, args.common.size, || {
+        let (mut headless, reload) = Headless::start(gpu, compiler, source, settings, args.common.size, |settings| {
             let model: Model = args.common.model_silently(args.model.as_deref())?;
+            args.common.fit(&model, settings)?;
             (load_ms, timing) = (ms(begin), model.timing);
             Ok::<_, Failure>(model)
         })?;

@@ -6,8 +6,9 @@ use std::path::PathBuf;
 
 use serde_json::json;
 use specula::gpu::{AdapterInfo, GpuError, adapters};
+use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};
 use specula::message::escape;
-use specula::scene::{Model, Primitive, Topology};
+use specula::scene::{Material, Model, Primitive, TextureSource, Topology, slot_name, texture_sources};
 
 use super::common::Common;
 use super::{Failure, print_json};
@@ -83,18 +84,59 @@ fn print_model(model: &Model) {
     let variants: Vec<String> = model.variants.iter().map(|name| escape(name)).collect();
     out!("\nModel {}", escape(&model.name));
     out!("  size        {width:.3} x {height:.3} x {depth:.3} m, center {x:.3}, {y:.3}, {z:.3}");
+    out!("  scenes      {}", count(model.contents.scenes));
+    out!("  nodes       {}", model.nodes.len());
     out!("  primitives  {}", model.primitives.len());
     out!("  instances   {}", model.instances.len());
     out!("  triangles   {}", triangles(model));
     out!("  vertices    {vertices}");
+    out!("  UV sets     {}", count(uv_sets(model)));
     out!("  materials   {}", materials(model));
     out!("  variants    {}", if variants.is_empty() { "none".to_owned() } else { variants.join(", ") });
     out!("  lights      {}", count(model.lights.len()));
     out!("  cameras     {}", count(model.cameras.len()));
-    out!("  images      {}", count(model.images.len()));
-    for image in &model.images {
-        out!("    {:>5} x {:<5} {}", image.width, image.height, escape(&image.name));
+    for (number, camera) in model.cameras.iter().enumerate() {
+        out!("    {} ({})", escape(&model.camera_key(number)), camera.lens);
     }
+    out!("  animations  {}", count(model.contents.animations));
+    out!("  skins       {}", count(model.contents.skins));
+    let [geometry, textures] = memory(model).map(|bytes| bytes as f64 / f64::from(1 << 20));
+    out!("  memory      {:.1} MiB: geometry {geometry:.1}, textures {textures:.1}", geometry + textures);
+    out!("  images      {}", count(model.images.len()));
+    for (number, image) in model.images.iter().enumerate() {
+        let (name, uses) = (escape(&image.name), uses(model, number).join(", "));
+        out!("    {:>5} x {:<5} {name}: {uses}", image.width, image.height);
+    }
+}
+
+/// Bytes on the device: of vertices and indices, and of textures with their mip levels.
+fn memory(model: &Model) -> [usize; 2] {
+    let geometry = |primitive: &Primitive| size_of_val(&*primitive.vertices) + size_of_val(&*primitive.indices);
+    let texels = |source: &TextureSource| {
+        let (mut width, mut height) = source.image(model).map_or((1, 1), |image| (image.width, image.height));
+        let mut sum = width as usize * height as usize;
+        while width.max(height) > 1 {
+            (width, height) = ((width / 2).max(1), (height / 2).max(1));
+            sum += width as usize * height as usize;
+        }
+        sum
+    };
+    [model.primitives.iter().map(geometry).sum(), texture_sources(model).iter().map(|source| 4 * texels(source)).sum()]
+}
+
+/// The texture slots of the materials that read an image, as `base color`.
+fn uses(model: &Model, image: usize) -> Vec<String> {
+    let reads = |material: &Material, slot: usize| {
+        material.textures[slot].is_some_and(|used| model.textures[used.texture].image == image)
+    };
+    let slots = TEXTURES.iter().enumerate().filter(|(slot, _)| model.materials.iter().any(|m| reads(m, *slot)));
+    slots.map(|(slot, _)| slot_name(slot)).collect()
+}
+
+/// How many sets of texture coordinates the vertices have.
+fn uv_sets(model: &Model) -> usize {
+    let has = |set| usize::from(model.primitives.iter().any(|primitive| primitive.attributes & set != 0));
+    has(ATTRIBUTE_UV0) + has(ATTRIBUTE_UV1)
 }
 
 fn count(number: usize) -> String {
@@ -105,12 +147,19 @@ fn summary(model: &Model) -> serde_json::Value {
     let (vertices, indices) = counts(model);
     json!({
         "model": model.name,
+        "scenes": model.contents.scenes,
+        "nodes": model.nodes.len(),
+        "animations": model.contents.animations,
+        "skins": model.contents.skins,
         "primitives": model.primitives.len(),
         "instances": model.instances.len(),
         "vertices": vertices,
         "indices": indices,
         "materials": materials(model),
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
+        "textures": (0..model.images.len()).map(|image| uses(model, image)).collect::<Vec<_>>(),
+        "uv_sets": uv_sets(model),
+        "memory_bytes": memory(model).iter().sum::<usize>(),
         "lights": model.lights.len(),
         "variants": model.variants,
         "cameras": model.cameras.len(),

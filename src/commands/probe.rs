@@ -75,6 +75,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;
     let model = args.common.model(args.model.as_deref())?;
+    args.common.fit(&model, &mut settings)?;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
     let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;

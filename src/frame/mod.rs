@@ -40,7 +40,7 @@ use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
-use crate::scene::{Bounds, CameraView, Model, Sun, frame, has_exact_sun, lights, separates_suns, view_of_light};
+use crate::scene::{Bounds, CameraView, Model, Sun, has_exact_sun, lights, separates_suns, view_of, view_of_light};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{Mode, ShaderSet, values};
@@ -242,7 +242,7 @@ impl FrameState {
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());
         let bounds = &model.bounds;
-        let camera = frame(bounds, &model.outline, &settings.camera, size.0 as f32 / size.1 as f32);
+        let camera = view_of(model, &settings.camera, size.0 as f32 / size.1 as f32);
         let mut lights = lights(&settings.lights, model, 0.0);
         lights.truncate(MAX_LIGHTS);
         let lit = settings.environment.is_lit();

@@ -234,7 +234,7 @@ fn changed(model: &Model, look: &Look) -> Arc<[Option<Material>]> {
         return Arc::default();
     }
     let change = |(index, material): (usize, &Material)| {
-        let values = look.materials.get(&model.material_key(index));
+        let values = model.material_values(index, &look.materials);
         if channels.is_none() && values.is_none() {
             return None;
         }

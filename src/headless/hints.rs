@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Headless, HeadlessError};
+use crate::render::Capture;
 use crate::shader::graph::Input;
 use crate::shader::{GraphPass, TreePath, embedded};
 
@@ -21,6 +22,26 @@ impl Headless {
         };
         let own = passes.iter().filter(|pass| !pass.desc.is_built_in());
         Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
+    }
+
+    /// Why a picture that is transparent where nothing is drawn shows nothing of the model, although there is one.
+    ///
+    /// # Errors
+    /// As [`Headless::frame_state`].
+    pub fn unseen_model(&self, picture: &Capture) -> Result<Option<&'static str>, HeadlessError> {
+        let state = self.frame_state()?;
+        let is_empty = picture.rgba8.chunks_exact(4).all(|pixel| pixel[3] == 0);
+        let (true, true, Some(scene)) = (is_empty, state.pipelines.draws_model, &state.scene) else { return Ok(None) };
+        let model = scene.model();
+        if model.visible(&self.session.settings.scene).is_some_and(|visible| !visible.contains(&true)) {
+            return Ok(Some("all of its parts are hidden"));
+        }
+        let at = state.camera.clip_from_world() * model.bounds.center().extend(1.0);
+        let is_in_view = at.w > 0.0 && at.x.abs().max(at.y.abs()) <= at.w;
+        Ok(Some(match is_in_view {
+            true => "it is invisible, or the shaders move its vertices away or make them NaN (`user_vertex`)",
+            false => "the camera looks past it; without --eye and --target it is framed",
+        }))
     }
 
     /// The file with the author's own background, if the settings show none although there is an environment. It is the first file

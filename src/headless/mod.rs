@@ -93,7 +93,7 @@ impl Headless {
 
     /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the frame needs, and does not
     /// create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any number of times
-    /// before the first frame.
+    /// before the first frame. `read` may change the settings so that they fit the model.
     ///
     /// # Errors
     /// Those of `read`, settings or a model that do not fit, a device error.
@@ -103,7 +103,7 @@ impl Headless {
         source: Source,
         settings: Settings,
         size: (u32, u32),
-        read: impl FnOnce() -> Result<Model, E>,
+        read: impl FnOnce(&mut Settings) -> Result<Model, E>,
     ) -> Result<(Self, Reload), E> {
         let variant = settings.variant.clone();
         let settings = Settings { variant: String::new(), ..settings };
@@ -115,15 +115,16 @@ impl Headless {
         this.watch()?;
         let reloader = &mut this.reloader;
         let mut compiled = None;
+        this.session.settings.variant = variant;
+        let settings = &mut this.session.settings;
         let model = rayon::in_place_scope(|scope| {
             scope.spawn(|_| compiled = Some(reloader.compile_first_picture(names_passes)));
-            read()
+            read(settings)
         });
         // The scope ends with it.
         let compiled = compiled.unwrap_or_else(|| this.reloader.compile_first_picture(names_passes));
         let model = model?;
-        model.variant(&variant).map_err(HeadlessError::Settings)?;
-        this.session.settings.variant = variant;
+        model.variant(&this.session.settings.variant).map_err(HeadlessError::Settings)?;
         this.set_model(model)?;
         let reload = this.reload(|reloader, request| reloader.build(compiled, request, || false));
         Ok((this, reload))

@@ -11,6 +11,7 @@ mod error;
 mod extensions;
 mod features;
 mod gltf;
+mod lacking;
 mod lights;
 mod load_options;
 mod material;
@@ -30,7 +31,7 @@ use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
 pub use bvh::Bvh;
-pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, frame};
+pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, Parallel, view_of};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile, Sun, has_exact_sun, separates_suns};
 pub use error::{LoadError, Problem};
 pub use extensions::MaterialFactor;

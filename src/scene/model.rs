@@ -1,5 +1,6 @@
 //! The model as plain data, which a loader fills and `render` uploads. No Vulkan, no file handles.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -32,6 +33,8 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Cameras, placed in the world.
     pub cameras: Vec<Camera>,
+    /// What the file has beside the scene.
+    pub contents: Contents,
     /// World bounds of all instances.
     pub bounds: Bounds,
     /// The outermost vertices in world space (hull points), for framing. If empty, framing uses the corners of `bounds`.
@@ -54,6 +57,17 @@ pub struct LoadTiming {
     pub decode_ms: f64,
     /// Generating tangents, in parallel with decoding (wall time).
     pub tangents_ms: f64,
+}
+
+/// How many of some objects a file has, shown or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Contents {
+    /// Scenes.
+    pub scenes: usize,
+    /// Animations.
+    pub animations: usize,
+    /// Skins.
+    pub skins: usize,
 }
 
 /// Axis-aligned bounds in world space, meters. Empty when `min > max`.
@@ -287,7 +301,30 @@ pub struct Camera {
     pub forward: Vec3,
     /// Up direction, unit.
     pub up: Vec3,
-    /// Vertical field of view in radians. For an orthographic camera, the angle that shows the same height at the depth of
-    /// the model's center.
-    pub fovy: f32,
+    /// Its projection.
+    pub lens: Lens,
+}
+
+/// The projection of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// A vertical field of view in radians, above 0 and below pi.
+    Perspective {
+        /// The angle.
+        fovy: f32,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// What the picture shows from its lower to its upper edge, meters, above 0.
+        height: f32,
+    },
+}
+
+impl fmt::Display for Lens {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Perspective { fovy } => write!(f, "{:.0}\u{b0}", fovy.to_degrees()),
+            Self::Orthographic { height } => write!(f, "{height} m"),
+        }
+    }
 }

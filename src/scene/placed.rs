@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::model::{Bounds, Model};
+use super::model::{Bounds, Lens, Model};
 
 impl Model {
     /// The model moved by `transform`, which preserves angles, with its lights and cameras. It shares the geometry.
@@ -24,6 +24,9 @@ impl Model {
         for camera in &mut model.cameras {
             place(&mut camera.eye);
             (camera.forward, camera.up) = (turn(camera.forward), turn(camera.up));
+            if let Lens::Orthographic { height } = &mut camera.lens {
+                *height *= transform.x_axis.length();
+            }
         }
         model
     }

@@ -1,11 +1,11 @@
 //! The instances that settings name: by node, with all below it, or by primitive.
 
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::model::{Instance, Model, Node};
+use super::model::{Camera, Instance, Model, Node};
 use crate::message::did_you_mean;
-use crate::settings::SceneSettings;
+use crate::settings::{CameraSettings, MaterialValues, SceneSettings};
 
 impl Model {
     /// Whether each instance is drawn; `None` if all are.
@@ -31,7 +31,11 @@ impl Model {
             let is_below = node.parent.is_some_and(|parent| nodes[parent]);
             nodes.push(is_below || is_named(&node.name) || is_named(&number(node)));
         }
-        let of_file: HashMap<usize, bool> = self.nodes.iter().map(|node| node.index).zip(nodes).collect();
+        // A node with several parents is there more than once.
+        let mut of_file: HashMap<usize, bool> = HashMap::new();
+        for (node, is_named) in self.nodes.iter().zip(nodes) {
+            *of_file.entry(node.index).or_default() |= is_named;
+        }
         let is = |instance: &Instance| {
             of_file.get(&instance.node) == Some(&true) || is_named(&self.primitives[instance.primitive].name)
         };
@@ -67,13 +71,67 @@ impl Model {
         self.nodes.iter().position(|node| node.index == instance.node)
     }
 
-    /// The name by which settings refer to a material: its own, or its number in the file.
+    /// The name by which settings refer to a material: its own, followed by its number in the file if others have it too, or else that
+    /// number.
     pub fn material_key(&self, index: usize) -> String {
-        match self.materials.get(index) {
-            Some(material) if !material.name.is_empty() => material.name.clone(),
-            _ if index == 0 => "#default".to_owned(),
-            _ => format!("#{}", index - 1),
+        let Some(name) = self.materials.get(index).map(|material| &material.name) else {
+            return material_number(index);
+        };
+        let is_unique = || self.materials.iter().filter(|other| other.name == *name).count() == 1;
+        match name.is_empty() {
+            true => material_number(index),
+            false if is_unique() => name.clone(),
+            false => format!("{name}{}", material_number(index)),
         }
+    }
+
+    /// The values that settings give a material by its name and number, its number, or its name, which may be that of others too.
+    pub fn material_values<'a>(
+        &self,
+        index: usize,
+        materials: &'a BTreeMap<String, MaterialValues>,
+    ) -> Option<&'a MaterialValues> {
+        if materials.is_empty() {
+            return None;
+        }
+        self.material_names(index).iter().find_map(|name| materials.get(name))
+    }
+
+    fn material_names(&self, index: usize) -> [String; 3] {
+        let (name, number) = (self.materials[index].name.clone(), material_number(index));
+        [format!("{name}{number}"), number, name]
+    }
+
+    /// The name by which settings refer to a camera: its own if no other has it, or its number.
+    pub fn camera_key(&self, index: usize) -> String {
+        let name = unique_name(self.cameras.iter().map(|camera| camera.name.as_str()), index);
+        name.unwrap_or_else(|| format!("#{index}"))
+    }
+
+    /// The camera that settings name by its number, or the first of that name.
+    pub fn camera(&self, name: &str) -> Option<&Camera> {
+        match name.strip_prefix('#').and_then(|number| number.parse::<usize>().ok()) {
+            Some(index) => self.cameras.get(index),
+            None => self.cameras.iter().find(|camera| !name.is_empty() && camera.name == name),
+        }
+    }
+
+    /// A sentence about a name in `settings` that is of no camera.
+    pub fn unknown_camera(&self, settings: &CameraSettings) -> Option<String> {
+        let name = &settings.name;
+        if name.is_empty() || self.camera(name).is_some() {
+            return None;
+        }
+        let known: Vec<String> = (0..self.cameras.len()).map(|index| self.camera_key(index)).collect();
+        let hint = did_you_mean(name, known.iter().map(String::as_str));
+        let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Some(format!("camera.name: the model has no camera '{name}'.{hint} It has {list}"))
+    }
+
+    /// Whether a node or a primitive has this name.
+    pub fn has_part(&self, name: &str) -> bool {
+        let is_node = |node: &Node| node.name == name || number(node) == name;
+        self.nodes.iter().any(is_node) || self.primitives.iter().any(|primitive| primitive.name == name)
     }
 
     /// A sentence about the first name in `settings` that matches no node and no primitive.
@@ -95,15 +153,28 @@ impl Model {
     }
 
     /// A sentence about the first of these names that matches no material.
-    pub fn unknown_material<'a>(&self, mut names: impl Iterator<Item = &'a String>) -> Option<String> {
+    pub fn unknown_material<'a>(&self, names: impl Iterator<Item = &'a String>) -> Option<String> {
+        let mut names = names.peekable();
+        names.peek()?;
+        let set: HashSet<String> = (0..self.materials.len()).flat_map(|index| self.material_names(index)).collect();
+        let unknown = names.find(|name| name.is_empty() || !set.contains(*name))?;
         let known: Vec<String> = (0..self.materials.len()).map(|index| self.material_key(index)).collect();
-        let set: HashSet<&String> = known.iter().collect();
-        let unknown = names.find(|name| !set.contains(name))?;
         let hint = did_you_mean(unknown, known.iter().map(String::as_str));
         // The first is glTF's default material.
         let list = known.get(1..).unwrap_or_default().join(", ");
         Some(format!("materials: the model has no material '{unknown}'.{hint} It has {list}"))
     }
+}
+
+/// `#` and the index in the file of a material; the first is glTF's default material, which no file has.
+fn material_number(index: usize) -> String {
+    index.checked_sub(1).map_or_else(|| "#default".to_owned(), |number| format!("#{number}"))
+}
+
+/// The name at `index`, if it is the only one of this kind and not empty.
+fn unique_name<'a>(names: impl Iterator<Item = &'a str> + Clone, index: usize) -> Option<String> {
+    let name = names.clone().nth(index).filter(|name| !name.is_empty() && !name.starts_with('#'))?;
+    (names.filter(|other| *other == name).count() == 1).then(|| name.to_owned())
 }
 
 /// Whether a name can be used in a list of names.
@@ -118,6 +189,9 @@ fn number(node: &Node) -> String {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
+    use super::super::model::{Lens, Material};
     use super::super::{BUILT_IN, built_in};
     use super::*;
 
@@ -159,5 +233,43 @@ mod tests {
         assert!(model.unknown_part(&wrong).unwrap().contains("no node and no primitive 'Shel'"));
         assert_eq!(model.unknown_material([model.material_key(1)].iter()), None);
         assert!(model.unknown_material(["Nickel".to_owned()].iter()).unwrap().contains("no material 'Nickel'"));
+    }
+
+    #[test]
+    fn materials_of_equal_name_have_keys_of_their_own_and_a_name_in_common() {
+        let named = |name: &str| Material { name: name.into(), ..Material::default() };
+        let materials = ["", "Paint", "Glass", "Paint", ""].map(named).to_vec();
+        let model = Model { materials, ..Model::default() };
+        let keys: Vec<String> = (0..5).map(|index| model.material_key(index)).collect();
+        assert_eq!(keys, ["#default", "Paint#0", "Glass", "Paint#2", "#3"]);
+        let changed = |key: &str| {
+            let values = BTreeMap::from([(key.to_owned(), MaterialValues::new())]);
+            assert_eq!(model.unknown_material(values.keys()), None);
+            (0..5).filter(|index| model.material_values(*index, &values).is_some()).collect::<Vec<usize>>()
+        };
+        assert_eq!(changed("Paint#2"), [3]);
+        assert_eq!(changed("#2"), [3]);
+        assert_eq!(changed("#default"), [0]);
+        assert_eq!(changed("Paint"), [1, 3]);
+        assert!(model.unknown_material(["Paint#1".to_owned()].iter()).is_some());
+        assert!(model.unknown_material([String::new()].iter()).is_some());
+    }
+
+    #[test]
+    fn cameras_are_named_by_name_or_number() {
+        let camera = |name: &str| Camera {
+            name: name.into(),
+            eye: Vec3::ZERO,
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            lens: Lens::Perspective { fovy: 1.0 },
+        };
+        let model = Model { cameras: ["Left", "", "Left", "Top"].map(camera).to_vec(), ..Model::default() };
+        let keys: Vec<String> = (0..4).map(|index| model.camera_key(index)).collect();
+        assert_eq!(keys, ["#0", "#1", "#2", "Top"]);
+        assert!(keys.iter().chain([&"Left".to_owned()]).all(|key| model.camera(key).is_some()));
+        let unknown = |name: &str| model.unknown_camera(&CameraSettings { name: name.into(), ..Default::default() });
+        assert!(unknown("Topp").unwrap().contains("no camera 'Topp'. Did you mean"));
+        assert_eq!((unknown(""), unknown("#4").is_some()), (None, true));
     }
 }

@@ -77,6 +77,7 @@ impl Settings {
         let mut all = self.clone();
         all.camera.eye.get_or_insert_default();
         all.camera.target.get_or_insert_default();
+        all.camera.up.get_or_insert_default();
         toml::Value::try_from(all).map_err(|e| e.to_string())
     }
 }

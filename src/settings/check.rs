@@ -13,8 +13,8 @@ impl Settings {
             self.value(&setting.path).map_or(Ok(()), |value| setting.entry.check(&setting.path, &value))?;
         }
         factors::check(&self.materials)?;
-        let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];
-        for (name, vector) in vectors {
+        let camera = &self.camera;
+        for (name, vector) in [("camera.eye", camera.eye), ("camera.target", camera.target), ("camera.up", camera.up)] {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {
                 return Err(format!("{name} has a number that is not finite; it takes three numbers, as 0,1.5,3"));
             }

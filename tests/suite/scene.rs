@@ -1,5 +1,6 @@
 //! Models on their way to the device, and what a look changes of them.
 
+mod cameras;
 mod gpu;
 mod look;
 mod materials;

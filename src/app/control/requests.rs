@@ -128,7 +128,7 @@ impl Viewer {
         let camera = &mut settings.camera;
         let frames = asked.frame || asked.view.is_some() || asked.azimuth.is_some() || asked.elevation.is_some();
         if frames {
-            (camera.eye, camera.target) = (None, None);
+            camera.frame_model();
         }
         if let Some(name) = &asked.view {
             let names = || Side::ALL.into_iter().map(|side| side.words().0);
@@ -144,7 +144,11 @@ impl Viewer {
         }
         camera.eye = asked.eye.or(camera.eye);
         camera.target = asked.target.or(camera.target);
-        camera.fovy = asked.fovy.unwrap_or(camera.fovy);
+        if let Some(fovy) = asked.fovy {
+            // That of a camera of the file would win.
+            camera.name.clear();
+            camera.fovy = fovy;
+        }
         camera.azimuth = asked.azimuth.unwrap_or(camera.azimuth);
         camera.elevation = asked.elevation.unwrap_or(camera.elevation);
         self.adopt(settings)

@@ -26,13 +26,10 @@ impl Viewer {
             Command::Undo if !self.history.undo(&mut self.session.settings) => self.say("There is nothing to undo"),
             Command::Redo if !self.history.redo(&mut self.session.settings) => self.say("There is nothing to redo"),
             Command::Undo | Command::Redo => {}
-            Command::FrameModel => {
-                self.session.settings.camera.eye = None;
-                self.session.settings.camera.target = None;
-            }
+            Command::FrameModel => self.session.settings.camera.frame_model(),
             Command::ViewFrom(side) => {
                 let camera = &mut self.session.settings.camera;
-                (camera.eye, camera.target) = (None, None);
+                camera.frame_model();
                 [camera.azimuth, camera.elevation] = side.angles();
             }
             Command::KeepCamera(number) => {

@@ -114,13 +114,11 @@ impl Viewer {
 
     /// Looks through a camera of the model.
     pub(super) fn look_through(&mut self, camera: usize) {
-        let Some(model) = self.session.placed_model() else { return };
-        let Some(camera) = model.cameras.get(camera) else { return };
-        let view = CameraView::of_camera(camera, 1.0, &model.bounds);
+        let Some(model) = self.session.model().filter(|model| camera < model.cameras.len()) else { return };
+        let name = model.camera_key(camera);
         let settings = &mut self.session.settings.camera;
-        settings.eye = Some(view.eye.to_array());
-        settings.target = Some(view.target.to_array());
-        settings.fovy = view.fovy_rad.to_degrees();
+        settings.frame_model();
+        settings.name = name;
     }
 
     /// Switches the rectangular light on and selects it.

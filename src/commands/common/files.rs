@@ -2,22 +2,39 @@
 
 use std::path::{Path, PathBuf};
 
-use specula::scene;
+use specula::scene::{self, Model};
+use specula::settings::Settings;
 use specula::shader::Source;
 
-use super::Common;
 use super::look::read_look;
+use super::names::only_model;
+use super::{Common, warn_once};
 use crate::commands::Failure;
 
 impl Common {
-    /// Treats a shader file in the model's position as the shader tree. Options that the command line does not give come from the
-    /// look.
+    /// Leaves out of the settings what the look says about parts that the model lacks, with a warning for each kind.
+    ///
+    /// # Errors
+    /// The look cannot be read.
+    pub fn fit(&self, model: &Model, settings: &mut Settings) -> Result<(), Failure> {
+        let Some(path) = self.look.as_deref() else { return Ok(()) };
+        for problem in model.leave_out_lacking(&read_look(path)?.settings, settings) {
+            warn_once(&format!("{}: {problem}. This part of the look is left out", path.display()));
+        }
+        Ok(())
+    }
+
+    /// Treats a shader file in the model's position as the shader tree, and a folder with one model as that model. Options that the
+    /// command line does not give come from the look.
     ///
     /// # Errors
     /// The look cannot be read, or a file that it names is gone.
     pub fn take_files(&mut self, model: &mut Option<PathBuf>) -> Result<(), Failure> {
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
             self.shaders = model.take();
+        }
+        if let Some(only) = model.as_deref().and_then(only_model) {
+            *model = Some(only);
         }
         let Some(path) = self.look.as_deref() else { return Ok(()) };
         let look = read_look(path)?;

@@ -55,6 +55,12 @@ pub struct Common {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", allow_hyphen_values = true, value_parser = size)]
     pub size: (u32, u32),
+    /// Look through a camera of the model's file: its name, or #0 for the first
+    #[arg(long, value_name = "NAME|#N", conflicts_with_all = ["eye", "target", "fovy", "frame_model"])]
+    camera: Option<String>,
+    /// Frame the whole model, from the side from which the look file's camera sees it
+    #[arg(long, conflicts_with_all = ["eye", "target"])]
+    frame_model: bool,
     /// Tone map
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     tonemap: Option<Tonemap>,
@@ -150,9 +156,20 @@ impl Common {
         };
         let mut settings = look.clone();
         let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
-        settings.camera.eye = self.eye.or(settings.camera.eye);
-        settings.camera.target = self.target.or(settings.camera.target);
-        put(&mut settings.camera.fovy, self.fovy);
+        let camera = &mut settings.camera;
+        if self.frame_model {
+            camera.frame_from_here();
+        }
+        if let Some(name) = &self.camera {
+            camera.frame_model();
+            camera.name.clone_from(name);
+        }
+        if self.eye.is_some() || self.target.is_some() || self.fovy.is_some() {
+            camera.name.clear();
+        }
+        camera.eye = self.eye.or(camera.eye);
+        camera.target = self.target.or(camera.target);
+        put(&mut camera.fovy, self.fovy);
         put(&mut settings.view.ev, self.ev);
         settings.lights.source = self.lights.unwrap_or(settings.lights.source);
         settings.view.tonemap = self.tonemap.unwrap_or(settings.view.tonemap);
@@ -204,6 +221,8 @@ impl Common {
             self.eye.is_some(),
             self.target.is_some(),
             self.fovy.is_some(),
+            self.camera.is_some(),
+            self.frame_model,
             self.tonemap.is_some(),
             self.ev.is_some(),
             self.background.is_some(),

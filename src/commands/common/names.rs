@@ -1,7 +1,7 @@
 //! Interprets the name of a model or an environment: a file, a built-in name, a typing error, or another kind of
 //! file, which is answered with its option.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use specula::file_kind::FileKind;
 use specula::message::nearest;
@@ -65,6 +65,12 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
         FileKind::Measured | FileKind::Model | FileKind::Other => return Ok(()),
     };
     Err(Failure::Usage(message))
+}
+
+/// The model in a folder that is no shader tree, if it is the only one.
+pub fn only_model(path: &Path) -> Option<PathBuf> {
+    let mut models = models_in(path).into_iter().filter(|_| FileKind::of(path) == FileKind::Folder);
+    models.next().filter(|_| models.next().is_none()).map(PathBuf::from)
 }
 
 /// Paths of the models in a folder, sorted; none where it cannot be read.

@@ -17,6 +17,7 @@ use specula::picture;
 use specula::pipeline::{Outcome, Reload};
 use specula::recovery::SessionState;
 use specula::render::Capture;
+use specula::settings::Settings;
 use specula::shader::{Diagnostic, Mode};
 
 use super::common::{check_mode, check_out, check_validation, compiler};
@@ -51,7 +52,11 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let gpu = args.common.gpu()?;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
-    let read = || args.common.model(args.model.as_deref());
+    let read = |settings: &mut Settings| {
+        let model = args.common.model(args.model.as_deref())?;
+        args.common.fit(&model, settings)?;
+        Ok::<_, Failure>(model)
+    };
     let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
     headless.set_sequence(sequence);
     if let Some(watch) = &mut watch {
@@ -311,6 +316,9 @@ fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Fail
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
         let capture = capture(headless, args, &Progress::new(!args.common.emits()), (0, 1))?;
+        if let Some(why) = headless.unseen_model(&capture)? {
+            message::tell(format_args!("note: nothing of the model is in the picture: {why}"));
+        }
         return write_picture(headless, args, &capture, out);
     }
     let progress = Progress::new(!args.common.emits());

@@ -8,17 +8,24 @@ use glam::{Mat4, Vec3};
 pub use controller::CameraController;
 pub use motion::{FlyCamera, OrbitCamera};
 
-use crate::scene::model::{Bounds, Camera};
+use crate::scene::model::{Bounds, Camera, Lens, Model};
 use crate::settings::CameraSettings;
 
 /// The framed model fills this fraction of the picture's width or height.
 const FILL: f32 = 1.0 / 1.08;
 /// Larger coordinates of eye and target overflow when squared.
 const FARTHEST: f32 = 1e18;
+/// A parallel projection is a perspective from as many radii, or heights of the picture, away: sizes then differ by 0.2 % over a radius,
+/// and all that follows rays from an eye needs no second kind of them.
+const PARALLEL: f32 = 500.0;
+/// Largest height of a parallel projection, meters.
+const HIGHEST: f32 = 1e9;
+/// Smallest and largest field of view of a camera of the model, radians.
+const LENSES: (f32, f32) = (1e-3, 3.1);
 /// Field of view if the setting is not finite, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or [`frame`], which
+/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or [`view_of`], which
 /// never return a degenerate view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
@@ -36,6 +43,17 @@ pub struct CameraView {
     pub near: f32,
     /// Distance beyond which the model has no point, meters. (The projection itself is infinite.)
     pub far: f32,
+    /// For a parallel projection, which is a perspective from far away.
+    pub parallel: Option<Parallel>,
+}
+
+/// What a parallel projection was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parallel {
+    /// Height of the picture, meters.
+    pub height: f32,
+    /// Distance from the target to the plane of the eye, behind which nothing is shown, meters.
+    pub distance: f32,
 }
 
 impl CameraView {
@@ -60,17 +78,42 @@ impl CameraView {
             aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
             near,
             far: (center_distance + radius).max(near * 2.0),
+            parallel: None,
         }
     }
 
     /// The view of one of the model's cameras. The target is at the depth of the model's center, which suits orbiting.
     /// If the center is behind the camera or too close to orbit around, the target is one radius ahead.
-    pub fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
+    fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
         let depth = camera.forward.dot(bounds.center() - camera.eye);
         let depth = if depth > bounds.radius() * 1e-2 { depth } else { bounds.radius() };
-        let mut view = Self::new(camera.eye, camera.eye + camera.forward * depth, camera.fovy, aspect, bounds);
-        view.up = camera.up.reject_from_normalized(view.forward()).normalize_or(view.up);
-        view
+        Self::new(camera.eye, camera.eye + camera.forward * depth, 0.0, aspect, bounds).upright_as(camera.up)
+    }
+
+    fn upright_as(self, up: Vec3) -> Self {
+        Self { up: up.reject_from_normalized(self.forward()).normalize_or(self.up), ..self }
+    }
+
+    /// The same with another projection. A parallel one shows nothing behind the eye, either.
+    fn through(self, lens: Lens, bounds: &Bounds) -> Self {
+        match lens {
+            Lens::Perspective { fovy } => Self { fovy_rad: fovy.clamp(LENSES.0, LENSES.1), ..self },
+            Lens::Orthographic { height } => {
+                let distance = PARALLEL * bounds.radius().max(height.min(HIGHEST));
+                let parallel = Parallel { height, distance: self.eye.distance(self.target) };
+                let plane = distance - parallel.distance;
+                let eye = self.target - self.forward() * distance;
+                let far = Self::new(eye, self.target, 0.0, self.aspect, bounds);
+                let fovy_rad = 2.0 * (0.5 * height / distance).atan();
+                let (near, most) = (far.near.max(plane), far.far.max(plane * 2.0));
+                Self { up: self.up, fovy_rad, near, far: most, parallel: Some(parallel), ..far }
+            }
+        }
+    }
+
+    /// Whether the picture is turned about the viewing direction.
+    fn is_rolled(&self) -> bool {
+        self.up.distance(upright(self.forward())) > 1e-4
     }
 
     /// Viewing direction, unit.
@@ -91,9 +134,29 @@ impl CameraView {
     }
 }
 
-/// The view according to the settings. Without `eye`, this fits the model's outline (or its bounding box) into the
+/// The view of a model according to the settings: that of the camera that they name, if the model has it, or else [`frame`].
+pub fn view_of(model: &Model, settings: &CameraSettings, aspect: f32) -> CameraView {
+    let bounds = &model.bounds;
+    let named = model.camera(&settings.name);
+    let mut view = match named.filter(|_| settings.eye.is_none() && settings.target.is_none()) {
+        Some(camera) => CameraView::of_camera(camera, aspect, bounds),
+        None => frame(bounds, &model.outline, settings, aspect),
+    };
+    if let Some(up) = settings.up.map(Vec3::from) {
+        view = view.upright_as(up);
+    }
+    let lens = match named {
+        _ if settings.height > 0.0 && settings.height <= HIGHEST => {
+            Some(Lens::Orthographic { height: settings.height })
+        }
+        named => named.map(|camera| camera.lens),
+    };
+    lens.map_or(view, |lens| view.through(lens, bounds))
+}
+
+/// The view without a camera of the model. Without `eye`, this fits the model's outline (or its bounding box) into the
 /// picture with a margin, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
-pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> CameraView {
+fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> CameraView {
     let corners = bounds.corners();
     let outline = if outline.is_empty() { &corners } else { outline };
     let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
@@ -241,17 +304,78 @@ mod tests {
         assert_eq!(frame(&cube(), &[], &only_eye, 1.5).target, cube().center());
     }
 
+    fn with_camera(camera: Camera) -> Model {
+        Model { bounds: cube(), cameras: vec![camera], ..Model::default() }
+    }
+
+    fn camera(eye: Vec3, forward: Vec3, lens: Lens) -> Camera {
+        Camera { name: "Shot".into(), eye, forward, up: Vec3::X, lens }
+    }
+
+    fn named(name: &str) -> CameraSettings {
+        CameraSettings { name: name.into(), ..CameraSettings::default() }
+    }
+
     #[test]
     fn a_camera_of_the_model_looks_as_it_did_and_orbits_the_model() {
-        let camera = |eye, forward| Camera { name: String::new(), eye, forward, up: Vec3::X, fovy: 0.7 };
-        let view = CameraView::of_camera(&camera(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z), 1.5, &cube());
+        let lens = Lens::Perspective { fovy: 0.7 };
+        let at = |eye, forward| view_of(&with_camera(camera(eye, forward, lens)), &named("Shot"), 1.5);
+        let view = at(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z);
         assert_eq!((view.eye, view.target), (Vec3::new(1.0, 1.0, 9.0), Vec3::new(1.0, 1.0, 0.0)));
         assert_eq!((view.up, view.fovy_rad, view.aspect), (Vec3::X, 0.7, 1.5));
         for (eye, forward) in [(Vec3::new(1.0, 1.0, 9.0), Vec3::Z), (cube().center(), Vec3::Y)] {
-            let view = CameraView::of_camera(&camera(eye, forward), 1.0, &cube());
+            let view = at(eye, forward);
             assert_eq!(view.eye, eye);
             assert!(view.target.distance(eye + forward * cube().radius()) < 1e-5);
         }
+    }
+
+    #[test]
+    fn a_moved_camera_of_the_model_keeps_its_lens_and_another_model_has_the_users() {
+        let model = with_camera(camera(Vec3::Z * 9.0, Vec3::NEG_Z, Lens::Perspective { fovy: 0.7 }));
+        let mut settings = named("#0");
+        let view = view_of(&model, &settings, 1.0);
+        CameraController::dolly(&mut settings, &view, 2.0);
+        let nearer = view_of(&model, &settings, 1.0);
+        assert!(nearer.eye.z < 8.0 && nearer.up == Vec3::X && nearer.fovy_rad == 0.7, "{nearer:?}");
+        CameraController::orbit(&mut settings, &nearer, glam::Vec2::new(0.1, 0.0));
+        assert!(view_of(&model, &settings, 1.0).up.y > 0.9, "orbiting levels the horizon");
+        let other = Model { bounds: cube(), ..Model::default() };
+        assert_eq!(view_of(&other, &settings, 1.0).fovy_rad, 35_f32.to_radians());
+        settings.frame_model();
+        assert_eq!(settings, CameraSettings::default());
+    }
+
+    #[test]
+    fn parallel_projections_show_equal_sizes_at_every_depth() {
+        let lens = Lens::Orthographic { height: 4.0 };
+        let of_file = with_camera(camera(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z, lens));
+        let of_settings = CameraSettings { eye: Some([1.0, 1.0, 9.0]), height: 4.0, ..CameraSettings::default() };
+        let upright = CameraSettings { up: Some([0.0, 1.0, 0.0]), ..named("Shot") };
+        for settings in [&of_settings, &upright] {
+            let clip = view_of(&of_file, settings, 2.0).clip_from_world();
+            for depth in [-2.0, 0.0, 2.0] {
+                // The upper right corner: 2 m above the center, 4 m right of it.
+                let corner = clip.project_point3(Vec3::new(5.0, 3.0, depth));
+                assert!((corner.truncate() - glam::Vec2::new(1.0, -1.0)).length() < 3e-3, "{depth}: {corner}");
+            }
+            let behind = clip.project_point3(Vec3::new(1.0, 1.0, 9.5)).z;
+            assert!(behind > 1.0, "what is behind the camera is seen: {behind}");
+        }
+        let mut settings = of_settings.clone();
+        let view = view_of(&of_file, &settings, 2.0);
+        CameraController::dolly(&mut settings, &view, 1.0);
+        assert!((settings.height - 3.6).abs() < 1e-5 && settings.eye == of_settings.eye);
+        let side = |settings: &CameraSettings| {
+            let view = view_of(&of_file, settings, 2.0);
+            view.clip_from_world().project_point3(Vec3::new(1.0, 1.0, 0.0)).x
+        };
+        CameraController::pan(&mut settings, &view, glam::Vec2::new(0.25, 0.0));
+        assert!(side(&settings) > 0.2, "{}", side(&settings));
+        let distance = |settings: &CameraSettings| {
+            Vec3::from(settings.eye.unwrap()).distance(settings.target.map_or(cube().center(), Vec3::from))
+        };
+        assert!((distance(&settings) - 9.0).abs() < 1e-3, "the eye moves to where rays are parallel");
     }
 
     #[test]
@@ -267,11 +391,14 @@ mod tests {
                     CameraSettings { azimuth: value, elevation: value, fovy: value, ..CameraSettings::default() };
                 let same = CameraSettings { eye: Some([value; 3]), target: Some([value; 3]), ..framed.clone() };
                 let above = CameraSettings { eye: Some([0.0, 5.0, 0.0]), target: Some([0.0; 3]), ..framed.clone() };
-                for settings in [framed, same, above] {
-                    let view = frame(&bounds, &[], &settings, value);
+                let flat = CameraSettings { height: value, up: Some([value; 3]), ..same.clone() };
+                let low = CameraSettings { height: 2.0, ..framed.clone() };
+                for settings in [framed, same, above, flat, low] {
+                    let view = view_of(&Model { bounds, ..Model::default() }, &settings, value);
                     assert!(view.view_from_world().is_finite(), "{bounds:?} {settings:?}");
                     assert!(view.clip_from_world().is_finite(), "{bounds:?} {settings:?}");
-                    assert!(view.clip_from_world().determinant() != 0.0 || bounds == huge || bounds == tiny);
+                    let is_odd = bounds == huge || bounds == tiny || view.parallel.is_some();
+                    assert!(view.clip_from_world().determinant() != 0.0 || is_odd);
                     assert!(view.near > 0.0 && view.far > view.near, "{view:?}");
                 }
             }

@@ -40,17 +40,6 @@ impl OrbitCamera {
         turn(&mut self.azimuth_rad, &mut self.elevation_rad, delta_rad);
     }
 
-    /// Moves eye and target parallel to the picture: 1 is the picture's height at the target; +x right, +y up.
-    pub fn pan(&mut self, delta: Vec2, fovy_rad: f32) {
-        let height = 2.0 * self.distance * (fovy_rad * 0.5).tan();
-        let back = direction(self.azimuth_rad, self.elevation_rad);
-        let right = direction(self.azimuth_rad + FRAC_PI_2, 0.0);
-        let step = (right * delta.x + back.cross(right) * delta.y) * height;
-        if step.is_finite() {
-            self.target += step;
-        }
-    }
-
     /// Moves towards the target: each step reduces the distance by a tenth; negative steps move back.
     pub fn dolly(&mut self, steps: f32) {
         let distance = self.distance * 0.9_f32.powf(steps);
@@ -149,10 +138,8 @@ mod tests {
     }
 
     #[test]
-    fn pan_and_dolly() {
+    fn dolly() {
         let mut camera = OrbitCamera::new(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO);
-        camera.pan(Vec2::new(0.5, 0.25), FRAC_PI_2);
-        assert!(camera.target.distance(Vec3::new(2.0, 1.0, 0.0)) < 1e-5, "{:?}", camera.target);
         camera.dolly(1.0);
         assert!((camera.distance - 1.8).abs() < 1e-5);
         camera.dolly(-1.0);
@@ -174,7 +161,6 @@ mod tests {
     fn degenerate_input_is_ignored() {
         for mut camera in [OrbitCamera::new(EYE, EYE), OrbitCamera::new(Vec3::Y, Vec3::ZERO)] {
             camera.orbit(Vec2::NAN);
-            camera.pan(Vec2::INFINITY, 1.0);
             camera.dolly(f32::NAN);
             assert!(camera.eye().is_finite() && camera.target.is_finite());
         }

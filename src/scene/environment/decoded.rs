@@ -1,11 +1,13 @@
 //! An image as the readers of the formats hand it on, and the limits of its size.
 
 use super::error::EnvironmentProblem as Problem;
+use super::projection::Projection;
 
 /// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;
 /// Largest supported height, pixels.
 pub const MAX_HEIGHT: u32 = 8192;
+
 /// A decoded image, rows from top to bottom. Its values are not validated yet.
 pub struct Decoded {
     /// Columns.
@@ -14,6 +16,8 @@ pub struct Decoded {
     pub height: u32,
     /// RGB and an alpha of 1.
     pub pixels: Vec<[f32; 4]>,
+    /// The projection, if the file names it. Otherwise the shape of the image decides.
+    pub projection: Option<Projection>,
     /// Conversions that the file's author may not expect.
     pub warnings: Vec<String>,
 }

@@ -98,17 +98,17 @@ pub enum EnvironmentProblem {
         /// Advice to the user.
         todo: &'static str,
     },
-    /// Pixels that are NaN, infinite or negative.
+    /// Pixels that are NaN or infinite.
     #[error(
         "has {count} {pixels} that cannot be light: the first is {value} in {channel} at x = {x}, y = {y}; expected \
-         finite values of 0 and more everywhere. Repair the image, for example by clamping it to 0..60000 in an \
+         finite values everywhere. Repair the image, for example by clamping it to 0..60000 in an \
          image editor.",
         pixels = if *count == 1 { "pixel" } else { "pixels" }
     )]
     Values {
         /// The number of such pixels.
         count: usize,
-        /// The first one's value: NaN, infinite or negative.
+        /// The first one's value: NaN or infinite.
         value: f32,
         /// "red", "green" or "blue".
         channel: &'static str,

@@ -11,6 +11,8 @@ mod float_image;
 mod importance;
 mod open_exr;
 mod panorama;
+mod primaries;
+mod projection;
 mod radiance;
 mod sky;
 mod studio;
@@ -35,7 +37,7 @@ pub use suns::{Sun, has_exact_sun, restore_clipped, separates_suns};
 /// Largest supported file: the largest image with four floats a pixel, and a header.
 const MAX_FILE_BYTES: u64 = MAX_WIDTH as u64 * MAX_HEIGHT as u64 * 16 + (1 << 20);
 /// Raise this when the same bytes decode to other pixels. It seeds the fingerprint, so old cache entries are not used.
-const DECODER_VERSION: u64 = 1;
+const DECODER_VERSION: u64 = 2;
 
 /// An environment that was read but not decoded yet.
 #[derive(Clone, Debug)]
@@ -85,7 +87,7 @@ impl EnvironmentFile {
     ///
     /// # Errors
     /// Fails if the file is not an HDR or EXR image, is damaged, is larger than [`MAX_WIDTH`] x [`MAX_HEIGHT`], or has
-    /// NaN, infinite or negative values. Never panics, whatever the content.
+    /// NaN or infinite values. Never panics, whatever the content.
     pub fn decode(&self) -> Result<Environment, EnvironmentError> {
         let mut environment = match &self.source {
             Source::BuiltIn(name) => built_in::make(name),

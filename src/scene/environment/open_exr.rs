@@ -1,40 +1,72 @@
-//! Reads OpenEXR with the `exr` crate: one flat part with channels R, G and B, in scan lines or tiles.
+//! Reads OpenEXR with the `exr` crate: the first flat part with channels R, G and B, or with luminance and perhaps chroma, in scan lines
+//! or tiles.
 
 use std::io::Cursor;
 
-use exr::meta::attribute::Chromaticities;
+use exr::meta::attribute::EnvironmentMap;
 use exr::meta::header::Header;
-use exr::prelude::{ReadChannels, ReadLayers, Vec2};
+use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
 
 use super::decoded::{Decoded, check_size};
 use super::error::EnvironmentProblem as Problem;
+use super::primaries::{self, Primaries, REC_709};
+use super::projection::{OPEN_EXR_CUBE, Projection};
 
 /// Flags in the version field (OpenEXR file layout, "Version Field").
 const DEEP: u32 = 1 << 11;
 const MULTI_PART: u32 = 1 << 12;
-/// CIE xy of the Rec. 709 primaries and white point, which an EXR has by default.
-const REC_709: [(f32, f32); 4] = [(0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290)];
+/// A picture may be this many times larger than the part of it that is stored.
+const LARGEST_CROP: u64 = 64;
 
 /// Decodes a whole file.
 pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
     check_kind(bytes)?;
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(problem)?;
-    let [header] = reader.headers() else { return Err(unsupported("an EXR with several parts".into())) };
+    let headers = reader.headers();
+    let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
+    let first_with = |name| headers.iter().find(|header| has(header, name));
+    // The crate, too, reads the first part that has the first of these channels.
+    let (names, header) = match (first_with("R"), first_with("Y")) {
+        (Some(header), _) if has(header, "G") && has(header, "B") => (["R", "G", "B"], header),
+        (_, Some(header)) => (["Y", "RY", "BY"], header),
+        _ => return Err(without_color(headers)),
+    };
+    if header.deep {
+        return Err(unsupported("a deep EXR (several samples a pixel)".into()));
+    }
     let (columns, rows) = (header.layer_size.width() as u64, header.layer_size.height() as u64);
-    let (width, height) = check_size(columns, rows, least_bytes(header), bytes.len())?;
-    check_channels(header)?;
-    check_window(header)?;
+    let stored = check_size(columns, rows, least_bytes(header), bytes.len())?;
+    if let Some(channel) = header.channels.list.iter().find(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(unsupported(format!("an EXR whose channel {} is subsampled", channel.name)));
+    }
     let mut warnings = Vec::new();
-    warnings.extend(header.shared_attributes.chromaticities.as_ref().and_then(other_primaries));
-
-    let row = width as usize;
+    if headers.len() > 1 {
+        let name = header.own_attributes.layer_name.as_ref().map_or_else(String::new, ToString::to_string);
+        warnings.push(format!("the EXR has {} parts: '{}' is used", headers.len(), name.escape_debug()));
+    }
+    let projection = header.own_attributes.environment_map.and_then(|map| match map {
+        EnvironmentMap::LatitudeLongitude => Some(Projection::Equirectangular),
+        EnvironmentMap::Cube if OPEN_EXR_CUBE.fits(stored.0, stored.1) => Some(Projection::Cube(&OPEN_EXR_CUBE)),
+        EnvironmentMap::Cube => None,
+    });
+    let colors = header
+        .shared_attributes
+        .chromaticities
+        .map_or(REC_709, |found| [found.red, found.green, found.blue, found.white].map(|Vec2(x, y)| (x, y)));
+    // An environment map fills its data window, whatever picture it is a part of (ImfEnvmap.h).
+    let window = if projection.is_some() { None } else { window(header)? };
+    let row = stored.0 as usize;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
-        .rgb_channels(
+        .specific_channels()
+        .required(names[0])
+        .optional(names[1], 0.0_f32)
+        .optional(names[2], 0.0_f32)
+        .collect_pixels(
             |size, _| vec![[0.0, 0.0, 0.0, 1.0]; size.area()],
-            move |pixels: &mut Vec<[f32; 4]>, at: Vec2<usize>, (r, g, b): (f32, f32, f32)| {
-                pixels[at.y() * row + at.x()] = [r, g, b, 1.0];
+            move |pixels: &mut Vec<[f32; 4]>, at: Vec2<usize>, (a, b, c): (f32, f32, f32)| {
+                pixels[at.y() * row + at.x()] = [a, b, c, 1.0];
             },
         )
         .first_valid_layer()
@@ -44,10 +76,46 @@ pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
         .non_parallel()
         .from_chunks(reader)
         .map_err(problem)?;
-    Ok(Decoded { width, height, pixels: image.layer_data.channel_data.pixels, warnings })
+    let mut pixels = image.layer_data.channel_data.pixels;
+
+    if names[0] == "Y" {
+        from_luminance(&mut pixels, &colors);
+    }
+    if !primaries::are_equal(&colors, &REC_709) && primaries::convert(&mut pixels, &colors).is_none() {
+        warnings.push("the EXR's chromaticities span no colors: its values are taken as Rec. 709".into());
+    }
+    let Some(Window { size, offset }) = window else {
+        return Ok(Decoded { width: stored.0, height: stored.1, pixels, projection, warnings });
+    };
+    let (stored_width, width) = (stored.0 as usize, size.0 as usize);
+    let mut whole = vec![[0.0, 0.0, 0.0, 1.0]; width * size.1 as usize];
+    for (y, row) in pixels.chunks_exact(stored_width).enumerate() {
+        let Some(y) = usize::try_from(y as i64 + offset.1).ok().filter(|y| *y < size.1 as usize) else { continue };
+        for (x, pixel) in row.iter().enumerate() {
+            if let Some(x) = usize::try_from(x as i64 + offset.0).ok().filter(|x| *x < width) {
+                whole[y * width + x] = *pixel;
+            }
+        }
+    }
+    warnings.push(format!(
+        "the EXR stores {}x{} pixels at {}, {} of a picture of {}x{}: the rest is black",
+        stored.0, stored.1, offset.0, offset.1, size.0, size.1
+    ));
+    Ok(Decoded { width: size.0, height: size.1, pixels: whole, projection, warnings })
 }
 
-/// Refuses deep and multi-part files by the version field, before their headers are read.
+/// Converts luminance and chroma to RGB (ImfRgbaYca.h): RY = (R - Y) / Y, BY = (B - Y) / Y. Gray has a chroma of 0.
+fn from_luminance(pixels: &mut [[f32; 4]], colors: &Primaries) {
+    let luminance = |colors| primaries::xyz_from_rgb(colors).map(|matrix| matrix.row(1).as_vec3());
+    let Some(weights) = luminance(colors).or_else(|| luminance(&REC_709)) else { return };
+    for pixel in pixels {
+        let [y, red, blue, _] = *pixel;
+        let (r, b) = ((red + 1.0) * y, (blue + 1.0) * y);
+        *pixel = [r, (y - r * weights.x - b * weights.z) / weights.y, b, 1.0];
+    }
+}
+
+/// Refuses deep files by the version field, before their headers are read. Of several parts, some may be flat.
 fn check_kind(bytes: &[u8]) -> Result<(), Problem> {
     let Some(version) = bytes.get(4..8) else {
         return Err(Problem::Damaged {
@@ -56,9 +124,8 @@ fn check_kind(bytes: &[u8]) -> Result<(), Problem> {
         });
     };
     let flags = u32::from_le_bytes([version[0], version[1], version[2], version[3]]);
-    match flags {
-        _ if flags & DEEP != 0 => Err(unsupported("a deep EXR (several samples a pixel)".into())),
-        _ if flags & MULTI_PART != 0 => Err(unsupported("an EXR with several parts".into())),
+    match flags & (DEEP | MULTI_PART) {
+        DEEP => Err(unsupported("a deep EXR (several samples a pixel)".into())),
         _ => Ok(()),
     }
 }
@@ -71,63 +138,45 @@ fn least_bytes(header: &Header) -> u64 {
     chunks + if stored_whole { header.total_pixel_bytes() as u64 } else { 0 }
 }
 
-fn check_channels(header: &Header) -> Result<(), Problem> {
-    let channels = &header.channels.list;
-    let name = |channel: &exr::meta::attribute::ChannelDescription| channel.name.to_string();
-    let missing = ["R", "G", "B"].into_iter().any(|wanted| !channels.iter().any(|channel| channel.name.eq(wanted)));
-    if missing {
-        let names: Vec<String> = channels.iter().map(name).collect();
-        return Err(Problem::Unsupported {
-            found: format!("an EXR with the channels {}", names.join(", ")),
-            expected: "channels R, G and B",
-            todo: "Export its color as a plain RGB image, without layer names.",
-        });
-    }
-    match channels.iter().find(|channel| channel.sampling != Vec2(1, 1)) {
-        Some(channel) => Err(unsupported(format!("an EXR whose channel {} is subsampled", channel.name))),
-        None => Ok(()),
+fn without_color(headers: &[Header]) -> Problem {
+    let channels = headers.iter().flat_map(|header| &header.channels.list);
+    let names: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
+    Problem::Unsupported {
+        found: format!("an EXR with the channels {}", names.join(", ")),
+        expected: "channels R, G and B, or Y",
+        todo: "Export its color as a plain RGB image, without layer names.",
     }
 }
 
-/// Refuses crops and overscan, which would shift the directions of all texels.
-fn check_window(header: &Header) -> Result<(), Problem> {
+/// The picture of which a file stores a part, or more than it.
+struct Window {
+    size: (u32, u32),
+    /// From the picture's corner to that of the stored pixels.
+    offset: (i64, i64),
+}
+
+/// `None` if the whole picture is stored, and nothing else.
+fn window(header: &Header) -> Result<Option<Window>, Problem> {
     let display = header.shared_attributes.display_window;
     let position = header.own_attributes.layer_position;
     if display.position == position && display.size == header.layer_size {
-        return Ok(());
+        return Ok(None);
     }
-    let (size, whole) = (header.layer_size, display.size);
-    Err(Problem::Unsupported {
-        found: format!(
-            "an EXR that stores {}x{} pixels at {}, {} of a picture of {}x{} at {}, {}",
-            size.width(),
-            size.height(),
-            position.x(),
-            position.y(),
-            whole.width(),
-            whole.height(),
-            display.position.x(),
-            display.position.y()
-        ),
-        expected: "the whole picture",
-        todo: "Export it without crop and overscan.",
-    })
-}
-
-fn other_primaries(found: &Chromaticities) -> Option<String> {
-    let found = [found.red, found.green, found.blue, found.white].map(|Vec2(x, y)| (x, y));
-    let far = |(a, b): (&(f32, f32), &(f32, f32))| (a.0 - b.0).abs().max((a.1 - b.1).abs()) > 0.005;
-    found.iter().zip(&REC_709).any(far).then(|| {
-        "the EXR declares primaries other than Rec. 709 (sRGB). Specula does not convert them, so colors are off. \
-         Export it as linear sRGB"
-            .to_owned()
-    })
+    let (width, height) = (display.size.width() as u64, display.size.height() as u64);
+    let size = check_size(width, height, 0, 0)?;
+    if width * height > LARGEST_CROP * header.layer_size.area() as u64 {
+        return Err(unsupported(format!(
+            "an EXR that stores less than 1/{LARGEST_CROP} of its picture of {width}x{height}"
+        )));
+    }
+    let offset = |of: fn(&Vec2<i32>) -> i32| i64::from(of(&position)) - i64::from(of(&display.position));
+    Ok(Some(Window { size, offset: (offset(|v| v.x()), offset(|v| v.y())) }))
 }
 
 fn unsupported(found: String) -> Problem {
     Problem::Unsupported {
         found,
-        expected: "one flat part with channels R, G and B",
+        expected: "a flat part with channels R, G and B, or Y",
         todo: "Export it as a plain RGB image.",
     }
 }

@@ -1,5 +1,7 @@
-//! Reads Radiance HDR (RGBE): flat pixels, old and new run lengths; rows from top to bottom. The `image` crate reads the header
+//! Reads Radiance HDR (RGBE): flat pixels, old and new run lengths; rows in all eight orders. The `image` crate reads the header
 //! and all that is unusual. Rows with new run lengths, which nearly all files have, are decoded here, in parallel.
+
+use std::ops::Range;
 
 use image::ImageDecoder;
 use image::codecs::hdr::{HdrDecoder, HdrMetadata};
@@ -11,6 +13,60 @@ use super::error::EnvironmentProblem as Problem;
 
 /// Decodes a whole file.
 pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
+    let Some(order) = Order::of(bytes) else { return decode_in_order(bytes) };
+    // The decoder knows only the usual order. In that, a file whose rows are columns is turned.
+    let usual = [&bytes[..order.line.start], &order.usual_line[..], &bytes[order.line.end..]].concat();
+    let Decoded { width, height, pixels, projection, warnings } = decode_in_order(&usual)?;
+    let (width, height) = if order.has_columns { (height, width) } else { (width, height) };
+    check_size(width.into(), height.into(), 0, 0)?;
+    let (columns, rows) = (width as usize, height as usize);
+    let from = |at: usize| {
+        let (x, y) = (at % columns, at / columns);
+        let (x, y) = (if order.flips_x { columns - 1 - x } else { x }, if order.flips_y { rows - 1 - y } else { y });
+        pixels[if order.has_columns { x * rows + y } else { y * columns + x }]
+    };
+    let pixels = (0..pixels.len()).into_par_iter().map(from).collect();
+    Ok(Decoded { width, height, pixels, projection, warnings })
+}
+
+/// The order of the pixels in a file, if it is another than `-Y height +X width`: from the top, and each row from the left.
+struct Order {
+    /// Where the header's last line, which names the order, is in the file.
+    line: Range<usize>,
+    /// The line for the usual order.
+    usual_line: Vec<u8>,
+    /// Whether the file has the picture's columns one after the other.
+    has_columns: bool,
+    flips_x: bool,
+    flips_y: bool,
+}
+
+impl Order {
+    fn of(bytes: &[u8]) -> Option<Self> {
+        // The line after the empty one that ends the other lines of the header.
+        let start = bytes.windows(2).position(|pair| pair == b"\n\n")? + 2;
+        let end = start + bytes[start..].iter().position(|byte| *byte == b'\n')?;
+        let text = std::str::from_utf8(&bytes[start..end]).ok()?;
+        let words: [&str; 4] = text.split_ascii_whitespace().collect::<Vec<_>>().try_into().ok()?;
+        let [first, lines, second, length] = words;
+        if !matches!((first, second), ("+Y" | "-Y", "+X" | "-X") | ("+X" | "-X", "+Y" | "-Y"))
+            || (first, second) == ("-Y", "+X")
+        {
+            return None;
+        }
+        let has = |axis: &str| [first, second].contains(&axis);
+        Some(Self {
+            line: start..end,
+            usual_line: format!("-Y {lines} +X {length}").into_bytes(),
+            has_columns: first.ends_with('X'),
+            flips_x: has("-X"),
+            flips_y: has("+Y"),
+        })
+    }
+}
+
+/// Decodes a file whose rows go from top to bottom.
+fn decode_in_order(bytes: &[u8]) -> Result<Decoded, Problem> {
     // Non-strict: the strict decoder refuses files that begin with `#?RGBE`, which are common.
     let mut after_header = bytes;
     let metadata = HdrDecoder::new_nonstrict(&mut after_header).map_err(problem)?.metadata();
@@ -31,7 +87,7 @@ pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
             "the header says that the pixels were multiplied by {r} {g} {b} (EXPOSURE, COLORCORR); Specula divides by it"
         ));
     }
-    Ok(Decoded { width, height, pixels, warnings })
+    Ok(Decoded { width, height, pixels, projection: None, warnings })
 }
 
 /// Decodes flat pixels, old run lengths, and what is damaged, for which the decoder has the error.
@@ -143,7 +199,7 @@ fn problem(error: ImageError) -> Problem {
                 UnsupportedErrorKind::GenericFeature(feature) => format!("an HDR image with: {feature}"),
                 _ => unsupported.to_string(),
             },
-            expected: "FORMAT=32-bit_rle_rgbe and rows from top to bottom (-Y height +X width)",
+            expected: "FORMAT=32-bit_rle_rgbe",
             todo: "Save it again from an image editor.",
         },
         ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {

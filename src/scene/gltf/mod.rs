@@ -6,8 +6,10 @@ mod geometry;
 pub(super) mod materials;
 mod nodes;
 mod place;
+mod placing;
 #[cfg(test)]
 mod tests;
+mod unseen;
 pub(super) mod values;
 mod variants;
 
@@ -25,10 +27,9 @@ use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
-use self::place::LARGEST_COORDINATE;
 use super::error::Problem;
 use super::load_options::{Canceled, LoadOptions};
-use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
+use super::model::{Contents, Image, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
 use crate::message::catch_panic;
@@ -96,21 +97,10 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     }
     model.primitives = Arc::new(primitives);
     model.nodes = scene.nodes;
-    for placed in scene.meshes {
-        for primitive in ranges.get(&placed.mesh).cloned().unwrap_or_default() {
-            let world_from_object = placed.world_from_object;
-            model.instances.push(Instance {
-                primitive,
-                world_from_object,
-                node: placed.node,
-                node_name: placed.name.clone(),
-            });
-        }
-    }
-    model.bounds = world_bounds(&model)?;
+    model.contents = Contents { scenes: root.scenes.len(), animations: root.animations.len(), skins: root.skins.len() };
+    placing::place(&mut model, scene.meshes, scene.lights, scene.cameras, &ranges, &mut warnings)?;
     model.outline = outline(&model);
-    model.lights = scene.lights;
-    model.cameras = scene.cameras.iter().map(|camera| camera.place(&model.bounds)).collect();
+    warnings.extend(unseen::reason(&root, &model));
     if model.lights.len() > MAX_LIGHTS {
         warnings.push(format!("it has {} lights: the first {MAX_LIGHTS} shine.", model.lights.len()));
     }
@@ -141,19 +131,6 @@ fn finish_meshes(mut meshes: Meshes, materials: &[Material], canceled: Canceled<
         .take_any_while(|_| !canceled())
         .for_each(|geometry| tangents::complete(geometry, materials));
     meshes
-}
-
-fn world_bounds(model: &Model) -> Result<Bounds, Problem> {
-    let bounds = model.instance_bounds();
-    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-    if model.instances.is_empty() {
-        return Err(Problem::NothingToDraw { found: "meshes without drawable primitives".into() });
-    }
-    if size <= LARGEST_COORDINATE {
-        return Ok(bounds);
-    }
-    let expected = format!("coordinates up to {LARGEST_COORDINATE:e} in world space");
-    Err(Problem::invalid("the scene", expected, format!("{size:e}")))
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {

@@ -1,13 +1,18 @@
 //! Walks the node hierarchy and places meshes, lights and cameras.
 
-use glam::{Mat4, Quat, Vec3};
+use std::collections::HashSet;
+
+use glam::{DMat4, DVec3, Mat4, Quat, Vec3};
 use gltf::json;
 use json::extensions::scene::khr_lights_punctual as punctual;
 use json::validation::Checked;
 
 use super::super::error::Problem;
-use super::super::model::{Bounds, Camera, Light, LightKind, Node};
+use super::super::model::{Camera, Lens, Light, LightKind, Node};
 use super::place::{get, out_of_range, place};
+
+/// How many more nodes than the file has a scene may show, since a node with several parents is shown below each of them.
+const MOST_REPEATED: usize = 1 << 16;
 
 /// The objects of a scene.
 #[derive(Default)]
@@ -16,10 +21,10 @@ pub struct Scene {
     pub nodes: Vec<Node>,
     /// Meshes, in the order of the hierarchy.
     pub meshes: Vec<PlacedMesh>,
-    /// Lights in world space.
-    pub lights: Vec<Light>,
-    /// Cameras.
-    pub cameras: Vec<PlacedCamera>,
+    /// Lights, with their exact positions.
+    pub lights: Vec<(Light, DVec3)>,
+    /// Cameras, with their exact positions.
+    pub cameras: Vec<(Camera, DVec3)>,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -32,46 +37,42 @@ pub struct PlacedMesh {
     pub node: usize,
     /// Name of the node, or empty.
     pub name: String,
-    /// Object to world; finite.
-    pub world_from_object: Mat4,
+    /// Object to world; finite. In doubles, so that a model far from the origin can be moved there without loss.
+    pub world_from_object: DMat4,
 }
 
-/// A camera in the world, before the scene's bounds are known.
-pub struct PlacedCamera {
-    name: String,
-    world_from_object: Mat4,
-    lens: Lens,
-}
-
-enum Lens {
-    Perspective { fovy: f32 },
-    Orthographic { half_height: f32 },
+/// The nodes below each node.
+struct Hierarchy {
+    /// Each child once.
+    children: Vec<Vec<usize>>,
+    /// How many parents each node has.
+    parents: Vec<usize>,
 }
 
 /// Walks the default scene, or the first scene, or all nodes without a parent.
 pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
-    let has_parent = check_hierarchy(root)?;
     let mut scene = Scene::default();
+    let hierarchy = Hierarchy::new(root, &mut scene.warnings)?;
     let start = match (root.scene, root.scenes.first()) {
-        (Some(index), _) => scene_roots(get(&root.scenes, index, "scene", "scenes")?, root, &has_parent)?,
-        (None, Some(first)) => scene_roots(first, root, &has_parent)?,
-        (None, None) => (0..root.nodes.len()).filter(|&node| !has_parent[node]).collect(),
+        (Some(index), _) => hierarchy.roots(get(&root.scenes, index, "scene", "scenes")?, root, &mut scene.warnings)?,
+        (None, Some(first)) => hierarchy.roots(first, root, &mut scene.warnings)?,
+        (None, None) => hierarchy.tops(),
     };
     // An explicit stack, since files may nest deeper than the thread's stack allows.
-    let root_of = |node| (node, None, Mat4::IDENTITY);
-    let mut stack: Vec<(usize, Option<usize>, Mat4)> = start.into_iter().rev().map(root_of).collect();
+    let root_of = |node| (node, None, DMat4::IDENTITY);
+    let mut stack: Vec<(usize, Option<usize>, DMat4)> = start.into_iter().rev().map(root_of).collect();
     while let Some((index, parent, world_from_parent)) = stack.pop() {
         let node = &root.nodes[index];
         let place = place("nodes", index, node.name.as_deref());
-        let world_from_object = world_from_parent * local_transform(node, &place, &mut scene.warnings)?;
-        if !world_from_object.is_finite() {
+        let world_from_object = world_from_parent * local_transform(node, &place, &mut scene.warnings)?.as_dmat4();
+        if !world_from_object.as_mat4().is_finite() {
             return Err(Problem::invalid(place, "a finite world transform", "one that overflows"));
         }
         let at = scene.nodes.len();
         scene.nodes.push(Node { index, name: node.name.clone().unwrap_or_default(), parent, ..Node::default() });
-        scene.add(root, node, index, world_from_object, &place)?;
-        let children = node.children.iter().flatten().rev();
-        stack.extend(children.map(|child| (child.value(), Some(at), world_from_object)));
+        scene.add(root, node, index, &world_from_object, &place)?;
+        let children = hierarchy.children[index].iter().rev();
+        stack.extend(children.map(|child| (*child, Some(at), world_from_object)));
     }
     if scene.meshes.is_empty() {
         let found = format!("{} nodes, {} meshes in the file, none in the scene", root.nodes.len(), root.meshes.len());
@@ -81,53 +82,91 @@ pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
     Ok(scene)
 }
 
-fn scene_roots(scene: &json::Scene, root: &json::Root, has_parent: &[bool]) -> Result<Vec<usize>, Problem> {
-    let mut roots = Vec::with_capacity(scene.nodes.len());
-    let mut listed = vec![false; root.nodes.len()];
-    for node in &scene.nodes {
-        get(&root.nodes, *node, "scenes[].nodes", "nodes")?;
-        let node = node.value();
-        if has_parent[node] || std::mem::replace(&mut listed[node], true) {
-            let found = format!(
-                "nodes[{node}], which is {}",
-                if has_parent[node] { "a child of another" } else { "listed twice" }
-            );
-            return Err(Problem::invalid("scenes[].nodes", "each root node once", found));
+impl Hierarchy {
+    /// Reads the hierarchy. A child that does not exist and a cycle are errors. A node with several parents, which glTF forbids and
+    /// some programs write, is shown below each.
+    fn new(root: &json::Root, warnings: &mut Vec<String>) -> Result<Self, Problem> {
+        let count = root.nodes.len();
+        let place = |index: usize| place("nodes", index, root.nodes[index].name.as_deref());
+        let mut this = Self { children: vec![Vec::new(); count], parents: vec![0; count] };
+        for (index, node) in root.nodes.iter().enumerate() {
+            let mut listed = HashSet::new();
+            for child in node.children.iter().flatten().map(json::Index::value) {
+                if child >= count {
+                    return Err(out_of_range(&place(index), "nodes", child, count));
+                }
+                if listed.insert(child) {
+                    this.children[index].push(child);
+                    this.parents[child] += 1;
+                } else {
+                    warnings.push(format!(
+                        "{} lists the child {} twice: it is shown once.",
+                        place(index),
+                        place(child)
+                    ));
+                }
+            }
         }
-        roots.push(node);
+        let mut shared = (0..count).filter(|&node| this.parents[node] > 1);
+        if let Some(first) = shared.next() {
+            let parents = this.parents[first];
+            let others = match shared.count() {
+                0 => String::new(),
+                more => format!(", as are {more} others with several parents"),
+            };
+            warnings.push(format!("{} has {parents} parents: it is shown below each{others}.", place(first)));
+        }
+        // Takes away nodes without parents until only those on a cycle, or below one, are left.
+        let mut waits_for = this.parents.clone();
+        let mut shown: Vec<usize> = this.parents.iter().map(|&parents| usize::from(parents == 0)).collect();
+        let mut ready = this.tops();
+        while let Some(node) = ready.pop() {
+            for &child in &this.children[node] {
+                shown[child] = shown[child].saturating_add(shown[node]);
+                waits_for[child] -= 1;
+                if waits_for[child] == 0 {
+                    ready.push(child);
+                }
+            }
+        }
+        if let Some(node) = waits_for.iter().position(|waits| *waits > 0) {
+            let found = "a node that is its own ancestor, or below one";
+            return Err(Problem::invalid(place(node), "a hierarchy without cycles", found));
+        }
+        let total = shown.iter().fold(0_usize, |sum, times| sum.saturating_add(*times));
+        if total - count > MOST_REPEATED {
+            let expected = format!("nodes with several parents that are shown at most {MOST_REPEATED} times more");
+            return Err(Problem::invalid("nodes", expected, (total - count).to_string()));
+        }
+        Ok(this)
     }
-    Ok(roots)
-}
 
-/// Checks that the nodes form a forest: children in range, at most one parent, no cycle. Returns which nodes have a parent.
-fn check_hierarchy(root: &json::Root) -> Result<Vec<bool>, Problem> {
-    let count = root.nodes.len();
-    let mut has_parent = vec![false; count];
-    for (index, node) in root.nodes.iter().enumerate() {
-        for child in node.children.iter().flatten() {
-            let child = child.value();
-            if child >= count {
-                return Err(out_of_range(&place("nodes", index, node.name.as_deref()), "nodes", child, count));
-            }
-            if std::mem::replace(&mut has_parent[child], true) {
-                let place = place("nodes", child, root.nodes[child].name.as_deref());
-                return Err(Problem::invalid(place, "one parent at most", "two (or the same one twice)"));
+    /// The nodes without a parent.
+    fn tops(&self) -> Vec<usize> {
+        (0..self.parents.len()).filter(|&node| self.parents[node] == 0).collect()
+    }
+
+    /// The nodes at which a scene begins: those that it lists, without those that are below others, each once.
+    fn roots(&self, scene: &json::Scene, root: &json::Root, warnings: &mut Vec<String>) -> Result<Vec<usize>, Problem> {
+        for node in &scene.nodes {
+            get(&root.nodes, *node, "scenes[].nodes", "nodes")?;
+        }
+        let listed = || scene.nodes.iter().map(json::Index::value);
+        let mut is_below = vec![false; self.parents.len()];
+        let mut stack: Vec<usize> = listed().flat_map(|node| &self.children[node]).copied().collect();
+        while let Some(node) = stack.pop() {
+            if !std::mem::replace(&mut is_below[node], true) {
+                stack.extend(&self.children[node]);
             }
         }
-    }
-    // With at most one parent each, the nodes that no root reaches are on a cycle or below one.
-    let mut reached = vec![false; count];
-    let mut stack: Vec<usize> = (0..count).filter(|&node| !has_parent[node]).collect();
-    while let Some(node) = stack.pop() {
-        reached[node] = true;
-        stack.extend(root.nodes[node].children.iter().flatten().map(|child| child.value()));
-    }
-    match reached.iter().position(|reached| !reached) {
-        Some(node) => {
-            let place = place("nodes", node, root.nodes[node].name.as_deref());
-            Err(Problem::invalid(place, "a hierarchy without cycles", "a node that is its own ancestor, or below one"))
+        let mut seen = HashSet::new();
+        let roots: Vec<usize> = listed().filter(|node| !is_below[*node] && seen.insert(*node)).collect();
+        match scene.nodes.len() - roots.len() {
+            0 => {}
+            1 => warnings.push("The scene lists a node that it already has: the node is shown once.".into()),
+            more => warnings.push(format!("The scene lists {more} nodes that it already has: each is shown once.")),
         }
-        None => Ok(has_parent),
+        Ok(roots)
     }
 }
 
@@ -164,14 +203,14 @@ impl Scene {
         root: &json::Root,
         node: &json::Node,
         index: usize,
-        world: Mat4,
+        world: &DMat4,
         place: &str,
     ) -> Result<(), Problem> {
         let name = node.name.clone().unwrap_or_default();
         if let Some(mesh) = node.mesh {
             let named = get(&root.meshes, mesh, place, "meshes")?.name.clone().unwrap_or_default();
             self.last_node().mesh = Some(named);
-            let placed = PlacedMesh { mesh: mesh.value(), node: index, name: name.clone(), world_from_object: world };
+            let placed = PlacedMesh { mesh: mesh.value(), node: index, name: name.clone(), world_from_object: *world };
             self.meshes.push(placed);
         }
         if let Some(camera) = node.camera {
@@ -180,15 +219,15 @@ impl Scene {
                 root.cameras[camera.value()].name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| name.clone());
             let number = self.cameras.len();
             self.last_node().camera = Some(number);
-            self.cameras.push(PlacedCamera { name, world_from_object: world, lens });
+            self.cameras.push((camera_in(world, name, lens), world.w_axis.truncate()));
         }
         if let Some(light) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
             let lights: &[punctual::Light] = root.as_ref();
             let source = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
-            let light = read_light(source, light.light.value(), &world, &mut self.warnings)?;
+            let light = read_light(source, light.light.value(), &world.as_mat4(), &mut self.warnings)?;
             let number = self.lights.len();
             self.last_node().light = Some(number);
-            self.lights.push(light);
+            self.lights.push((light, world.w_axis.truncate()));
         }
         Ok(())
     }
@@ -280,33 +319,18 @@ fn read_lens(camera: &json::Camera, index: usize) -> Result<Lens, Problem> {
     let Some(orthographic) = &camera.orthographic else {
         return Err(Problem::invalid(place, "a perspective or an orthographic projection", "neither"));
     };
-    let half_height = orthographic.ymag.abs();
-    if between(half_height, 0.0, f32::INFINITY) {
-        return Ok(Lens::Orthographic { half_height });
+    let height = 2.0 * orthographic.ymag.abs();
+    if between(height, 0.0, f32::INFINITY) {
+        return Ok(Lens::Orthographic { height });
     }
     Err(Problem::invalid(place, "a finite ymag that is not 0", orthographic.ymag.to_string()))
 }
 
-impl PlacedCamera {
-    /// The camera in a scene with these bounds. An orthographic camera becomes a perspective camera that shows the same
-    /// height at the depth of the center.
-    pub fn place(&self, bounds: &Bounds) -> Camera {
-        let world = &self.world_from_object;
-        let eye = world.w_axis.truncate();
-        let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
-        let up = world
-            .transform_vector3(Vec3::Y)
-            .reject_from_normalized(forward)
-            .normalize_or(forward.any_orthonormal_vector());
-        let fovy = match self.lens {
-            Lens::Perspective { fovy } => fovy,
-            Lens::Orthographic { half_height } => {
-                let depth = forward.dot(bounds.center() - eye);
-                let depth = if depth > 0.0 { depth } else { bounds.radius() };
-                2.0 * (half_height / depth).atan()
-            }
-        };
-        // Avoid the extreme angles that an orthographic camera may yield.
-        Camera { name: self.name.clone(), eye, forward, up, fovy: fovy.clamp(1e-3, 3.1) }
-    }
+/// The camera of a node.
+fn camera_in(world: &DMat4, name: String, lens: Lens) -> Camera {
+    let world = world.as_mat4();
+    let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
+    let up = world.transform_vector3(Vec3::Y).reject_from_normalized(forward);
+    let up = up.normalize_or(forward.any_orthonormal_vector());
+    Camera { name, eye: world.w_axis.truncate(), forward, up, lens }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{Align2, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::app::widgets::theme::{CARD, TEXT, small_font};
-use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
+use crate::scene::{BUILT_IN, Bounds, CameraView, Model, view_of};
 use crate::settings::CameraSettings;
 
 /// Above this, labels are hidden: the model is not a chart of materials.
@@ -70,7 +70,7 @@ pub(super) fn show(
     if labels.objects.is_empty() {
         return;
     }
-    let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
+    let camera = &view_of(model, camera, picture.aspect_ratio());
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
     let (pointer, mut has_pointed) = (egui.pointer_hover_pos(), false);
     let mut shown: Vec<Rect> = Vec::new();
@@ -157,7 +157,7 @@ mod tests {
     fn a_name_lies_at_its_object() {
         let model = built_in("clearcoat").unwrap().unwrap();
         let camera = CameraSettings { azimuth: 0.0, elevation: 0.0, ..CameraSettings::default() };
-        let view = frame(&model.bounds, &model.outline, &camera, 1.5);
+        let view = view_of(&model, &camera, 1.5);
         let picture = Rect::from_min_size(Pos2::ZERO, vec2(900.0, 600.0));
         let places: Vec<Pos2> =
             objects(&model).iter().map(|(_, bounds)| project(&view, bounds.center(), picture).unwrap()).collect();

@@ -220,7 +220,7 @@ fn rows(model: &Model) -> Vec<Row> {
     group(&mut rows, Group::Textures, "Textures", textures.collect());
     let cameras = model.cameras.iter().enumerate().map(|(index, camera)| {
         let name = name_or(&camera.name, || format!("camera {index}"));
-        (name, format!("{:.0}°", camera.fovy.to_degrees()), Selected::Camera(index))
+        (name, camera.lens.to_string(), Selected::Camera(index))
     });
     group(&mut rows, Group::Cameras, "Cameras", cameras.collect());
     let mut lights: Vec<(String, String, Selected)> = (0..3)

@@ -40,21 +40,30 @@ impl<'t> Files<'t> {
 
     /// Loads the bytes of a URI. `place` is for messages.
     pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
-        let named = match uri::parse(uri, place, self.allow_outside)? {
+        let names = match uri::parse(uri, place, self.allow_outside)? {
             UriTarget::Data(bytes) => return Ok(bytes),
-            UriTarget::File(path) => path,
+            UriTarget::File(names) => names,
         };
         let Some(folder) = &self.folder else {
-            let found = format!("the external file `{}`", named.display());
+            let found = format!("the external file `{}`", names[0].display());
             return Err(Problem::invalid(place, "all data inside of a built-in model", found));
         };
-        let path = folder.join(&named);
         if (self.canceled)() {
             return Err(Problem::Canceled);
         }
-        if self.known.insert(path.clone()) {
-            self.tried.push(path.clone());
+        let mut named = &names[0];
+        for name in &names {
+            let path = folder.join(name);
+            let exists = path.exists();
+            if self.known.insert(path.clone()) {
+                self.tried.push(path);
+            }
+            if exists {
+                named = name;
+                break;
+            }
         }
+        let path = folder.join(named);
         // The text of a path does not show where its links lead.
         match linked_outside(folder, &path) {
             Ok(Some(end)) if !self.allow_outside => {

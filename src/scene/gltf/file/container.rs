@@ -44,8 +44,8 @@ pub fn parse(bytes: &[u8]) -> Result<Document<'_>, Problem> {
     if bytes.is_empty() {
         return Err(Problem::Empty);
     }
-    let (text, bin) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (json_text(bytes)?, None) };
-    let root = parse_json(text)?;
+    let (text, bin) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
+    let root = parse_json(json_text(text)?)?;
     check_version(&root.asset)?;
     let warnings = check_extensions(&root)?;
     Ok(Document { root, bin, warnings })
@@ -98,22 +98,55 @@ fn json_text(bytes: &[u8]) -> Result<&[u8], Problem> {
     match text.iter().find(|byte| !byte.is_ascii_whitespace()) {
         Some(b'{') => Ok(text),
         None => Err(Problem::NotGltf { found: "only white space".into() }),
+        Some(0xfe | 0xff) => Err(Problem::NotGltf { found: "text that is not UTF-8 (perhaps UTF-16)".into() }),
         // A look may name any file, whose bytes a message must not print.
         Some(_) => Err(Problem::NotGltf { found: format!("{} bytes of something else", bytes.len()) }),
     }
 }
 
 fn parse_json(text: &[u8]) -> Result<json::Root, Problem> {
-    json::deserialize::from_slice(text).or_else(|error| repair(text).ok_or(Problem::Json(error)))
+    json::deserialize::from_slice(text).or_else(|error| {
+        let Ok(mut value) = json::deserialize::from_slice::<json::Value>(text) else {
+            return Err(Problem::Json(error));
+        };
+        if let Some(found) = other_version(&value) {
+            return Err(Problem::Version { found });
+        }
+        // The first error has a line, but if it is repaired, it is another one that counts.
+        let is_repaired = repair(&mut value);
+        json::deserialize::from_value(value).map_err(|left| Problem::Json(if is_repaired { left } else { error }))
+    })
 }
 
-/// Adds an empty list to scenes without `nodes`, which are valid although the parser refuses them.
-fn repair(text: &[u8]) -> Option<json::Root> {
-    let mut value: json::Value = json::deserialize::from_slice(text).ok()?;
-    for scene in value.get_mut("scenes")?.as_array_mut()? {
-        scene.as_object_mut()?.entry("nodes").or_insert_with(|| json::Value::Array(Vec::new()));
+/// The version of a file that is not glTF 2. In glTF 1.0, the lists are objects.
+fn other_version(file: &json::Value) -> Option<String> {
+    let version = &file["asset"]["version"];
+    let text = version.as_str().map_or_else(|| version.to_string(), str::to_owned);
+    if !version.is_null() && !text.starts_with('2') {
+        return Some(format!("`{}`", text.escape_default()));
     }
-    json::deserialize::from_value(value).ok()
+    let has_objects = ["meshes", "nodes", "accessors"].iter().any(|list| file[list].is_object());
+    has_objects.then(|| "1.0 (its lists are objects)".to_owned())
+}
+
+/// Makes what is valid, although the parser refuses it, into what the parser accepts: scenes without `nodes`, and channels of animations
+/// whose target has no `node`. Returns whether there was any.
+fn repair(file: &mut json::Value) -> bool {
+    let mut is_repaired = false;
+    // `get_mut`, since an index would add a missing member.
+    let scenes = file.get_mut("scenes").and_then(json::Value::as_array_mut);
+    for scene in scenes.into_iter().flatten().filter_map(json::Value::as_object_mut) {
+        is_repaired |= !scene.contains_key("nodes");
+        scene.entry("nodes").or_insert_with(|| json::Value::Array(Vec::new()));
+    }
+    let animations = file.get_mut("animations").and_then(json::Value::as_array_mut);
+    let channels_of = |animation| json::Value::get_mut(animation, "channels").and_then(json::Value::as_array_mut);
+    for channels in animations.into_iter().flatten().filter_map(channels_of) {
+        let before = channels.len();
+        channels.retain(|channel| !channel["target"].is_object() || channel["target"].get("node").is_some());
+        is_repaired |= channels.len() < before;
+    }
+    is_repaired
 }
 
 /// Accepts version 2.x. `minVersion`, if present, must be a version that this loader implements.

@@ -9,8 +9,9 @@ use crate::scene::error::Problem;
 pub enum UriTarget {
     /// The bytes of a data URI.
     Data(Vec<u8>),
-    /// A path as written, percent-decoded, relative to the model's folder unless absolute.
-    File(PathBuf),
+    /// Paths, relative to the model's folder unless absolute, of which the first that exists is meant: as URIs are written, and as
+    /// programs write them that know only paths, with backslashes or a `%` that stands for itself.
+    File(Vec<PathBuf>),
 }
 
 /// Parses a URI. Refuses all schemes except `data:`, and paths out of the model's folder unless `allow_outside`.
@@ -21,15 +22,27 @@ pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<UriTarget, P
         }
         return Err(Problem::Scheme { place: place.into(), uri: shorten(uri), scheme: scheme.into() });
     }
-    let decoded = percent_decode(uri).and_then(|bytes| String::from_utf8(bytes).ok());
-    let Some(path) = decoded.filter(|path| !path.is_empty()) else {
-        return Err(Problem::invalid(place, "a relative path in percent-encoded UTF-8", format!("`{}`", shorten(uri))));
-    };
-    if !allow_outside && leaves_folder(&path) {
-        let found = "a path that leaves it".to_owned();
-        return Err(Problem::Outside { place: place.into(), uri: shorten(&path), found });
+    if uri.is_empty() {
+        return Err(Problem::invalid(place, "a relative path", "an empty text"));
     }
-    Ok(UriTarget::File(PathBuf::from(path)))
+    let mut paths = Vec::new();
+    for path in [String::from_utf8(percent_decode(uri)).ok(), Some(uri.to_owned())].into_iter().flatten() {
+        if !allow_outside && leaves_folder(&path) {
+            let found = "a path that leaves it".to_owned();
+            return Err(Problem::Outside { place: place.into(), uri: shorten(&path), found });
+        }
+        for path in [PathBuf::from(&path), PathBuf::from(path.replace('\\', "/"))] {
+            if !paths.contains(&path) {
+                paths.push(path);
+            }
+        }
+    }
+    Ok(UriTarget::File(paths))
+}
+
+/// Whether a URI holds its data.
+pub fn is_data(uri: &str) -> bool {
+    scheme(uri).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data"))
 }
 
 /// The scheme before the colon. A single letter is a Windows drive.
@@ -69,27 +82,23 @@ fn decode_data(data: &str, place: &str) -> Result<Vec<u8>, Problem> {
             format!("`data:{}`", shorten(data)),
         ));
     };
-    let (decoded, kind) = if header.ends_with(";base64") {
-        (base64_decode(body), "base64")
-    } else {
-        (percent_decode(body), "percent-encoded")
-    };
-    decoded.ok_or_else(|| Problem::invalid(place, format!("{kind} data in a data URI"), "characters that are not"))
+    if !header.to_ascii_lowercase().ends_with(";base64") {
+        return Ok(percent_decode(body));
+    }
+    base64_decode(body).ok_or_else(|| Problem::invalid(place, "base64 data in a data URI", "characters that are not"))
 }
 
-/// Decodes `%XX`. Returns `None` if digits are missing.
-fn percent_decode(text: &str) -> Option<Vec<u8>> {
+/// Decodes `%XX`. A `%` without two digits stands for itself.
+fn percent_decode(text: &str) -> Vec<u8> {
     let mut out = Vec::with_capacity(text.len());
-    let mut bytes = text.bytes();
-    let digit = |bytes: &mut std::str::Bytes<'_>| char::from(bytes.next()?).to_digit(16);
-    while let Some(byte) = bytes.next() {
-        let decoded = match byte {
-            b'%' => u8::try_from(digit(&mut bytes)? * 16 + digit(&mut bytes)?).ok()?,
-            other => other,
-        };
-        out.push(decoded);
+    let mut rest = text.as_bytes();
+    let digit = |byte: u8| char::from(byte).to_digit(16);
+    while let [first, after @ ..] = rest {
+        let pair = after.first_chunk().filter(|_| *first == b'%').and_then(|[a, b]| Some(digit(*a)? * 16 + digit(*b)?));
+        out.push(pair.map_or(*first, |value| value as u8));
+        rest = if pair.is_some() { &after[2..] } else { after };
     }
-    Some(out)
+    out
 }
 
 /// Decodes base64 in the standard or URL alphabet, padded or not. Returns `None` on anything else.
@@ -145,13 +154,24 @@ mod tests {
 
     #[test]
     fn paths_are_percent_decoded() {
-        assert_eq!(parse("a%20b/%C3%A9.bin", "", false).unwrap(), UriTarget::File("a b/\u{e9}.bin".into()));
-        assert_eq!(parse("x/../y.bin", "", false).unwrap(), UriTarget::File("x/../y.bin".into()));
-        assert_eq!(parse("data:text/plain,a%20b", "", false).unwrap(), UriTarget::Data(b"a b".to_vec()));
-        for bad in ["%", "%4", "%zz", "%ff.bin", ""] {
+        let paths = |uri: &str| match parse(uri, "", false).unwrap() {
+            UriTarget::File(paths) => paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            UriTarget::Data(bytes) => panic!("{bytes:?}"),
+        };
+        assert_eq!(paths("a%20b/%C3%A9.bin"), ["a b/\u{e9}.bin", "a%20b/%C3%A9.bin"]);
+        assert_eq!(paths("x/../y.bin"), ["x/../y.bin"]);
+        // As programs write them that know only paths.
+        assert_eq!(paths("tex\\50%.png"), ["tex\\50%.png", "tex/50%.png"]);
+        for odd in ["%", "%4", "%zz"] {
+            assert_eq!(paths(odd), [odd]);
+        }
+        assert_eq!(paths("%ff.bin"), ["%ff.bin"]);
+        for data in ["data:text/plain,a%20b", "DATA:,a%20b", "Data:;BASE64,YSBi"] {
+            assert_eq!(parse(data, "", false).unwrap(), UriTarget::Data(b"a b".to_vec()));
+        }
+        for bad in ["", "data:x", "data:;base64,*"] {
             assert!(matches!(parse(bad, "", false), Err(Problem::Invalid { .. })), "{bad}");
         }
-        assert!(matches!(parse("data:x", "", false), Err(Problem::Invalid { .. })));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Completes tangents: from the file, from MikkTSpace, or around the Y axis.
 
 use bevy_mikktspace::{TangentSpace, generate_tangents};
-use glam::{Vec3, Vec4};
+use glam::{Affine2, Vec3, Vec4};
 
 use super::mesh::Geometry;
 use super::triangles::{self, Corners};
@@ -56,8 +56,8 @@ fn materials_of(primitive: &Primitive) -> impl Iterator<Item = usize> {
     std::iter::once(primitive.default_material).chain(others)
 }
 
-/// Generates MikkTSpace tangents from the texture coordinates of the first texture that holds directions, before its
-/// KHR_texture_transform. Returns `false` without faces or texture coordinates.
+/// Generates MikkTSpace tangents from the texture coordinates of the first texture that holds directions, after its
+/// KHR_texture_transform: its x and y point along the picture as the surface shows it. Returns `false` without faces or texture coordinates.
 fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
     let directions = [contract::TEXTURE_NORMAL, contract::TEXTURE_CLEARCOAT_NORMAL, contract::TEXTURE_ANISOTROPY];
     let directed = |m: &Material| directions.iter().find_map(|texture| m.textures[*texture as usize]);
@@ -69,7 +69,8 @@ fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
     if triangles.is_empty() || !(has_uv0 || has_uv1) {
         return false;
     }
-    let mut mesh = Mesh { corners: Corners::new(&primitive.vertices, &triangles), second };
+    let uv_from_mesh = texture.map_or(Affine2::IDENTITY, |texture| texture.uv_from_mesh);
+    let mut mesh = Mesh { corners: Corners::new(&primitive.vertices, &triangles), second, uv_from_mesh };
     if generate_tangents(&mut mesh).is_err() {
         return false;
     }
@@ -81,6 +82,7 @@ fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
 struct Mesh {
     corners: Corners,
     second: bool,
+    uv_from_mesh: Affine2,
 }
 
 impl Mesh {
@@ -108,7 +110,8 @@ impl bevy_mikktspace::Geometry for Mesh {
 
     fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
         let corner = self.corner(face, vertex);
-        if self.second { corner.uv1 } else { corner.uv0 }
+        let uv = if self.second { corner.uv1 } else { corner.uv0 };
+        self.uv_from_mesh.transform_point2(uv.into()).to_array()
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {

@@ -13,6 +13,7 @@ use super::textures::Origin;
 use crate::message::catch_panic;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
+use crate::scene::gltf::file::uri;
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 use crate::scene::model::Image;
@@ -51,7 +52,7 @@ pub fn find<'a>(root: &json::Root, buffers: &'a Buffers<'_>, files: &mut Files<'
         Origin::Texture(index) => lacking(root, index),
     };
     let image = index.and_then(|index| root.images.get(index));
-    let file = image.and_then(|image| image.uri.as_ref()).filter(|uri| !uri.starts_with("data:"));
+    let file = image.and_then(|image| image.uri.as_ref()).filter(|uri| !uri::is_data(uri));
     let name = image.and_then(|image| image.name.as_ref());
     let number = match (index, origin) {
         (Some(index), _) => format!("image {index}"),

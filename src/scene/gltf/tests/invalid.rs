@@ -43,6 +43,74 @@ fn assert_refused(pointer: &str, value: Value, word: &str) {
 }
 
 #[test]
+fn gltf_1_is_named_in_every_form() {
+    let message = |text: &str| load_bytes("x.gltf", text.as_bytes()).unwrap_err().to_string();
+    for (text, version) in [
+        (r#"{ "asset": { "version": "1.0" }, "meshes": {}, "nodes": {}, "scenes": {} }"#, "`1.0`"),
+        (r#"{ "asset": { "version": 0.8 }, "meshes": {} }"#, "`0.8`"),
+        (r#"{ "meshes": {}, "nodes": {}, "scenes": {} }"#, "1.0 (its lists are objects)"),
+        (r#"{ "asset": { "profile": {} }, "accessors": {} }"#, "1.0 (its lists are objects)"),
+    ] {
+        let error = message(text);
+        assert!(error.contains(&format!("needs glTF {version}, expected 2.0. Convert the model")), "{error}");
+    }
+}
+
+#[test]
+fn byte_order_marks_are_no_part_of_the_json() {
+    let mut builder = Builder::triangle();
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let mut glb = builder.glb();
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap());
+    glb.splice(20..20, *b"\xef\xbb\xbf ");
+    glb[12..16].copy_from_slice(&(length + 4).to_le_bytes());
+    let size = glb.len() as u32;
+    glb[8..12].copy_from_slice(&size.to_le_bytes());
+    assert_eq!(load_bytes("x.glb", &glb).unwrap().instances.len(), 1);
+    builder.json["buffers"][0]["uri"] = json!(format!("DATA:application/octet-stream;BASE64,{data}"));
+    let text = format!("\u{feff}{}", builder.json);
+    assert_eq!(load_bytes("x.gltf", text.as_bytes()).unwrap().instances.len(), 1);
+    let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert!(load_bytes("x.gltf", &wide).unwrap_err().to_string().contains("perhaps UTF-16"));
+}
+
+/// Programs that know only paths write them with backslashes, and do not encode spaces or percent signs.
+#[test]
+fn paths_of_other_writers_find_their_files() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("tex")).unwrap();
+    let mut builder = Builder::square();
+    builder.image("emissiveTexture", &materials::png(2, 2));
+    std::fs::write(folder.path().join("b.bin"), &builder.bin).unwrap();
+    builder.json["buffers"][0]["uri"] = json!("b.bin");
+    for (file, uri) in [
+        ("tex/back.png", "tex\\back.png"),
+        ("tex/back.png", ".\\tex\\back.png"),
+        ("tex/50% gray.png", "tex/50% gray.png"),
+        ("tex/50% gray.png", "tex\\50% gray.png"),
+        ("tex/50% gray.png", "tex/50%25%20gray.png"),
+        ("tex/a%20b.png", "tex/a%20b.png"),
+        ("tex\\name.png", "tex\\name.png"),
+    ] {
+        let path = folder.path().join(file);
+        std::fs::write(&path, materials::png(2, 2)).unwrap();
+        builder.json["images"][0] = json!({ "uri": uri });
+        let model = folder.path().join("m.gltf");
+        std::fs::write(&model, builder.json.to_string()).unwrap();
+        let loaded = load(&model, &LoadOptions::default()).unwrap();
+        assert!(loaded.warnings.is_empty(), "{uri}: {:?}", loaded.warnings);
+        assert!(
+            loaded.files.contains(&path) || loaded.files.iter().any(|used| used.ends_with(file)),
+            "{:?}",
+            loaded.files
+        );
+        std::fs::remove_file(path).unwrap();
+        let missing = load(&model, &LoadOptions::default()).unwrap();
+        assert!(missing.warnings[0].contains("there is no such file"), "{uri}: {:?}", missing.warnings);
+    }
+}
+
+#[test]
 fn files_that_are_not_gltf() {
     let message = |bytes: &[u8]| load_bytes("x.glb", bytes).unwrap_err().to_string();
     assert!(message(b"").contains("is empty"));
@@ -139,7 +207,8 @@ fn buffers_and_views() {
     assert_refused("/bufferViews/0/buffer", json!(3), "an index into buffers");
     assert_refused("/buffers/0/byteLength", json!(1 << 30), "bytes (byteLength)");
     assert_refused("/buffers/0/byteLength", json!(8), "a range inside of the 8 bytes");
-    assert_refused("/buffers/0/uri", json!("%ff"), "percent-encoded UTF-8");
+    assert_refused("/buffers/0/uri", json!("%ff"), "the external file `%ff`");
+    assert_refused("/buffers/0/uri", json!(""), "expected a relative path, found an empty text");
     assert_refused("/buffers/0/uri", json!("data:;base64,!!"), "base64");
     let text = rich().json.to_string();
     assert!(load_bytes("x", text.as_bytes()).unwrap_err().to_string().contains("binary chunk of a GLB"));

@@ -74,6 +74,23 @@ fn textures_are_shared_by_image_and_sampler() {
     assert_eq!(model.materials[1].numbers.occlusion_strength, 0.5);
 }
 
+/// The tangents that the loader makes follow the picture as the transform turns and mirrors it.
+#[test]
+fn tangents_turn_with_a_texture_transform() {
+    let tangent = |transform: Value| {
+        let mut builder = Builder::square();
+        builder.image("normalTexture", &png(2, 2));
+        builder.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"] = transform;
+        let [x, y, z, w] = builder.model().primitives[0].vertices[0].tangent;
+        [x, y, z, w].map(f32::round)
+    };
+    let quarter = std::f32::consts::FRAC_PI_2;
+    assert_eq!(tangent(json!({})), [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(tangent(json!({ "scale": [3, 2], "offset": [0.5, 0] })), [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(tangent(json!({ "rotation": quarter })), [0.0, -1.0, 0.0, 1.0]);
+    assert_eq!(tangent(json!({ "scale": [-1, 1] })), [-1.0, 0.0, 0.0, -1.0]);
+}
+
 #[test]
 fn texture_transform() {
     let mut builder = Builder::square();

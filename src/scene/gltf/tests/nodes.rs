@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
-use super::super::super::model::LightKind;
+use super::super::super::model::{Lens, LightKind};
 use super::*;
 
 #[test]
@@ -54,8 +54,6 @@ fn hierarchy_mistakes_are_named() {
     let cases = [
         (json!([{ "mesh": 0, "children": [1] }, { "children": [0] }]), "cycles"),
         (json!([{ "mesh": 0 }, { "children": [1] }]), "cycles"),
-        (json!([{ "children": [2] }, { "children": [2] }, { "mesh": 0 }]), "one parent"),
-        (json!([{ "children": [1, 1] }, { "mesh": 0 }]), "one parent"),
         (json!([{ "children": [7] }]), "nodes[0]: expected an index into nodes of 0 to 0, found 7"),
         (json!([{ "mesh": 3 }]), "an index into meshes of 0 to 0, found 3"),
         (json!([{ "mesh": 0, "camera": 0 }]), "no use of cameras"),
@@ -78,14 +76,130 @@ fn hierarchy_mistakes_are_named() {
         );
     }
     let mut builder = Builder::triangle();
-    builder.json["nodes"] = json!([{ "children": [1] }, { "mesh": 0 }]);
-    for (roots, word) in [(json!([1]), "a child of another"), (json!([0, 0]), "listed twice"), (json!([5]), "found 5")]
-    {
-        builder.json["scenes"][0]["nodes"] = roots;
-        assert!(builder.error().contains(word), "{}", builder.error());
-    }
+    builder.json["scenes"][0]["nodes"] = json!([5]);
+    assert!(builder.error().contains("found 5"));
     builder.json["scene"] = json!(4);
     assert!(builder.error().contains("index into scenes"));
+}
+
+#[test]
+fn a_node_that_is_listed_more_than_once_is_shown_with_a_warning() {
+    let cases = [
+        // UniGLTF lists all nodes as roots.
+        (json!([{ "children": [1] }, { "mesh": 0 }]), json!([0, 1]), 1, "lists a node that it already has"),
+        (json!([{ "children": [1] }, { "mesh": 0 }]), json!([1, 0]), 1, "lists a node that it already has"),
+        (json!([{ "children": [1] }, { "children": [2] }, { "mesh": 0 }]), json!([0, 1, 2]), 1, "lists 2 nodes"),
+        (json!([{ "mesh": 0 }]), json!([0, 0]), 1, "lists a node"),
+        (json!([{ "children": [1, 1] }, { "mesh": 0 }]), json!([0]), 1, "nodes[0] lists the child nodes[1] twice"),
+        (
+            json!([{ "children": [2] }, { "children": [2], "translation": [1, 0, 0] }, { "mesh": 0 }]),
+            json!([0, 1]),
+            2,
+            "nodes[2] has 2 parents: it is shown below each",
+        ),
+    ];
+    for (nodes, roots, shown, warning) in cases {
+        let mut builder = Builder::triangle();
+        (builder.json["nodes"], builder.json["scenes"][0]["nodes"]) = (nodes.clone(), roots.clone());
+        let model = builder.model();
+        assert_eq!(model.instances.len(), shown, "{nodes} {roots}");
+        assert!(model.warnings.len() == 1 && model.warnings[0].contains(warning), "{:?}", model.warnings);
+        assert!(shown == 1 || model.instances[0].world_from_object != model.instances[1].world_from_object);
+    }
+    // A scene may begin below a node of another scene.
+    let mut builder = Builder::triangle();
+    builder.json["nodes"] = json!([{ "children": [1], "translation": [5, 0, 0] }, { "mesh": 0 }]);
+    builder.json["scenes"][0]["nodes"] = json!([1]);
+    let model = builder.model();
+    assert_eq!((model.instances[0].world_from_object, model.warnings.len()), (glam::Mat4::IDENTITY, 0));
+    // Each level doubles what is below it.
+    let level = |number: usize| match number {
+        99 => json!({ "mesh": 0 }),
+        even if even % 3 == 0 => json!({ "children": [even + 1, even + 2] }),
+        other => json!({ "children": [other.next_multiple_of(3)] }),
+    };
+    builder.json["nodes"] = (0..100).map(level).collect();
+    builder.json["scenes"][0]["nodes"] = json!([0]);
+    assert!(builder.error().contains("shown at most 65536 times more"), "{}", builder.error());
+}
+
+#[test]
+fn an_animation_without_a_target_node_changes_nothing() {
+    let mut builder = Builder::triangle();
+    builder.json["animations"] = json!([{
+        "samplers": [{ "input": 0, "output": 0 }],
+        "channels": [{ "sampler": 0, "target": { "path": "translation" } }, { "sampler": 0, "target": { "path": "pointer" } }],
+    }]);
+    assert_eq!(builder.model().instances.len(), 1);
+    // What is wrong beside it is told.
+    builder.json["meshes"][0]["primitives"][0]["attributes"] = json!(7);
+    let error = builder.error();
+    assert!(error.contains("does not parse") && !error.contains("`node`"), "{error}");
+}
+
+#[test]
+fn far_nodes_are_moved_to_the_origin_without_loss() {
+    let mut builder = Builder::triangle();
+    builder.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } }]);
+    builder.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([{ "type": "point" }]);
+    builder.json["nodes"] = json!([
+        { "translation": [1e6, 2e6, -3e6], "children": [1, 2, 3] },
+        { "mesh": 0, "translation": [0.125, 0, 0] },
+        { "camera": 0, "translation": [0, 0, 4] },
+        { "extensions": { "KHR_lights_punctual": { "light": 0 } }, "translation": [0, 2, 0] },
+    ]);
+    let model = builder.model();
+    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-6, "{a}, expected {b}");
+    let moved = model.instances[0].world_from_object.w_axis.truncate();
+    assert!(model.bounds.center().length() < 0.2 && model.bounds.radius() < 1.0, "{:?}", model.bounds);
+    near(model.cameras[0].eye - moved, Vec3::new(-0.125, 0.0, 4.0));
+    near(model.lights[0].position - moved, Vec3::new(-0.125, 2.0, 0.0));
+    assert!(
+        model.warnings.len() == 1 && model.warnings[0].contains("it is shown at the origin"),
+        "{:?}",
+        model.warnings
+    );
+    // Nodes that cancel out lose nothing either, and nothing is moved.
+    builder.json["nodes"][0]["children"] = json!([4]);
+    builder.push("nodes", json!({ "translation": [-1e6, -2e6, 3e6], "children": [1] }));
+    let model = builder.model();
+    assert_eq!((model.instances[0].world_from_object.w_axis.truncate(), model.warnings.len()), (Vec3::X * 0.125, 0));
+}
+
+#[test]
+fn a_model_that_cannot_be_seen_says_why() {
+    let reason = |change: fn(&mut Builder)| {
+        let mut builder = Builder::triangle();
+        change(&mut builder);
+        let warnings = builder.model().warnings;
+        warnings.into_iter().find(|warning| warning.contains("Nothing of the model can be seen"))
+    };
+    let says = |change, words: &str| {
+        let reason = reason(change);
+        assert!(reason.as_ref().is_some_and(|reason| reason.contains(words)), "{reason:?}, expected {words}");
+    };
+    says(|builder| builder.json["nodes"][0]["scale"] = json!([0, 0, 0]), "the nodes have a scale of 0");
+    says(|builder| builder.json["nodes"][0]["scale"] = json!([1, 0, 0]), "the nodes have a scale of 0");
+    says(|builder| *builder = Builder::positions(&[1.0; 9]), "all vertices of a mesh are in one point or line");
+    let clear = json!([{ "alphaMode": "BLEND", "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0] } }]);
+    let faint = json!([{ "alphaMode": "MASK", "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0.2] } }]);
+    for materials in [clear, faint] {
+        let mut builder = Builder::triangle();
+        (builder.json["materials"], builder.primitive()["material"]) = (materials, json!(0));
+        assert!(builder.model().warnings.iter().any(|warning| warning.contains("the alpha of all materials is 0")));
+    }
+    let draco = |builder: &mut Builder| {
+        builder.json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+        builder.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    };
+    says(draco, "compressed by KHR_draco_mesh_compression");
+    // One scale of 0 leaves a plane, and a model may be tiny.
+    assert_eq!(reason(|builder| builder.json["nodes"][0]["scale"] = json!([1, 1, 0])), None);
+    assert_eq!(reason(|builder| builder.json["nodes"][0]["scale"] = json!([1e-25, 1e-25, 1e-25])), None);
+    assert_eq!(
+        reason(|builder| *builder = Builder::positions(&[0.0, 0.0, 0.0, 1e-30, 0.0, 0.0, 0.0, 1e-30, 0.0])),
+        None
+    );
 }
 
 #[test]
@@ -164,11 +278,10 @@ fn cameras() {
     ]);
     let model = builder.model();
     let [perspective, orthographic] = [0, 1].map(|index| &model.cameras[index]);
-    assert_eq!((perspective.name.as_str(), perspective.eye, perspective.fovy), ("eye", Vec3::Z * 4.0, 0.7));
+    assert_eq!((perspective.name.as_str(), perspective.eye), ("eye", Vec3::Z * 4.0));
     assert_eq!((perspective.forward, perspective.up), (Vec3::NEG_Z, Vec3::Y));
-    // The center is 2 m away, where the picture is 4 m high.
-    assert_eq!(orthographic.name, "plan");
-    assert!((orthographic.fovy - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    assert_eq!(perspective.lens, Lens::Perspective { fovy: 0.7 });
+    assert_eq!((orthographic.name.as_str(), orthographic.lens), ("plan", Lens::Orthographic { height: 4.0 }));
     for bad in
         [json!({ "type": "perspective" }), json!({ "type": "perspective", "perspective": { "yfov": 0, "znear": 1 } })]
     {

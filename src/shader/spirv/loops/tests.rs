@@ -149,7 +149,10 @@ fn an_overrun_finds_its_loop() {
     let functions: Vec<(Option<usize>, &str)> = places.iter().map(|p| (p.number, p.function.as_str())).collect();
     assert_eq!(functions, [(Some(0), "main"), (Some(0), "f(")]);
     let together = Overrun { one: 0, together: name(seed, 0) };
-    assert_eq!(LoopPlace::find(together, &words), Some(LoopPlace { number: None, function: String::new(), is_finite: false }));
+    assert_eq!(
+        LoopPlace::find(together, &words),
+        Some(LoopPlace { number: None, function: String::new(), is_finite: false })
+    );
     assert_eq!(LoopPlace::find(Overrun { one: 1, together: 0 }, &words), None);
 }
 
