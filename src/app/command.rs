@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::dialog::Dialog;
 use super::editor::Place;
 use super::state::arrangement::Panel;
+use super::state::dialog::Dialog;
 use super::state::exercise::LearnCommand;
 use super::state::inspection::Page;
 use super::state::selection::Selected;
+use super::state::workspace::PanelRequest;
 use crate::control::Request;
 use crate::file_kind::FileKind;
+use crate::settings::Settings;
 use crate::shader::Source;
 use crate::shader::rewrite::Edit;
 
@@ -71,6 +73,28 @@ impl Side {
 pub(super) enum Command {
     /// Compile everything again.
     Reload,
+    /// Take these settings: a panel has changed its copy.
+    Settings(Box<Settings>),
+    /// Ask for a change of the panels.
+    Panels(PanelRequest),
+    /// Show or hide the map of the difference.
+    ToggleDifference,
+    /// Forget the pixel that the inspector reads.
+    Unpin,
+    /// Whether the inspector reads the pixel under the mouse.
+    FollowMouse(bool),
+    /// Hide the diagnostics until the next reload.
+    HideDiagnostics,
+    /// Hide the kept messages and the warnings of the model.
+    HideWarnings,
+    /// Never show the hint of the first start again.
+    DismissHint,
+    /// Offer the last session no longer.
+    RefuseSession,
+    /// Whether the driver is asked about its code.
+    AskDriver(bool),
+    /// End the capture with this number.
+    CancelCapture(u64),
     /// Take the last change of a setting back.
     Undo,
     /// Take the last undo back.

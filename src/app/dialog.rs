@@ -3,22 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use super::state::dialog::Dialog;
 use crate::shader::embedded;
-
-/// The dialog to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dialog {
-    /// A model, an environment, a measured BRDF, or a single shader.
-    File,
-    /// A folder with a shader tree.
-    Tree,
-    /// A folder to write the shaders to.
-    New,
-    /// A picture to compare with.
-    Picture,
-    /// A folder with a shader tree to compare with.
-    SecondTree,
-}
 
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
 const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];

@@ -11,7 +11,11 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use super::command::Command;
 use super::mouse::Mouse;
 use super::screen::Screen;
-use super::viewer::Viewer;
+use crate::app::actions::compare::hold_reference;
+use crate::app::actions::select::focus;
+use crate::app::engine::Engine;
+use crate::app::execute::execute;
+use crate::app::state::State;
 use crate::frame::BEYOND;
 use crate::scene::CameraController;
 use keyboard::on_keyboard;
@@ -22,7 +26,13 @@ const DOUBLE_CLICK: Duration = Duration::from_millis(400);
 const SAME_PLACE: f32 = 4.0;
 
 /// Handles an event, unless egui has consumed it (`taken`). Returns whether to redraw.
-pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: &mut Screen, taken: bool) -> bool {
+pub(super) fn on_window_event(
+    state: &mut State,
+    engine: &mut Engine,
+    event: &WindowEvent,
+    screen: &mut Screen,
+    taken: bool,
+) -> bool {
     match event {
         WindowEvent::ModifiersChanged(modifiers) => {
             screen.mouse.modifiers = modifiers.state();
@@ -31,20 +41,20 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
             // A double click is two presses with nothing in between.
             screen.mouse.last_press = screen.mouse.last_press.filter(|_| event.state != ElementState::Pressed);
-            on_keyboard(viewer, screen, event, *is_synthetic, taken)
+            on_keyboard(state, engine, screen, event, *is_synthetic, taken)
         }
         WindowEvent::Focused(false) => {
-            viewer.playback.keys().release_all();
-            viewer.playback.release_buttons();
-            viewer.hold_reference(false) || viewer.reads_keys()
+            state.playback.keys().release_all();
+            state.playback.release_buttons();
+            hold_reference(state, false) || state.reads_keys()
         }
-        WindowEvent::MouseInput { state, button, .. } => {
-            let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
+        WindowEvent::MouseInput { state: press, button, .. } => {
+            let pressed = *press == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
             if let Some(bit) = button_bit(*button) {
-                viewer.playback.set_button(bit, pressed);
+                state.playback.set_button(bit, pressed);
             }
             match button {
-                MouseButton::Left => return on_left_button(viewer, screen, pressed),
+                MouseButton::Left => return on_left_button(state, engine, screen, pressed),
                 MouseButton::Middle => screen.mouse.middle = pressed,
                 MouseButton::Right => {
                     screen.mouse.right = pressed;
@@ -55,10 +65,10 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             false
         }
         WindowEvent::CursorMoved { position, .. } => {
-            on_cursor_moved(viewer, screen, Vec2::new(position.x as f32, position.y as f32))
+            on_cursor_moved(state, screen, Vec2::new(position.x as f32, position.y as f32))
         }
         WindowEvent::CursorLeft { .. } => {
-            viewer.playback.hover(BEYOND);
+            state.playback.hover(BEYOND);
             std::mem::take(&mut screen.mouse.over)
         }
         WindowEvent::MouseWheel { delta, .. } if !taken && inside(screen, screen.mouse.at) => {
@@ -67,7 +77,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 MouseScrollDelta::PixelDelta(pixels) => pixels.y as f32 / 40.0,
             };
             let Some(view) = screen.camera_view() else { return false };
-            CameraController::dolly(&mut viewer.session.settings.camera, &view, steps);
+            CameraController::dolly(&mut state.session.settings.camera, &view, steps);
             true
         }
         _ => false,
@@ -75,7 +85,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
 }
 
 /// Moves the mouse to `at`, in pixels of the window: what it drags, and what shaders know of it. Returns whether to redraw.
-fn on_cursor_moved(viewer: &mut Viewer, screen: &mut Screen, at: Vec2) -> bool {
+fn on_cursor_moved(state: &mut State, screen: &mut Screen, at: Vec2) -> bool {
     let delta = (at - screen.mouse.at) / screen.rect.size.1.max(1) as f32;
     let is_over = inside(screen, at);
     let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
@@ -83,12 +93,12 @@ fn on_cursor_moved(viewer: &mut Viewer, screen: &mut Screen, at: Vec2) -> bool {
     let [x, y] = in_picture(screen, at);
     let (width, height) = screen.rect.size;
     let is_inside = is_over && x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
-    viewer.playback.hover(if is_inside { [x, y] } else { BEYOND });
+    state.playback.hover(if is_inside { [x, y] } else { BEYOND });
     screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
     if screen.mouse.left {
-        viewer.playback.drag([x, y]);
+        state.playback.drag([x, y]);
     }
-    drag(viewer, screen, delta) || was_over || screen.mouse.over
+    drag(state, screen, delta) || was_over || screen.mouse.over
 }
 
 /// The bit of a button in `interface::Frame::mouse_buttons`.
@@ -103,38 +113,38 @@ fn button_bit(button: MouseButton) -> Option<u32> {
 
 /// Handles the left button: a press in the picture of a shader, a double click that focuses, a click that picks. Returns whether to
 /// redraw.
-fn on_left_button(viewer: &mut Viewer, screen: &mut Screen, pressed: bool) -> bool {
+fn on_left_button(state: &mut State, engine: &mut Engine, screen: &mut Screen, pressed: bool) -> bool {
     let was = std::mem::replace(&mut screen.mouse.left, pressed);
     let is_double = pressed && is_double_click(&mut screen.mouse);
     let place = screen.mouse.at;
     let clicked = screen.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
     screen.mouse.click = (pressed && !is_double && !has_modifier(&screen.mouse)).then_some(place);
     match pressed {
-        true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
-        false if was => viewer.playback.release(),
+        true => state.playback.press(in_picture(screen, screen.mouse.at)),
+        false if was => state.playback.release(),
         false => {}
     }
     if is_double {
-        return focus(viewer, screen);
+        return focus_at_mouse(state, screen);
     }
     let is_click = clicked.is_some() && was && !pressed;
-    if is_click && keep_mode_at(viewer, screen) {
+    if is_click && keep_mode_at(state, screen) {
         return true;
     }
     let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) else { return false };
-    viewer.execute(Command::Pick([x, y]));
+    execute(state, engine, Command::Pick([x, y]));
     true
 }
 
 /// Shows the mode of the grid under the mouse alone. Returns whether there is one.
-fn keep_mode_at(viewer: &mut Viewer, screen: &Screen) -> bool {
-    if !viewer.grid.is_on() {
+fn keep_mode_at(state: &mut State, screen: &Screen) -> bool {
+    if !state.grid.is_on() {
         return false;
     }
     if let Some(mode) = screen.grid_mode_at(screen.mouse.at) {
-        viewer.session.settings.mode = mode;
+        state.session.settings.mode = mode;
     }
-    viewer.grid.end();
+    state.grid.end();
     true
 }
 
@@ -149,9 +159,9 @@ fn is_double_click(mouse: &mut Mouse) -> bool {
 }
 
 /// Moves the camera so that it looks at the surface under the mouse, and orbits around it. Returns whether there is one.
-fn focus(viewer: &mut Viewer, screen: &Screen) -> bool {
+fn focus_at_mouse(state: &mut State, screen: &Screen) -> bool {
     let place = screen.mouse_pixel().zip(screen.camera_view());
-    place.is_some_and(|(at, view)| viewer.focus(screen.rect.size, at, &view))
+    place.is_some_and(|(at, view)| focus(state, screen.rect.size, at, &view))
 }
 
 /// Whether a key is held that makes a press something else than a click.
@@ -169,9 +179,9 @@ fn inside(screen: &Screen, at: Vec2) -> bool {
     (0.0..screen.whole.size.0 as f32).contains(&x) && (0.0..screen.whole.size.1 as f32).contains(&y)
 }
 
-fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
+fn drag(state: &mut State, screen: &Screen, delta: Vec2) -> bool {
     let Some(view) = screen.camera_view() else { return false };
-    let settings = &mut viewer.session.settings;
+    let settings = &mut state.session.settings;
     let (mouse, camera) = (&screen.mouse, &mut settings.camera);
     let modifiers = mouse.modifiers;
     let turns = mouse.middle && !modifiers.shift_key()

@@ -1,26 +1,33 @@
 //! The window, which runs beside an editor.
 //!
-//! `viewer` holds the session and the last complete picture, `screen` draws frames, and `threads` create what is missing.
-//! Panels, keys and dropped files change settings or send a `command`.
+//! `state` is what the window knows, `engine` makes frames and starts work, `screen` draws frames and panels. Functions over both, in `actions`,
+//! `frames` and `messages`, carry out what commands and threads ask for. Only this file owns all of them.
 
+mod actions;
 mod command;
+mod commands;
+mod context;
 mod control;
 mod dialog;
-mod drawn;
 mod editor;
+mod engine;
+mod execute;
+mod frames;
 mod gallery;
 mod input;
 mod keys;
 mod layout;
+mod messages;
 mod mouse;
 mod numbers;
 mod options;
 mod palette;
 mod panels;
+mod readings;
 mod screen;
 mod source_line;
+mod start;
 mod state;
-mod viewer;
 mod widgets;
 
 use std::sync::Arc;
@@ -40,9 +47,14 @@ use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
 use crate::pipeline::DiskPipelines;
 use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
+use actions::sessions::remember_session;
+use engine::Engine;
+use execute::open_path;
+use messages::on_message;
 use options::Early;
 use screen::{Next, Screen};
-use viewer::Viewer;
+use start::start;
+use state::State;
 
 pub use options::{AppOptions, OtherPicture};
 pub use state::last_session::session_to_restore;
@@ -104,7 +116,8 @@ struct App {
 
 /// The parts of an open window. The screen must be dropped before the device and before the window.
 struct Open {
-    viewer: Viewer,
+    state: State,
+    engine: Engine,
     screen: Screen,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
@@ -135,14 +148,14 @@ impl App {
         let mut screen = Screen::new(&gpu, &layouts, &window)?;
         screen.init_accessibility(event_loop, &window, &self.sender);
         window.set_visible(true);
-        let viewer = Viewer::new(&gpu, &layouts, options, early, &self.sender)?;
-        Ok(Open { viewer, screen, gpu, window })
+        let (state, engine) = start(&gpu, &layouts, options, early, &self.sender)?;
+        Ok(Open { state, engine, screen, gpu, window })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
     fn go_on(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        match open.screen.go_on(&mut open.viewer) {
+        match open.screen.go_on(&mut open.state, &mut open.engine) {
             Ok(Next::Frame) => open.window.request_redraw(),
             Ok(Next::After(wait)) => event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + wait)),
             Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
@@ -153,22 +166,22 @@ impl App {
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
         if let Some(mut open) = self.open.take() {
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
-                open.viewer.end_all_waiting();
-                open.viewer.recorder.finish();
+                open.state.waiting.end_all();
+                open.engine.recorder.finish();
                 // Destroying a lost device could wait forever for it to become idle.
                 std::mem::forget(open);
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { viewer, screen, gpu, window } = open;
-            viewer.remember_session();
-            viewer.recorder.close();
+            let Open { state, engine, screen, gpu, window } = open;
+            remember_session(&state);
+            engine.recorder.close();
             end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
             assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
-            let (frames, [ui_ms, cpu_ms]) = viewer.timing.summary();
-            emit(&viewer.events, &Event::Closed { frames, ui_ms, cpu_ms });
+            let (frames, [ui_ms, cpu_ms]) = state.timing.summary();
+            emit(&state.events, &Event::Closed { frames, ui_ms, cpu_ms });
             drop(screen);
-            drop(viewer);
+            drop(engine);
             drop(window);
             let messages = gpu.validation_messages().len();
             self.result = match result {
@@ -221,7 +234,7 @@ impl ApplicationHandler<Message> for App {
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => return self.go_on(event_loop),
             Message::Accessibility(event) => open.screen.on_accessibility(event.window_event),
             Message::Pictures(pictures) => open.screen.panels.open_gallery.take(pictures),
-            message => open.viewer.on_message(message),
+            message => on_message(&mut open.state, &mut open.engine, message),
         }
         open.window.request_redraw();
     }
@@ -255,9 +268,9 @@ impl App {
                 open.screen.is_covered = is_covered;
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open.viewer.open_path(path),
+            WindowEvent::DroppedFile(path) => open_path(&mut open.state, &mut open.engine, path),
             WindowEvent::RedrawRequested => {
-                let drawn = open.screen.draw(&open.window, &mut open.viewer);
+                let drawn = open.screen.draw(&open.window, &mut open.state, &mut open.engine);
                 match drawn {
                     Ok(again) => event_loop.set_control_flow(match again {
                         Some(wait) if wait.is_zero() => {
@@ -272,12 +285,12 @@ impl App {
             }
             event => {
                 let taken = open.screen.is_taken(&event, response.consumed);
-                if input::on_window_event(&mut open.viewer, &event, &mut open.screen, taken) {
+                if input::on_window_event(&mut open.state, &mut open.engine, &event, &mut open.screen, taken) {
                     open.window.request_redraw();
                 }
             }
         }
-        if open.viewer.quit {
+        if open.state.quit {
             self.end(event_loop, Ok(()));
         }
     }

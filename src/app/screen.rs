@@ -10,9 +10,11 @@ mod grid;
 mod inspector;
 mod loops;
 mod measured;
+mod memory;
 mod number;
 mod pace;
 mod probe;
+mod readout;
 mod reference;
 mod reference_view;
 mod selection;
@@ -40,8 +42,14 @@ use super::mouse::Mouse;
 use super::panels::Panels;
 use super::state::grid::PictureRect;
 use super::state::timing::CpuTimes;
-use super::viewer::Viewer;
 use super::widgets;
+use crate::app::actions::watch::watch_files;
+use crate::app::control::{answer, has_unanswered};
+use crate::app::engine::Engine;
+use crate::app::frames::picture::next_frame;
+use crate::app::frames::progress::set_shortage;
+use crate::app::frames::recording;
+use crate::app::state::State;
 use crate::cpu_clock::CpuClock;
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, NextImage, SetLayouts, Surface, Swapchain, UiRenderer, Use};
@@ -55,6 +63,7 @@ use cell::Cell;
 use gallery::Gallery;
 use inspector::PixelReader;
 use measured::ErrorMap;
+use memory::MemoryClock;
 use number::NumberReader;
 use reference_view::ReferenceView;
 use shown_texture::ShownTexture;
@@ -106,7 +115,7 @@ pub(super) struct Screen {
     shortage: Option<GpuError>,
     /// The picture of each frame slot's last frame, until its loops are known to have ended.
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
-    /// The attempt number of each of these frames, see [`Viewer::record`].
+    /// The attempt number of each of these frames, see `frames::recording`.
     attempts: [Option<u64>; FRAMES_IN_FLIGHT],
     /// Whether each of these frames has also drawn another picture, in which a loop may not have ended.
     has_others: [bool; FRAMES_IN_FLIGHT],
@@ -121,6 +130,7 @@ pub(super) struct Screen {
     /// The picture that the user compares with, while there is one.
     reference: Option<ReferenceView>,
     error_map: ErrorMap,
+    memory: MemoryClock,
     /// The capture of the window that is in flight.
     window_shot: Option<WindowShot>,
     /// The targets of the selection's outline, while there is a selection.
@@ -203,6 +213,7 @@ impl Screen {
             checks: 0,
             reference: None,
             error_map: ErrorMap::default(),
+            memory: MemoryClock::default(),
             window_shot: None,
             outline: None,
             texture: ShownTexture::default(),
@@ -264,11 +275,16 @@ impl Screen {
 
     /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the last frame
     /// stays, the viewer reports it, and the next frame tries again.
-    pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
+    pub(super) fn draw(
+        &mut self,
+        window: &Window,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<Option<Duration>, GpuError> {
         self.present_ms = 0.0;
         let clock = CpuClock::start();
-        let drawn = self.draw_frame(window, viewer);
-        clock.into_iter().for_each(|clock| viewer.timing.used(clock.ms() - self.present_ms));
+        let drawn = self.draw_frame(window, state, engine);
+        clock.into_iter().for_each(|clock| state.timing.used(clock.ms() - self.present_ms));
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
@@ -278,10 +294,10 @@ impl Screen {
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
-        let wait = if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait };
+        let wait = if set_shortage(state, engine, shortage.as_ref()) { Some(Duration::ZERO) } else { wait };
         Ok(match wait {
             // Nobody sees a covered window, but what ends with a frame must end.
-            Some(wait) if self.is_covered && wait < COVERED && !viewer.has_unanswered() => {
+            Some(wait) if self.is_covered && wait < COVERED && !has_unanswered(state, engine) => {
                 Some(self.frame_after(COVERED))
             }
             wait => wait,
@@ -295,38 +311,43 @@ impl Screen {
     }
 
     /// Draws a frame. Without memory for the targets of a new frame it draws the last one; any other lack of memory is an error.
-    fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
-        if !self.resize(window, viewer)? {
-            viewer.fail_waiting("the window is minimized, so nothing is drawn");
+    fn draw_frame(
+        &mut self,
+        window: &Window,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<Option<Duration>, GpuError> {
+        if !self.resize(window, engine)? {
+            state.waiting.fail("the window is minimized, so nothing is drawn");
             return Ok(None);
         }
 
         // The user interface, which determines the rectangle of the picture.
         let begin = Instant::now();
-        let (primitives, pixels_per_point, delay) = self.run_ui(window, viewer)?;
+        let (primitives, pixels_per_point, delay) = self.run_ui(window, state, engine)?;
 
         // The picture.
-        let moving = self.advance(viewer);
-        viewer.watch_files();
-        if viewer.playback.take_restart() {
+        let moving = self.advance(state);
+        watch_files(state, engine);
+        if state.playback.take_restart() {
             self.view.restart_passes();
         }
-        let frame = self.next_frame(viewer)?;
-        self.prepare_reference(viewer, frame.as_ref())?;
-        self.prepare_grid(viewer)?;
-        self.view.samples_range = self.panels.overlay.legend.shows_histogram && self.panels.visible;
+        let frame = self.next_frame(state, engine)?;
+        self.prepare_reference(state, engine, frame.as_ref())?;
+        self.prepare_grid(state, engine)?;
+        self.view.samples_range = state.workspace.shows_histogram && self.panels.visible;
         self.place_probe();
-        let measures = self.measure_error(viewer, frame.as_ref());
+        let measures = self.measure_error(state, engine, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);
         if let Some(frame) = &frame {
-            self.take_screenshot(viewer, frame)?;
-            self.take_shots(viewer, frame)?;
+            self.take_screenshot(state, engine, frame)?;
+            self.take_shots(state, engine, frame)?;
         }
 
         // Record both to a swapchain image. `begin` waits for a frame slot.
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
-        self.check_loops(viewer);
+        self.check_loops(state, engine);
         let next = self.swapchain.as_mut().map_or(Ok(NextImage::Outdated), Swapchain::acquire)?;
         let NextImage::Acquired(acquired) = next else {
             self.frames.submit(encoder, Default::default())?;
@@ -336,19 +357,19 @@ impl Screen {
         };
         let output = Output { image: &acquired.image, before: Use::Acquired, at: self.rect.at };
         let record = Instant::now();
-        let redraw = Self::redraw(viewer, frame.as_ref());
+        let redraw = Self::redraw(state, engine, frame.as_ref());
         match &frame {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, redraw)?,
             None => View::clear(&mut encoder, &output),
         }
-        self.draw_extras((&mut encoder, slot), viewer, frame.as_ref(), &acquired.image)?;
+        self.draw_extras((&mut encoder, slot), state, engine, frame.as_ref(), &acquired.image)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
-        self.record_window_shot(&mut encoder, slot, viewer, &acquired.image)?;
+        self.record_window_shot(&mut encoder, slot, state, engine, &acquired.image)?;
         self.has_others[slot] |= self.reference.is_some() || !self.cells.is_empty();
-        self.attempts[slot] = viewer.record(window);
+        self.attempts[slot] = recording::record(state, engine, window);
         self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
-        self.note_frame(viewer, frame.as_ref());
+        self.note_frame(state, frame.as_ref());
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
             let clock = CpuClock::start();
@@ -356,13 +377,13 @@ impl Screen {
             self.present_ms = clock.map_or(0.0, CpuClock::ms);
         }
 
-        viewer.answer();
-        let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let wait = self.draw_background(viewer, pixels_per_point)?;
+        answer(state, engine);
+        let reported = self.finished(state, engine, frame.as_ref(), begin)?;
+        let wait = self.draw_background(state, engine, pixels_per_point)?;
         // Both change with every frame.
         let (redraws, awaits_loops) = (std::mem::take(&mut self.redraws), self.awaits_loops());
         let changes = self.stale || moving || reported || measures || redraw == Redraw::Always;
-        if redraws || awaits_loops || changes || self.has_more(viewer, frame.as_ref()) {
+        if redraws || awaits_loops || changes || self.has_more(state, engine, frame.as_ref()) {
             return Ok(Some(Duration::ZERO));
         }
         let delay = delay.filter(|delay| *delay < NEVER);
@@ -371,28 +392,28 @@ impl Screen {
     }
 
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.
-    fn resize(&mut self, window: &Window, viewer: &mut Viewer) -> Result<bool, GpuError> {
+    fn resize(&mut self, window: &Window, engine: &mut Engine) -> Result<bool, GpuError> {
         if self.stale || self.swapchain.is_none() {
             let (size, old) = (window.inner_size().into(), self.swapchain.take());
-            self.swapchain = Swapchain::new(&self.surface, size, FRAMES_IN_FLIGHT, viewer.gpu_is_fast(), old)?;
+            self.swapchain = Swapchain::new(&self.surface, size, FRAMES_IN_FLIGHT, engine.gpu_is_fast(), old)?;
             self.stale = false;
         }
         Ok(self.swapchain.is_some())
     }
 
     /// Moves a flying camera and orbiting lights. Returns whether the camera moved.
-    fn advance(&mut self, viewer: &mut Viewer) -> bool {
+    fn advance(&mut self, state: &mut State) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
         // Limit the step, so that lights do not jump after a pause.
-        viewer.turn_lights(seconds.min(0.5));
-        let Some((view, model)) = self.camera_view().zip(viewer.session.placed_model()) else { return false };
-        self.camera.step(&mut viewer.session.settings.camera, &view, &model.bounds, seconds)
+        state.turn_lights(seconds.min(0.5));
+        let Some((view, model)) = self.camera_view().zip(state.session.placed_model()) else { return false };
+        self.camera.step(&mut state.session.settings.camera, &view, &model.bounds, seconds)
     }
 
     /// The frame to draw, with its targets allocated. If memory runs out, it is the last frame.
-    fn next_frame(&mut self, viewer: &mut Viewer) -> Result<Option<BoundFrame>, GpuError> {
-        let prepared = viewer.next_frame(self.rect.size, |frame| self.view.prepare(frame));
+    fn next_frame(&mut self, state: &mut State, engine: &mut Engine) -> Result<Option<BoundFrame>, GpuError> {
+        let prepared = next_frame(state, engine, self.rect.size, |frame| self.view.prepare(frame));
         if let Some(frame) = self.survive(prepared)? {
             self.last = frame;
         }

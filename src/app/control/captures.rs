@@ -1,15 +1,16 @@
 //! Renders on a background thread: pictures of another size or mode, values of a pixel, sheets and animations.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
 use super::files::write_capture;
 use super::requests::{path_text, short};
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::frames::reference::version_pictures;
+use crate::app::state::State;
+use crate::app::state::captures::Job;
 use crate::capture::{
     Animation, CaptureError, OffscreenCapture, Renderer as _, SheetPlan, Turn, Turntable, VersionPicture,
     check_animation, modes_of,
@@ -22,8 +23,6 @@ use crate::render::Texel;
 use crate::shader::{Compiler, Source};
 use crate::threads::Message;
 
-/// Most captures that are drawn or wait. Each keeps the images of its picture on the device.
-const MOST: usize = 64;
 /// Time between two reports of progress.
 const REPORT: Duration = Duration::from_millis(100);
 /// Size of a picture of a sheet, pixels.
@@ -33,16 +32,6 @@ const FRAMES: u32 = 75;
 const FPS: f32 = 25.0;
 /// Versions a second.
 const VERSIONS_PER_S: f32 = 1.5;
-
-/// Job of the background render thread.
-#[derive(Clone, Debug)]
-pub(in crate::app) enum Job {
-    Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
-    Probe { at: (u32, u32), names: Vec<String> },
-    Sheet { file: PathBuf, names: Vec<String>, size: (u32, u32), columns: Option<u32> },
-    Turntable { file: PathBuf, frames: u32, fps: f32, size: Option<(u32, u32)>, turn: Turn },
-    Timeline { file: PathBuf, fps: f32, size: Option<(u32, u32)> },
-}
 
 impl Job {
     pub(super) fn sheet(fields: Sheet) -> Result<Self, String> {
@@ -76,17 +65,6 @@ impl Job {
         let fps = fields.fps.unwrap_or(VERSIONS_PER_S);
         check_animation(&fields.file, fps)?;
         Ok(Self::Timeline { file: fields.file, fps, size: fields.size.map(Into::into) })
-    }
-
-    /// Title of the job in the panel.
-    fn title(&self) -> &'static str {
-        match self {
-            Self::Picture { .. } => "Picture",
-            Self::Probe { .. } => "Values of a pixel",
-            Self::Sheet { .. } => "Sheet of modes",
-            Self::Turntable { .. } => "Turntable",
-            Self::Timeline { .. } => "Timeline",
-        }
     }
 
     /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with, `work` names the model and the
@@ -153,123 +131,46 @@ impl Job {
     }
 }
 
-/// A capture that is under way.
-pub(in crate::app) struct Running {
-    number: u64,
-    pub(in crate::app) title: &'static str,
-    /// Pictures that are done, and of how many; 0 while that is not known.
-    pub(in crate::app) done: u64,
-    pub(in crate::app) of: u64,
-    canceled: Arc<AtomicBool>,
-}
-
-impl Running {
-    /// Ends it after the picture that is being drawn.
-    pub(in crate::app) fn cancel(&self) {
-        self.canceled.store(true, Ordering::Relaxed);
-    }
-
-    pub(in crate::app) fn is_canceled(&self) -> bool {
-        self.canceled.load(Ordering::Relaxed)
-    }
-}
-
-/// The captures that are under way, in the order in which they were begun.
-#[derive(Default)]
-pub(in crate::app) struct Captures {
-    running: Vec<Running>,
-    last: u64,
-}
-
-impl Captures {
-    /// Adds a capture. Returns its number and what cancels it.
-    fn begin(&mut self, title: &'static str) -> Result<(u64, Arc<AtomicBool>), String> {
-        if self.running.len() >= MOST {
-            return Err(format!("{MOST} captures are waiting already; send this one again when one of them has ended"));
-        }
-        self.last += 1;
-        let canceled = Arc::new(AtomicBool::new(false));
-        self.running.push(Running { number: self.last, title, done: 0, of: 0, canceled: canceled.clone() });
-        Ok((self.last, canceled))
-    }
-
-    pub(in crate::app) fn iter(&self) -> impl Iterator<Item = &Running> {
-        self.running.iter()
-    }
-
-    pub(super) fn cancel(&self) {
-        self.running.iter().for_each(Running::cancel);
-    }
-
-    /// Takes what a thread tells about how far it is.
-    pub(in crate::app) fn progress(&mut self, number: u64, done: u64, of: u64) {
-        if let Some(running) = self.running.iter_mut().find(|running| running.number == number) {
-            (running.done, running.of) = (done, of);
-        }
-    }
-
-    /// Removes a capture that has ended.
-    pub(in crate::app) fn ended(&mut self, number: u64) {
-        self.running.retain(|running| running.number != number);
-    }
-}
-
-impl Viewer {
-    /// Draws on the thread of captures.
-    pub(super) fn begin_capture(&mut self, reply: Reply, job: Job) {
-        let (number, canceled) = match self.controlled.captures.begin(job.title()) {
-            Ok(begun) => begun,
-            Err(message) => return reply.error(message),
-        };
-        let versions = match job {
-            Job::Timeline { .. } => self.version_pictures(),
-            _ => Vec::new(),
-        };
-        let size = self.shown().map_or((1, 1), |state| state.size);
-        let (gpu, session, resources, clock) =
-            (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
-        let (compiler, source, work) = (self.compiler.clone(), self.source().clone(), self.session_state());
-        let cancels = canceled.clone();
-        self.threads.capture(number, &cancels, move |sender| {
-            let mut last: Option<Instant> = None;
-            let mut tell = |done: u64, of: u64| {
-                if last.is_none_or(|last| last.elapsed() >= REPORT) {
-                    last = Some(Instant::now());
-                    sender.send(Message::Captures(number, done, of));
-                    reply.progress(done, of);
-                }
-                !canceled.load(Ordering::Relaxed)
-            };
-            let result = match tell(0, 0) {
-                true => OffscreenCapture::new(&gpu, session, resources, clock, &canceled)
-                    .map_err(|error| CaptureError::Render(error.into()))
-                    .and_then(|mut offscreen| {
-                        job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell)
-                    }),
-                false => Err(CaptureError::Canceled),
-            };
-            sender.send(Message::Captured(number));
-            match result {
-                Ok(result) => reply.done(result),
-                Err(CaptureError::Render(HeadlessError::Shaders(diagnostics))) if !diagnostics.is_empty() => {
-                    reply.error(diagnostics[0].one_line());
-                }
-                Err(error) => reply.error(error.to_string()),
+/// Draws on the thread of captures.
+pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, reply: Reply, job: Job) {
+    let (number, canceled) = match state.captures.begin(job.title()) {
+        Ok(begun) => begun,
+        Err(message) => return reply.error(message),
+    };
+    let versions = match job {
+        Job::Timeline { .. } => version_pictures(state, engine),
+        _ => Vec::new(),
+    };
+    let size = state.shown().map_or((1, 1), |frame_state| frame_state.size);
+    let (gpu, session, resources, clock) =
+        (engine.gpu.clone(), state.session.clone(), engine.resources.clone(), state.picture.clock);
+    let (compiler, source, work) = (engine.compiler.clone(), state.source.clone(), state.session_state());
+    let cancels = canceled.clone();
+    engine.threads.capture(number, &cancels, move |sender| {
+        let mut last: Option<Instant> = None;
+        let mut tell = |done: u64, of: u64| {
+            if last.is_none_or(|last| last.elapsed() >= REPORT) {
+                last = Some(Instant::now());
+                sender.send(Message::Captures(number, done, of));
+                reply.progress(done, of);
             }
-        });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_capture_is_refused_while_too_many_wait() {
-        let mut captures = Captures::default();
-        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture").unwrap().0).collect();
-        assert!(captures.begin("Picture").unwrap_err().contains("64 captures are waiting"));
-        captures.ended(begun[0]);
-        assert!(captures.begin("Picture").is_ok());
-    }
+            !canceled.load(Ordering::Relaxed)
+        };
+        let result = match tell(0, 0) {
+            true => OffscreenCapture::new(&gpu, session, resources, clock, &canceled)
+                .map_err(|error| CaptureError::Render(error.into()))
+                .and_then(|mut offscreen| {
+                    job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell)
+                }),
+            false => Err(CaptureError::Canceled),
+        };
+        sender.send(Message::Captured(number));
+        match result {
+            Ok(result) => reply.done(result),
+            Err(CaptureError::Render(HeadlessError::Shaders(diagnostics))) if !diagnostics.is_empty() => {
+                reply.error(diagnostics[0].one_line());
+            }
+            Err(error) => reply.error(error.to_string()),
+        }
+    });
 }

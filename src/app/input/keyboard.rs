@@ -3,12 +3,15 @@
 use winit::event::{ElementState, KeyEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
+use crate::app::actions::compare::hold_reference;
 use crate::app::command::{Command, CompareWith, Side};
-use crate::app::dialog::Dialog;
+use crate::app::engine::Engine;
+use crate::app::execute::execute;
 use crate::app::keys;
 use crate::app::screen::Screen;
+use crate::app::state::State;
+use crate::app::state::dialog::Dialog;
 use crate::app::state::selection::Selected;
-use crate::app::viewer::Viewer;
 use crate::scene::CameraController;
 use crate::session::Session;
 use crate::settings::LightSettings;
@@ -16,7 +19,8 @@ use crate::shader::annotation::neighbors;
 
 /// Handles a key. `is_synthetic`: winit made the event up; `taken`: it belongs to the user interface. Returns whether to redraw.
 pub(super) fn on_keyboard(
-    viewer: &mut Viewer,
+    state: &mut State,
+    engine: &mut Engine,
     screen: &mut Screen,
     event: &KeyEvent,
     is_synthetic: bool,
@@ -36,9 +40,9 @@ pub(super) fn on_keyboard(
     if pressed && event.logical_key == Key::Named(NamedKey::Escape) && screen.has_open_popup() {
         return false;
     }
-    let reads_keys = viewer.reads_keys();
+    let reads_keys = state.reads_keys();
     let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
-    if is_space && !pressed && viewer.hold_reference(false) {
+    if is_space && !pressed && hold_reference(state, false) {
         return true;
     }
     // The search of the palette has the keys from the moment it opens, which may be before egui knows. The key that opens
@@ -48,21 +52,21 @@ pub(super) fn on_keyboard(
     if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
         // A press that winit makes up when the window gets the focus is none for shaders.
         let counts = !pressed || !(taken || event.repeat || is_synthetic);
-        return counts && shader_key(viewer, event.physical_key, pressed) && reads_keys;
+        return counts && shader_key(state, event.physical_key, pressed) && reads_keys;
     }
     if is_space && !taken && !event.repeat && !is_synthetic {
-        return viewer.hold_reference(true);
+        return hold_reference(state, true);
     }
     if let Some(side) = side(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
-        viewer.execute(Command::ViewFrom(side));
+        execute(state, engine, Command::ViewFrom(side));
         return true;
     }
     if let Some(command) = bookmark(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
-        viewer.execute(command);
+        execute(state, engine, command);
         return true;
     }
     let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
-    !taken && (steps || !event.repeat) && on_key(viewer, screen, &event.logical_key)
+    !taken && (steps || !event.repeat) && on_key(state, engine, screen, &event.logical_key)
 }
 
 /// Flies with W A S D E Q while the right button is held. A key's release always counts, so that no key gets stuck.
@@ -125,10 +129,10 @@ fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
 
 /// Tells the shaders that a key went down or up. Returns whether they know the key. A key's release always counts, so that no
 /// key gets stuck.
-fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
+fn shader_key(state: &mut State, key: PhysicalKey, pressed: bool) -> bool {
     let PhysicalKey::Code(code) = key else { return false };
     let Some(number) = keys::number(code) else { return false };
-    let keys = viewer.playback.keys();
+    let keys = state.playback.keys();
     if pressed {
         keys.press(number)
     } else {
@@ -137,26 +141,29 @@ fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
     true
 }
 
-fn on_key(viewer: &mut Viewer, screen: &mut Screen, key: &Key) -> bool {
+fn on_key(state: &mut State, engine: &mut Engine, screen: &mut Screen, key: &Key) -> bool {
     match key {
         Key::Named(NamedKey::F1) => screen.panels.show_keys ^= true,
-        Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
-        Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
+        Key::Named(NamedKey::F5) => execute(state, engine, Command::Reload),
+        Key::Named(NamedKey::F12) => execute(state, engine, Command::Screenshot),
         Key::Named(NamedKey::Escape) if screen.panels.show_keys => screen.panels.show_keys = false,
         Key::Named(NamedKey::Escape) if screen.panels.open_gallery.is_open => {
             screen.panels.open_gallery.is_open = false
         }
         // A click pins a pixel and selects what it shows; Escape takes both back.
-        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing || viewer.inspection.is_pinned() => {
-            viewer.inspection.unpin();
-            viewer.execute(Command::Select(Selected::Nothing));
+        Key::Named(NamedKey::Escape)
+            if state.selected != Selected::Nothing
+                || (state.workspace.sight.inspector && state.inspection.is_pinned()) =>
+        {
+            state.inspection.unpin();
+            execute(state, engine, Command::Select(Selected::Nothing));
         }
-        Key::Named(NamedKey::Escape) if viewer.grid.is_on() => viewer.grid.end(),
-        Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
-        Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
+        Key::Named(NamedKey::Escape) if state.grid.is_on() => state.grid.end(),
+        Key::Named(NamedKey::Escape) => set_mode(&mut state.session, 0),
+        Key::Named(NamedKey::Home) => execute(state, engine, Command::FrameModel),
         Key::Character(text) => {
             let Some(key) = text.chars().next() else { return false };
-            return on_character(viewer, screen, key.to_ascii_lowercase());
+            return on_character(state, engine, screen, key.to_ascii_lowercase());
         }
         _ => return false,
     }
@@ -164,30 +171,30 @@ fn on_key(viewer: &mut Viewer, screen: &mut Screen, key: &Key) -> bool {
 }
 
 /// A key that types a character. While the picture reads keys, Ctrl is what tells it from the picture's.
-fn on_character(viewer: &mut Viewer, screen: &mut Screen, key: char) -> bool {
+fn on_character(state: &mut State, engine: &mut Engine, screen: &mut Screen, key: char) -> bool {
     let modifiers = screen.mouse.modifiers;
     let (control, shift) = (modifiers.control_key(), modifiers.shift_key());
-    let is_ignored = control && !viewer.reads_keys();
-    let session = &mut viewer.session;
+    let is_ignored = control && !state.reads_keys();
+    let session = &mut state.session;
     match key {
         'p' if control => screen.panels.palette.toggle(),
         'k' if control => {
-            let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
-            viewer.execute(Command::Compare(with));
+            let with = if state.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
+            execute(state, engine, Command::Compare(with));
         }
-        'h' if control => viewer.execute(Command::HideSelected),
-        'h' if modifiers.alt_key() => viewer.execute(Command::ShowAll),
-        'o' if control => viewer.execute(Command::Choose(Dialog::File)),
-        'q' if control => viewer.execute(Command::Quit),
-        'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
-        'y' if control => viewer.execute(Command::Redo),
+        'h' if control => execute(state, engine, Command::HideSelected),
+        'h' if modifiers.alt_key() => execute(state, engine, Command::ShowAll),
+        'o' if control => execute(state, engine, Command::Choose(Dialog::File)),
+        'q' if control => execute(state, engine, Command::Quit),
+        'z' if control => execute(state, engine, if shift { Command::Redo } else { Command::Undo }),
+        'y' if control => execute(state, engine, Command::Redo),
         _ if is_ignored => return false,
-        '/' => viewer.execute(Command::IsolateSelected),
+        '/' => execute(state, engine, Command::IsolateSelected),
         '?' => screen.panels.show_keys ^= true,
         '[' => step_mode(session, false),
         ']' => step_mode(session, true),
         'h' => screen.panels.visible = !screen.panels.visible,
-        'r' => viewer.execute(Command::FrameModel),
+        'r' => execute(state, engine, Command::FrameModel),
         'l' => {
             let lights = &mut session.settings.lights;
             lights.spin = if lights.spin == 0.0 { 30.0 } else { LightSettings::default().spin };

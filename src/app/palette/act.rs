@@ -4,19 +4,20 @@ use super::entries::Action;
 use crate::app::command::Command;
 use crate::app::numbers::default_of;
 use crate::app::source_line::watch;
+use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::workspace::PanelRequest;
-use crate::app::viewer::Viewer;
+use crate::settings::Settings;
 use crate::shader::values::number;
 
 /// Whether the action is a choice of a setting that has this value already.
-pub(super) fn is_in_force(action: &Action, viewer: &Viewer) -> bool {
-    let settings = &viewer.session.settings;
+pub(super) fn is_in_force(action: &Action, state: &State) -> bool {
+    let settings = &state.session.settings;
     match action {
-        Action::Mode(slug) => viewer.session.mode().is_some_and(|mode| mode.slug == *slug),
+        Action::Mode(slug) => state.session.mode().is_some_and(|mode| mode.slug == *slug),
         Action::Environment(name) => settings.environment.name == *name,
         Action::Set(path, value) => settings.value(path).as_ref() == Some(value),
-        Action::Value(name, value) => viewer.session.shaders.as_ref().is_some_and(|shaders| {
+        Action::Value(name, value) => state.session.shaders.as_ref().is_some_and(|shaders| {
             let constant = shaders.constants.iter().find(|constant| constant.name == *name);
             let parameter = shaders.parameters.iter().find(|parameter| parameter.name == *name);
             let of_constant = constant.map(|constant| (&constant.choices, Some(default_of(constant))));
@@ -31,34 +32,32 @@ pub(super) fn is_in_force(action: &Action, viewer: &Viewer) -> bool {
 }
 
 /// Carries out the action of the chosen entry.
-pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Command>) {
-    let settings = &mut viewer.session.settings;
+pub(super) fn act(action: Action, settings: &mut Settings, commands: &mut Vec<Command>) {
+    let mut ask = |requests: &[PanelRequest]| commands.extend(requests.iter().cloned().map(Command::Panels));
     match action {
         Action::Mode(slug) => settings.mode = slug,
         Action::Do(command) => commands.push(command),
         Action::Environment(name) => settings.environment.name = name,
         Action::Set(path, value) => settings.set_value(&path, &value),
-        Action::ToggleHistogram => viewer.workspace.request(PanelRequest::ToggleHistogram),
-        Action::ToggleDifference => viewer.compare.shows_map ^= true,
+        Action::ToggleHistogram => ask(&[PanelRequest::ToggleHistogram]),
+        Action::ToggleDifference => commands.push(Command::ToggleDifference),
         Action::Value(name, value) => drop(settings.shader.insert(name, value)),
-        Action::Number(ask) => ask.set(settings),
+        Action::Number(number) => number.set(settings),
         Action::Pass(name, on) => drop(settings.passes.insert(name, on)),
-        Action::Open(panel) => viewer.workspace.request_in_sight(PanelRequest::Open(panel)),
-        Action::Arrange(preset) => viewer.workspace.request_in_sight(PanelRequest::Arrange(preset)),
-        Action::ResetLayout => viewer.workspace.request_in_sight(PanelRequest::ResetArrangement),
-        Action::ArrangeOwn => viewer.workspace.request_in_sight(PanelRequest::ArrangeOwn),
+        Action::Open(panel) => ask(&[PanelRequest::Unhide, PanelRequest::Open(panel)]),
+        Action::Arrange(preset) => ask(&[PanelRequest::Unhide, PanelRequest::Arrange(preset)]),
+        Action::ResetLayout => ask(&[PanelRequest::Unhide, PanelRequest::ResetArrangement]),
+        Action::ArrangeOwn => ask(&[PanelRequest::Unhide, PanelRequest::ArrangeOwn]),
         Action::WriteVersion(number) => {
-            viewer.workspace.request_in_sight(PanelRequest::Open(Panel::Timeline));
-            viewer.workspace.request(PanelRequest::AskVersion(number));
+            ask(&[PanelRequest::Unhide, PanelRequest::Open(Panel::Timeline), PanelRequest::AskVersion(number)]);
         }
         Action::AskExpression => {
-            viewer.workspace.request_in_sight(PanelRequest::Open(Panel::Expression));
-            viewer.workspace.request(PanelRequest::FocusExpression);
+            ask(&[PanelRequest::Unhide, PanelRequest::Open(Panel::Expression), PanelRequest::FocusExpression]);
         }
         Action::Watch(at) => watch(settings, at),
-        Action::WriteDefaults => viewer.workspace.request(PanelRequest::AskDefaults),
-        Action::TogglePanels => viewer.workspace.request(PanelRequest::Toggle),
-        Action::ToggleTheme => viewer.workspace.request(PanelRequest::ToggleTheme),
-        Action::ShowKeys => viewer.workspace.request(PanelRequest::ShowKeys),
+        Action::WriteDefaults => ask(&[PanelRequest::AskDefaults]),
+        Action::TogglePanels => ask(&[PanelRequest::Toggle]),
+        Action::ToggleTheme => ask(&[PanelRequest::ToggleTheme]),
+        Action::ShowKeys => ask(&[PanelRequest::ShowKeys]),
     }
 }

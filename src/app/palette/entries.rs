@@ -6,15 +6,15 @@ use super::act::is_in_force;
 use super::ask::{Ask, Target};
 use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
-use crate::app::dialog::Dialog;
 use crate::app::numbers::{default_of, of_constant, of_parameter};
+use crate::app::state::State;
 use crate::app::state::arrangement::{Panel, Preset};
+use crate::app::state::dialog::Dialog;
 use crate::app::state::exercise::LearnCommand;
 use crate::app::state::inspection::Page;
 use crate::app::state::recent::Kind;
 use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::state::shaders::effects::{is_of_pass, is_switch};
-use crate::app::viewer::Viewer;
 use crate::learn::exercises;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{Settings, ShaderValue, Value};
@@ -81,33 +81,33 @@ impl Entry {
 }
 
 /// All entries.
-pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
+pub(super) fn entries(state: &State) -> Vec<Entry> {
     let mut entries = commands();
-    let settings = &viewer.session.settings;
-    entries.extend(files(viewer));
+    let settings = &state.session.settings;
+    entries.extend(files(state));
     entries.extend(lessons());
-    entries.extend(of_settings(viewer));
-    entries.extend(of_picture(viewer));
-    if let Some(shaders) = &viewer.session.shaders {
+    entries.extend(of_settings(state));
+    entries.extend(of_picture(state));
+    if let Some(shaders) = &state.session.shaders {
         constants(&mut entries, shaders, settings);
         parameters(&mut entries, shaders, settings);
         passes(&mut entries, shaders, settings);
         entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode)));
     }
     for entry in &mut entries {
-        entry.is_in_force = is_in_force(&entry.action, viewer);
+        entry.is_in_force = is_in_force(&entry.action, state);
     }
     entries
 }
 
 /// Environments, models and shader trees: the built-in ones and the files that were open.
-fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
+fn files(state: &State) -> impl Iterator<Item = Entry> {
     let entry = |group: &'static str, path: &Path, action: Action| {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let words = path.display().to_string();
         Entry { words, ..Entry::new(group, format!("{group}: {name}"), action) }
     };
-    let recent = &viewer.recent;
+    let recent = &state.recent;
     let built_in = BUILT_IN.into_iter().chain(["none"]).map(PathBuf::from);
     let environment = move |path: PathBuf| entry("Environment", &path, Action::Environment(path.display().to_string()));
     let model = move |path: PathBuf| entry("Model", &path, Action::Do(Command::OpenModel(path.clone())));
@@ -127,10 +127,10 @@ fn lessons() -> impl Iterator<Item = Entry> {
 }
 
 /// Entries that depend on the current picture: comparisons, versions to write to the files, views of the model.
-fn of_picture(viewer: &Viewer) -> Vec<Entry> {
+fn of_picture(state: &State) -> Vec<Entry> {
     let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
-    let newest = viewer.shown_generation();
-    let mut entries = match viewer.compare.is_on() {
+    let newest = state.shown_generation();
+    let mut entries = match state.compare.is_on() {
         true => vec![
             compare("Stop comparing".to_owned(), CompareWith::Nothing),
             Entry {
@@ -147,20 +147,20 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
     };
     entries.push(choose("Compare with a picture…", "file image PNG JPEG EXR HDR reference", Dialog::Picture));
     entries.push(choose("Compare with another shader tree…", "second folder A B", Dialog::SecondTree));
-    for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
+    for version in state.versions.iter().filter(|version| state.versions.can_show(version, newest)) {
         let title = format!("Compare with version {}: {}", version.number, version.title());
         entries.push(compare(title, CompareWith::Version(version.number)));
     }
     let mut show = |title: String, version| {
         entries.push(Entry::new("Compare", title, Action::Do(Command::ShowVersion(version))));
     };
-    if viewer.edits.restored.is_some() {
+    if state.edits.restored.is_some() {
         show("Go back to the newest version".to_owned(), None);
     }
-    for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
+    for version in state.versions.iter().filter(|version| state.versions.can_show(version, newest)) {
         show(format!("Show version {} alone: {}", version.number, version.title()), Some(version.number));
     }
-    for version in viewer.versions.iter().filter(|version| !viewer.files_of_version(version.number).is_empty()) {
+    for version in state.versions.iter().filter(|version| !state.files_of_version(version.number).is_empty()) {
         let title = format!("Write version {} to the files…", version.number);
         entries.push(Entry::new("Compare", title, Action::WriteVersion(version.number)));
     }
@@ -169,8 +169,8 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
         let entry = Entry::new("Camera", format!("View from the {name}"), Action::Do(Command::ViewFrom(side)));
         Entry { key: key.to_owned(), ..entry }
     }));
-    entries.extend(of_scene(viewer));
-    if viewer.workspace.sight.has_own_arrangement {
+    entries.extend(of_scene(state));
+    if state.workspace.sight.has_own_arrangement {
         entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
     }
     entries
@@ -180,8 +180,8 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
 const MOST_NODES: usize = 300;
 
 /// Nodes, materials and cameras of the model, and lights with a handle.
-fn of_scene(viewer: &Viewer) -> Vec<Entry> {
-    let Some(model) = viewer.session.model() else { return Vec::new() };
+fn of_scene(state: &State) -> Vec<Entry> {
+    let Some(model) = state.session.model() else { return Vec::new() };
     let select = |title: String, selected| {
         let entry = Entry::new("Scene", title, Action::Do(Command::Select(selected)));
         Entry { is_minor: true, ..entry }
@@ -194,7 +194,7 @@ fn of_scene(viewer: &Viewer) -> Vec<Entry> {
             .take(MOST_NODES)
             .map(|index| select(format!("Select material {}", model.material_key(index)), Selected::Material(index))),
     );
-    entries.extend((0..viewer.session.settings.lights.orbit.len()).map(|light| {
+    entries.extend((0..state.session.settings.lights.orbit.len()).map(|light| {
         select(format!("Move light {} in the picture", light + 1), Selected::Light(LightId::Orbit(light)))
     }));
     entries.extend(model.cameras.iter().enumerate().map(|(index, camera)| {

@@ -11,9 +11,11 @@ mod settings;
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 use serde::Serialize;
 
-use super::command::Command;
-use super::viewer::Viewer;
+use super::commands::Commands;
 use super::widgets::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
+use crate::app::engine::Engine;
+use crate::app::execute::execute;
+use crate::app::state::State;
 use crate::message::did_you_mean;
 use crate::shader::Expression;
 use act::act;
@@ -65,17 +67,17 @@ pub(super) struct Listed {
 }
 
 /// Everything that the palette can do at the moment.
-pub(super) fn listed(viewer: &Viewer) -> Vec<Listed> {
+pub(super) fn listed(state: &State) -> Vec<Listed> {
     let listed = |entry: Entry| Listed { group: entry.group, entry: entry.title, now: entry.is_in_force };
-    entries(viewer).into_iter().map(listed).collect()
+    entries(state).into_iter().map(listed).collect()
 }
 
 /// Does what the entry with this title does. `value` is for an entry that sets a number.
 ///
 /// # Errors
 /// A message: no entry has the title, or the value does not fit.
-pub(super) fn run(viewer: &mut Viewer, title: &str, value: Option<f64>) -> Result<(), String> {
-    let entries = entries(viewer);
+pub(super) fn run(state: &mut State, engine: &mut Engine, title: &str, value: Option<f64>) -> Result<(), String> {
+    let entries = entries(state);
     let Some(entry) = entries.iter().find(|entry| entry.title.eq_ignore_ascii_case(title)) else {
         let hint = did_you_mean(title, entries.iter().map(|entry| entry.title.as_str()));
         return Err(format!("the palette has no entry `{title}`.{hint} `entries` lists them all"));
@@ -92,27 +94,27 @@ pub(super) fn run(viewer: &mut Viewer, title: &str, value: Option<f64>) -> Resul
         (action, None) => action.clone(),
     };
     let mut commands = Vec::new();
-    act(viewer, action, &mut commands);
-    commands.into_iter().for_each(|command| viewer.execute(command));
+    act(action, &mut state.session.settings, &mut commands);
+    commands.into_iter().for_each(|command| execute(state, engine, command));
     Ok(())
 }
 
 /// Shows the open palette over `area`, and does what the user chooses.
 pub(super) fn show(
     egui: &egui::Context,
-    viewer: &mut Viewer,
+    state: &State,
     palette: &mut Palette,
     area: egui::Rect,
-    commands: &mut Vec<Command>,
+    commands: &mut Commands,
 ) {
     if !palette.is_open {
         return;
     }
-    let mut entries = entries(viewer);
+    let mut entries = entries(state);
     let chosen = window(egui, palette, &mut entries, area);
     palette.is_open &= chosen.is_none();
     if let Some(action) = chosen {
-        act(viewer, action, commands);
+        act(action, &mut commands.settings, &mut commands.list);
     }
 }
 

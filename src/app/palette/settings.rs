@@ -4,13 +4,13 @@ use super::ask::Ask;
 use super::entries::{Action, Entry, switch};
 use crate::app::command::Command;
 use crate::app::numbers::{Number, group, title};
-use crate::app::viewer::Viewer;
+use crate::app::state::State;
 use crate::settings::{Setting, Settings, Valid, Value, catalog};
 
 /// Entries of all settings with a row, and of the saved cameras.
-pub(super) fn of_settings(viewer: &Viewer) -> Vec<Entry> {
-    let settings = &viewer.session.settings;
-    let has_lights = viewer.session.model().is_some_and(|model| !model.lights.is_empty());
+pub(super) fn of_settings(state: &State) -> Vec<Entry> {
+    let settings = &state.session.settings;
+    let has_lights = state.session.model().is_some_and(|model| !model.lights.is_empty());
     let is_offered = |entry: &Entry| match &entry.action {
         Action::Set(path, value) => has_lights || path != "lights.source" || *value != Value::Text("model".to_owned()),
         _ => true,

@@ -3,6 +3,8 @@
 use egui::{Button, Label, Response, RichText, Ui};
 
 use crate::app::command::{Command, Side};
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::numbers::Scale;
 use crate::app::widgets::rows::{Row, drag, group, heading, option_text, option_value, set_option};
 use crate::app::widgets::spoken::named;
@@ -14,6 +16,13 @@ use crate::settings::{CameraSettings, Curve, Settings, Value, setting};
 const FARTHEST: f64 = 1e6;
 /// Gap between the numbers of a position, points.
 const GAP: f32 = 3.0;
+
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    let view = context.state.shown().map(|shown| shown.camera);
+    let Commands { settings, list, .. } = commands;
+    show(ui, settings, view.as_ref(), &context.model(), list);
+}
 
 /// Shows the panel. `view`: the camera of the picture.
 pub(super) fn show(

@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use egui::{Align, Button, Checkbox, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
 use crate::app::command::Command;
-use crate::app::control::Captures;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
+use crate::app::state::captures::Captures;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{Row, elided, heading};
 use crate::app::widgets::theme::QUIET;
@@ -52,6 +55,14 @@ impl Default for CaptureState {
             animation: "webp",
             folder: std::env::current_dir().unwrap_or_default().display().to_string(),
         }
+    }
+}
+
+impl PanelUi for CaptureState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        let size = context.state.shown().map_or((0, 0), |shown| shown.size);
+        let versions = context.state.versions.iter().count();
+        show(ui, self, &context.state.captures, (size, versions), &mut commands.list);
     }
 }
 
@@ -193,7 +204,7 @@ fn progress(ui: &mut Ui, captures: &Captures, folder: &str, commands: &mut Vec<C
             ui.add(bar).on_hover_text("Pictures drawn so far");
             let about = "Stop after the picture in progress. Numbered frames that were already written stay";
             if ui.button("Cancel").on_hover_text(about).clicked() {
-                running.cancel();
+                commands.push(Command::CancelCapture(running.number));
             }
         });
     }

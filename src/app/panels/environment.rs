@@ -4,15 +4,24 @@ use std::path::PathBuf;
 
 use egui::{RichText, Ui};
 
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{Row, check, choose, group, set_option, special};
 use crate::app::widgets::theme::QUIET;
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{Settings, ViewSettings};
 
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    let recent = context.state.recent.of(Kind::Environment);
+    show(ui, &mut commands.settings, recent, context.readings.baking, context.readings.baked);
+}
+
 /// Shows the panel. `recent`: files that were shown, the newest first. `progress` is the fraction of the current bake that is
 /// done, and its next pass.
-pub(super) fn show(
+fn show(
     ui: &mut Ui,
     settings: &mut Settings,
     recent: &[PathBuf],

@@ -7,10 +7,14 @@ use std::sync::Arc;
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
 use crate::app::source_line::{SourceLine, watch};
+use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::state::shaders::edits::NO_FOLDER;
-use crate::app::viewer::Viewer;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, small_mono};
@@ -37,49 +41,54 @@ pub(in crate::app) struct ExpressionState {
 }
 
 impl ExpressionState {
-    /// Gives the field the keys in the next frame.
-    pub(in crate::app) fn focus(&mut self) {
-        self.takes_focus = true;
-    }
-
     /// Shows a line, with what it offers.
-    pub(in crate::app) fn show_line(&mut self, file: &str, line: u32) {
+    fn show_line(&mut self, file: &str, line: u32) {
         (self.field, self.error) = (format!("{file}:{line}:"), None);
     }
 }
 
-/// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ExpressionState, commands: &mut Vec<Command>) {
-    let settings = &mut viewer.session.settings;
-    if state.known != settings.expression.at {
-        state.known.clone_from(&settings.expression.at);
-        state.field.clone_from(&settings.expression.at);
-        state.error = None;
+impl PanelUi for ExpressionState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        show(ui, context.state, self, commands);
     }
-    field(ui, settings, state);
-    if let Some(error) = &state.error {
+
+    fn on_request(&mut self, request: &PanelRequest) {
+        self.takes_focus |= *request == PanelRequest::FocusExpression;
+    }
+}
+
+/// Shows the panel.
+fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Commands) {
+    let Commands { settings, list, .. } = commands;
+    if own.known != settings.expression.at {
+        own.known.clone_from(&settings.expression.at);
+        own.field.clone_from(&settings.expression.at);
+        own.error = None;
+    }
+    field(ui, settings, own);
+    if let Some(error) = &own.error {
         ui.add(Label::new(RichText::new(error).small().color(ERROR)).wrap());
     }
-    find_line(viewer, state);
-    match state.shown.take() {
+    find_line(state, own);
+    match own.shown.take() {
         Some(mut shown) => {
-            line(ui, &mut shown, state);
-            offered(ui, &mut viewer.session.settings, &shown, state);
-            numbers(ui, viewer, &mut shown, commands);
-            state.shown = Some(shown);
+            line(ui, &mut shown, own);
+            offered(ui, settings, &shown, own);
+            numbers(ui, state, &mut shown, list);
+            own.shown = Some(shown);
         }
-        None => suggestions(ui, viewer, state),
+        None => suggestions(ui, state, own),
     }
 }
 
 /// The field for the expression, and the buttons beside it.
-fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
+fn field(ui: &mut Ui, settings: &mut Settings, own: &mut ExpressionState) {
     let is_on = !settings.expression.at.is_empty();
     ui.horizontal(|ui| {
         let room = ui.available_width() - 62.0;
-        let edit = TextEdit::singleline(&mut state.field).desired_width(room).font(egui::TextStyle::Monospace);
+        let edit = TextEdit::singleline(&mut own.field).desired_width(room).font(egui::TextStyle::Monospace);
         let edit = named(ui.add(edit.hint_text("brdf/ndf.glsl:20 a2")), "Expression");
-        if std::mem::take(&mut state.takes_focus) {
+        if std::mem::take(&mut own.takes_focus) {
             edit.request_focus();
         }
         let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -87,7 +96,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
             "FILE:LINE and a variable or an expression of the shaders. Enter shows its value over the model, as a mode. \
              `return` is the value that the line returns",
         );
-        let is_shown = is_on && settings.mode == MODE && state.field == settings.expression.at;
+        let is_shown = is_on && settings.mode == MODE && own.field == settings.expression.at;
         let (name, hint) = match is_shown {
             true => ("Stop", "Go back to the picture"),
             false => ("Watch", "Show the value over the model (Enter)"),
@@ -99,37 +108,37 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
                 settings.mode = Settings::default().mode;
             }
         } else if clicked || entered {
-            match Expression::parse(&state.field, 0) {
+            match Expression::parse(&own.field, 0) {
                 Ok(expression) => {
-                    state.error = None;
+                    own.error = None;
                     watch(settings, expression.to_string());
                 }
-                Err(message) => state.error = (!state.field.is_empty()).then_some(message),
+                Err(message) => own.error = (!own.field.is_empty()).then_some(message),
             }
         }
     });
 }
 
 /// Finds the line that the field names.
-fn find_line(viewer: &Viewer, state: &mut ExpressionState) {
-    let Some(shaders) = &viewer.session.shaders else { return };
-    let found = SourceLine::place(shaders, &state.field);
+fn find_line(state: &State, own: &mut ExpressionState) {
+    let Some(shaders) = &state.session.shaders else { return };
+    let found = SourceLine::place(shaders, &own.field);
     let Some((path, text, line)) = found else {
-        state.shown = None;
+        own.shown = None;
         return;
     };
-    let is_dragged = viewer.edits.draft.as_ref().is_some();
-    let is_same = state.shown.as_ref().is_some_and(|shown| {
+    let is_dragged = state.edits.draft.as_ref().is_some();
+    let is_same = own.shown.as_ref().is_some_and(|shown| {
         (&shown.path, shown.line) == (path, line)
             && (is_dragged || Arc::ptr_eq(&shown.text, text) || shown.text == *text)
     });
     if !is_same {
-        state.shown = SourceLine::new(path, line, text);
+        own.shown = SourceLine::new(path, line, text);
     }
 }
 
 /// The line itself, with its number to step through the file.
-fn line(ui: &mut Ui, shown: &mut SourceLine, state: &mut ExpressionState) {
+fn line(ui: &mut Ui, shown: &mut SourceLine, own: &mut ExpressionState) {
     ui.horizontal(|ui| {
         ui.add(Label::new(RichText::new(shown.path.as_str()).small().color(QUIET)).truncate());
         let mut number = shown.line;
@@ -139,7 +148,7 @@ fn line(ui: &mut Ui, shown: &mut SourceLine, state: &mut ExpressionState) {
             .on_hover_text("The line whose variables and numbers are listed below. Drag to step through the file")
             .changed()
         {
-            state.show_line(shown.path.as_str(), number);
+            own.show_line(shown.path.as_str(), number);
         }
     });
     let text = small_mono(shown.before.trim());
@@ -147,7 +156,7 @@ fn line(ui: &mut Ui, shown: &mut SourceLine, state: &mut ExpressionState) {
 }
 
 /// The variables that the line offers, and which evaluation counts.
-fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, state: &mut ExpressionState) {
+fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut ExpressionState) {
     let watched = Expression::parse(&settings.expression.at, 0).ok();
     let watched =
         watched.filter(|watched| watched.line == shown.line && settings.mode == MODE).map(|watched| watched.text);
@@ -158,7 +167,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, state: &mut
             let text = small_mono(name);
             let button = ui.selectable_label(watched.as_ref() == Some(name), text);
             if button.on_hover_text(format!("{kind} {name}: click to see its value over the model")).clicked() {
-                state.error = None;
+                own.error = None;
                 watch(settings, format!("{}:{}:{name}", shown.path, shown.line));
             }
         }
@@ -181,8 +190,8 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, state: &mut
 }
 
 /// The numbers of the line as sliders.
-fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut SourceLine, commands: &mut Vec<Command>) {
-    let draft = viewer.edits.draft.as_ref();
+fn numbers(ui: &mut Ui, state: &State, shown: &mut SourceLine, commands: &mut Vec<Command>) {
+    let draft = state.edits.draft.as_ref();
     let is_here = |edit: &Edit| edit.path == shown.path && edit.line == shown.line;
     let is_own = draft.is_some_and(|draft| draft.edits.first().is_some_and(is_here));
     if !shown.numbers.is_empty() {
@@ -215,7 +224,7 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut SourceLine, commands: &mut 
         if !is_own && let Some(edit) = draft.edits.first() {
             ui.label(RichText::new(format!("{}:{}", edit.path, edit.line)).small().color(ACCENT));
         }
-        let write = ui.add_enabled(viewer.has_folder(), Button::new("Write"));
+        let write = ui.add_enabled(state.has_folder(), Button::new("Write"));
         let changes: Vec<String> = draft.edits.iter().map(|edit| format!("{} -> {}", edit.old(), edit.new)).collect();
         let hint = format!("Write to the file: {}", changes.join(", "));
         if write.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
@@ -231,9 +240,9 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut SourceLine, commands: &mut 
 }
 
 /// Lines to begin with: those with errors, and those of the last edit.
-fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
-    let newest = viewer.versions.iter().next_back();
-    let edited = newest.map(|version| edited_lines(viewer.versions.difference(version))).unwrap_or_default();
+fn suggestions(ui: &mut Ui, state: &State, own: &mut ExpressionState) {
+    let newest = state.versions.iter().next_back();
+    let edited = newest.map(|version| edited_lines(state.versions.difference(version))).unwrap_or_default();
     let text = match edited.is_empty() {
         true => "Type a file and a line to see its variables and numbers.",
         false => "Lines of the last edit:",
@@ -248,7 +257,7 @@ fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
                 .on_hover_text(format!("Show the variables and numbers of {path}:{line}"))
                 .clicked()
             {
-                state.show_line(&path, line);
+                own.show_line(&path, line);
             }
         }
     });

@@ -10,8 +10,11 @@ mod values;
 use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
+use crate::app::state::State;
 use crate::app::state::inspection::{Inspection, Page, text};
-use crate::app::viewer::Viewer;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{choose, elided};
 use crate::app::widgets::search::{self, Words};
@@ -28,13 +31,21 @@ pub(super) struct InspectorState {
     turn_deg: f32,
 }
 
+impl PanelUi for InspectorState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        commands.sight.inspector = true;
+        show(ui, context, self, commands);
+    }
+}
+
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, panel: &mut InspectorState, commands: &mut Vec<Command>) {
-    let Viewer { session, shader, inspection: state, .. } = viewer;
-    let shaders = session.shaders.clone().unwrap_or_default();
-    header(ui, state, &shaders.modes);
-    let Some(reading) = &state.reading else {
-        let hint = match state.is_pinned() {
+fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands: &mut Commands) {
+    let State { session, shader, inspection: own, .. } = context.state;
+    let Commands { settings, list: commands, .. } = commands;
+    let shaders = &context.shaders;
+    header(ui, own, &shaders.modes, commands);
+    let Some(reading) = &own.reading else {
+        let hint = match own.is_pinned() {
             true => "Reading the pixel…",
             false => {
                 "Click a pixel of the picture to read its value in every mode. Esc, or a click on the marker, unpins it."
@@ -46,36 +57,38 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, panel: &mut InspectorState,
     ui.horizontal(|ui| {
         for page in Page::ALL {
             let (name, doc) = page.words();
-            ui.selectable_value(&mut state.page, page, name).on_hover_text(doc);
+            if ui.selectable_label(own.page == page, name).on_hover_text(doc).clicked() {
+                commands.push(Command::OpenInspector(page));
+            }
         }
-        light(ui, &mut session.settings.lights.chosen, reading.lights.len());
+        light(ui, &mut settings.lights.chosen, reading.lights.len());
     });
-    match state.page {
+    match own.page {
         Page::Values => {
             search::field(ui, &mut panel.search, "values", 0.0);
             let words = Words::new(&panel.search);
             let features = session.features();
-            if let Some(search) = &state.search_not_finite {
+            if let Some(search) = &own.search_not_finite {
                 not_finite::show(ui, search, shader.location.is_some(), commands);
             }
             let with = |ui: &mut Ui| texels::show(ui, &reading.texels, &words, commands);
-            let mode = &mut session.settings.mode;
+            let mode = &mut settings.mode;
             values::show(ui, reading, &words, &shaders.modes, features, mode, with);
         }
         Page::Lobe => {
-            let chosen = session.settings.lights.chosen;
+            let chosen = settings.lights.chosen;
             // Its place is not that of the list of values.
             egui::ScrollArea::vertical().id_salt("BRDF").auto_shrink(false).show(ui, |ui| {
-                lobe::show(ui, reading, state.curves.as_ref(), state.asked.as_ref(), chosen, &mut panel.turn_deg);
+                lobe::show(ui, reading, own.curves.as_ref(), own.asked.as_ref(), chosen, &mut panel.turn_deg);
             });
         }
     }
 }
 
 /// The pixel, what it shows, and what can be done with it.
-fn header(ui: &mut Ui, state: &mut Inspection, modes: &[crate::shader::Mode]) {
+fn header(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode], commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let at = state.pin.or(state.reading.as_ref().filter(|_| state.follows).map(|reading| reading.at));
+        let at = own.pin.or(own.reading.as_ref().filter(|_| own.follows).map(|reading| reading.at));
         match at {
             Some([x, y]) => {
                 let label = ui.label(RichText::new(format!("{x}, {y}")).monospace().strong());
@@ -83,16 +96,20 @@ fn header(ui: &mut Ui, state: &mut Inspection, modes: &[crate::shader::Mode]) {
             }
             None => drop(ui.label(RichText::new("no pixel").color(QUIET))),
         }
-        if state.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
-            state.unpin();
+        if own.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
+            commands.push(Command::Unpin);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            copy(ui, state, modes);
-            let follow = check_box::show(ui, Checkbox::new(&mut state.follows, "Follow mouse"));
-            follow.on_hover_text("While no pixel is pinned, read the pixel under the mouse when the mouse stops");
+            copy(ui, own, modes);
+            let mut follows = own.follows;
+            let follow = check_box::show(ui, Checkbox::new(&mut follows, "Follow mouse"));
+            let hint = "While no pixel is pinned, read the pixel under the mouse when the mouse stops";
+            if follow.on_hover_text(hint).changed() {
+                commands.push(Command::FollowMouse(follows));
+            }
         });
     });
-    let Some(reading) = &state.reading else { return };
+    let Some(reading) = &own.reading else { return };
     let about = match &reading.names {
         Some([node, material]) if node == material => node.clone(),
         Some([node, material]) => format!("{node} · {material}"),
@@ -104,11 +121,11 @@ fn header(ui: &mut Ui, state: &mut Inspection, modes: &[crate::shader::Mode]) {
 }
 
 /// The menu that copies all values.
-fn copy(ui: &mut Ui, state: &Inspection, modes: &[crate::shader::Mode]) {
-    ui.add_enabled_ui(state.reading.is_some(), |ui| {
+fn copy(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode]) {
+    ui.add_enabled_ui(own.reading.is_some(), |ui| {
         let menu = ui.menu_button("Copy", |ui| {
-            let Some(reading) = &state.reading else { return };
-            let found = state.search_not_finite.as_ref().and_then(|search| search.found.as_ref());
+            let Some(reading) = &own.reading else { return };
+            let found = own.search_not_finite.as_ref().and_then(|search| search.found.as_ref());
             if ui.button("All values as text").clicked() {
                 ui.ctx().copy_text(text::table(reading, modes, found));
                 ui.close();
@@ -136,8 +153,8 @@ fn light(ui: &mut Ui, chosen: &mut u32, lights: usize) {
 }
 
 /// Marks the pinned pixel in the picture.
-pub(super) fn marker(egui: &egui::Context, state: &Inspection, picture: Rect) {
-    let Some([x, y]) = state.pin.filter(|_| state.is_visible) else { return };
+pub(super) fn marker(egui: &egui::Context, own: &Inspection, picture: Rect) {
+    let Some([x, y]) = own.pin else { return };
     let scale = egui.pixels_per_point();
     let at = picture.min + vec2(x as f32 + 0.5, y as f32 + 0.5) / scale;
     if !picture.contains(at) {

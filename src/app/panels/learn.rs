@@ -7,14 +7,21 @@ mod mark;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::shader::{Diagnostic, Severity};
 
 use crate::app::widgets::theme::{ACCENT, GOOD, QUIET};
 use crate::learn::exercises;
 
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    show(ui, &context.state.learning, &context.state.session.diagnostics, &mut commands.list);
+}
+
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, learning: &Learning, diagnostics: &[Diagnostic], commands: &mut Vec<Command>) {
+fn show(ui: &mut Ui, learning: &Learning, diagnostics: &[Diagnostic], commands: &mut Vec<Command>) {
     bar(ui, learning, commands);
     let is_broken = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
     let exercise = learning.exercise.filter(|_| !learning.shows_list);

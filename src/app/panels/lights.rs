@@ -3,13 +3,21 @@
 use egui::{RichText, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::state::selection::{LightId, Selected};
 use crate::app::widgets::rows::{choose, group, heading, special};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::{LightSource, Settings};
 
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    let Commands { settings, list, .. } = commands;
+    show(ui, settings, context.model().lights.len(), list);
+}
+
 /// Shows the panel. `in_model` is the number of lights in the model.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize, commands: &mut Vec<Command>) {
+fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize, commands: &mut Vec<Command>) {
     group(ui, settings, "lights", |ui, settings, path| {
         match path {
             "lights.source" => source(ui, settings, in_model),

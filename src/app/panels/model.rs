@@ -5,15 +5,24 @@ use std::path::PathBuf;
 use egui::{Checkbox, RichText, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::state::model::ModelStatus;
-use crate::app::widgets::check_box;
-use crate::app::widgets::plural;
+use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
 use crate::app::widgets::theme::{QUIET, WARNING};
+use crate::app::widgets::{check_box, plural};
 use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialChannel, ModelSettings, Settings, setting};
 
-pub(super) fn show(
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    let recent = context.state.recent.of(Kind::Model);
+    let Commands { settings, list, .. } = commands;
+    show(ui, settings, &context.model(), &context.state.model, recent, list);
+}
+
+fn show(
     ui: &mut Ui,
     settings: &mut Settings,
     model: &Model,

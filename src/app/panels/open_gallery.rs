@@ -6,13 +6,12 @@ use egui::{Align2, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, T
 use egui::{TextureOptions, pos2, vec2};
 
 use crate::app::command::Command;
-use crate::app::dialog::Dialog;
+use crate::app::state::State;
+use crate::app::state::dialog::Dialog;
 use crate::app::state::recent::Kind;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, EDGE, QUIET, body_font};
-use crate::scene::{BUILT_IN, BuiltInPictures, built_in_pictures, environment};
-use crate::threads::Message;
+use crate::scene::{BUILT_IN, BuiltInPictures, environment};
 
 /// Size of a picture, in points, and of the name below.
 const PICTURE: egui::Vec2 = vec2(128.0, 96.0);
@@ -24,6 +23,8 @@ const WINDOW: egui::Vec2 = vec2(570.0, 520.0);
 #[derive(Default)]
 pub(in crate::app) struct OpenGallery {
     pub(in crate::app) is_open: bool,
+    /// Whether a thread is to decode the pictures.
+    pub(in crate::app) wants_pictures: bool,
     pictures: Pictures,
     search: String,
 }
@@ -54,12 +55,12 @@ impl OpenGallery {
 }
 
 /// Shows the gallery while it is open.
-pub(super) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery, commands: &mut Vec<Command>) {
-    if state.is_open && egui.input(|input| input.key_pressed(Key::Escape)) {
-        state.is_open = false;
+pub(super) fn show(egui: &egui::Context, state: &State, own: &mut OpenGallery, commands: &mut Vec<Command>) {
+    if own.is_open && egui.input(|input| input.key_pressed(Key::Escape)) {
+        own.is_open = false;
     }
-    if state.is_open {
-        provide(egui, viewer, state);
+    if own.is_open {
+        provide(egui, own);
         let mut stays = true;
         let room = egui.content_rect();
         let size = WINDOW.min(room.size() - vec2(24.0, 94.0));
@@ -68,19 +69,19 @@ pub(super) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGaller
         let before = commands.len();
         window.show(egui, |ui| {
             ui.set_width(size.x);
-            contents(ui, viewer, state, size.y, commands);
+            contents(ui, state, own, size.y, commands);
         });
-        state.is_open = stays && commands.len() == before;
+        own.is_open = stays && commands.len() == before;
     } else {
-        state.search.clear();
+        own.search.clear();
     }
 }
 
 /// Lets a thread decode the pictures, and uploads them.
-fn provide(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery) {
-    state.pictures = match std::mem::take(&mut state.pictures) {
+fn provide(egui: &egui::Context, own: &mut OpenGallery) {
+    own.pictures = match std::mem::take(&mut own.pictures) {
         Pictures::None => {
-            viewer.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
+            own.wants_pictures = true;
             Pictures::Asked
         }
         Pictures::Decoded(pictures) => {
@@ -93,7 +94,7 @@ fn provide(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery) {
     };
 }
 
-fn contents(ui: &mut Ui, viewer: &Viewer, state: &mut OpenGallery, height: f32, commands: &mut Vec<Command>) {
+fn contents(ui: &mut Ui, state: &State, own: &mut OpenGallery, height: f32, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         if ui.button("File…").on_hover_text("A model, environment, measured BRDF, look or shader (Ctrl+O)").clicked()
         {
@@ -104,31 +105,31 @@ fn contents(ui: &mut Ui, viewer: &Viewer, state: &mut OpenGallery, height: f32, 
         }
         ui.label(RichText::new("or drop a file on the window").small().color(QUIET));
     });
-    search::field(ui, &mut state.search, "models and environments", 0.0);
-    let words = Words::new(&state.search);
-    let state = &*state;
+    search::field(ui, &mut own.search, "models and environments", 0.0);
+    let words = Words::new(&own.search);
+    let own = &*own;
     let mut is_empty = true;
     // The height does not follow the search, so that the window stays in place.
     ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-        let model = viewer.session.model().map(|model| model.name.clone()).unwrap_or_default();
+        let model = state.session.model().map(|model| model.name.clone()).unwrap_or_default();
         let models = BUILT_IN.map(|name| (name, name.to_owned(), name == model, format!("specula {name}")));
-        let (tiles, files) = (found(models, &words), recent(viewer, Kind::Model, &words));
+        let (tiles, files) = (found(models, &words), recent(state, Kind::Model, &words));
         if !tiles.is_empty() || !files.is_empty() {
             is_empty = false;
             heading(ui, "Models");
-            if let Some(name) = grid(ui, state, &tiles) {
+            if let Some(name) = grid(ui, own, &tiles) {
                 commands.push(Command::OpenModel(name.into()));
             }
             show_recent(ui, &files, |path| commands.push(Command::OpenModel(path)));
         }
-        let now = viewer.session.settings.environment.name.clone();
+        let now = state.session.settings.environment.name.clone();
         let environments = environment::BUILT_IN
             .map(|name| (name, format!("environment-{name}"), name == now, format!("specula --env {name}")));
-        let (tiles, files) = (found(environments, &words), recent(viewer, Kind::Environment, &words));
+        let (tiles, files) = (found(environments, &words), recent(state, Kind::Environment, &words));
         if !tiles.is_empty() || !files.is_empty() {
             is_empty = false;
             heading(ui, "Environments");
-            if let Some(name) = grid(ui, state, &tiles) {
+            if let Some(name) = grid(ui, own, &tiles) {
                 commands.push(Command::OpenEnvironment(PathBuf::from(name)));
             }
             show_recent(ui, &files, |path| commands.push(Command::OpenEnvironment(path)));
@@ -153,7 +154,7 @@ fn found<'a>(tiles: impl IntoIterator<Item = Tile<'a>>, words: &Words) -> Vec<Ti
 }
 
 /// Shows pictures with their names. Returns the name of the clicked one.
-fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a str> {
+fn grid<'a>(ui: &mut Ui, own: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a str> {
     let mut clicked = None;
     ui.spacing_mut().item_spacing = vec2(8.0, 6.0);
     let columns = ((ui.available_width() + 8.0) / (PICTURE.x + 8.0)).floor().max(1.0) as usize;
@@ -163,7 +164,7 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
                 let (rect, response) = ui.allocate_exact_size(PICTURE + vec2(0.0, NAME), Sense::click());
                 let area = Rect::from_min_size(rect.min, PICTURE);
                 ui.painter().rect_filled(area, 4.0, EDGE);
-                if let Some((texture, place)) = state.picture(picture) {
+                if let Some((texture, place)) = own.picture(picture) {
                     egui::Image::new((texture.id(), PICTURE)).uv(place).corner_radius(4.0).paint_at(ui, area);
                 }
                 let is_marked = *is_shown || response.hovered();
@@ -185,10 +186,10 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
 }
 
 /// The files of a kind that were open and have the words of the search in their paths.
-fn recent(viewer: &Viewer, kind: Kind, words: &Words) -> Vec<PathBuf> {
+fn recent(state: &State, kind: Kind, words: &Words) -> Vec<PathBuf> {
     let is_built_in = |path: &Path| path.components().count() == 1 && !path.exists();
     let is_found = |path: &&PathBuf| !is_built_in(path) && words.are_in(&path.to_string_lossy());
-    viewer.recent.of(kind).iter().filter(is_found).cloned().collect()
+    state.recent.of(kind).iter().filter(is_found).cloned().collect()
 }
 
 /// Shows files by their names, and opens the clicked one.
@@ -223,7 +224,7 @@ mod tests {
         let texture = egui.load_texture("test", image, TextureOptions::LINEAR);
         let names = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
         let gallery =
-            OpenGallery { is_open: true, pictures: Pictures::Uploaded(texture, names), search: String::new() };
+            OpenGallery { is_open: true, pictures: Pictures::Uploaded(texture, names), ..OpenGallery::default() };
         let place = |name: &str| gallery.picture(name).map(|(_, place)| (place.left(), place.right()));
         assert_eq!((place("a"), place("c"), place("e")), (Some((0.0, 0.25)), Some((0.5, 0.75)), None));
     }

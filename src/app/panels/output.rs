@@ -5,9 +5,23 @@ pub(super) mod range;
 use egui::{RichText, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::{Row, check, group, special};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
+
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    let shows = context.state.workspace.shows_histogram;
+    let mut shows_now = shows;
+    let Commands { settings, list, .. } = commands;
+    show(ui, settings, &mut shows_now, list);
+    if shows_now != shows {
+        list.push(Command::Panels(PanelRequest::ToggleHistogram));
+    }
+}
 
 /// Shows the panel. `shows_histogram`: whether the legend over the picture has the histogram of its values.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, shows_histogram: &mut bool, commands: &mut Vec<Command>) {

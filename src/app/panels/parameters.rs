@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 
 use egui::{Response, RichText, Ui};
 
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::numbers::{component, default_of, of_constant, of_parameter};
 use crate::app::state::shaders::effects::{is_of_pass, switches};
 use crate::app::widgets::rows::{self, Row, edit_number, heading, set_option, short};
@@ -20,9 +22,14 @@ use crate::shader::{Constant, Parameter, ShaderSet};
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;
 
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    show(ui, &context.shaders, &mut commands.settings.shader, context.state.shader.is_single_file);
+}
+
 /// Shows the panel: all constants and parameters except those of passes, which the passes panel shows. With `is_of_file`, the
 /// shaders are a single file without a model, and only what that file and those beside it declare is shown.
-pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_file: bool) {
+fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values, is_of_file: bool) {
     let is_wanted = |parameter: &&Parameter| {
         let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
         let is_here = if is_of_file { is_own(&parameter.file) } else { !is_of_pass(shaders, parameter) };

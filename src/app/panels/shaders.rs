@@ -9,9 +9,12 @@ mod stages;
 use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
 use crate::app::editor::Place;
+use crate::app::panels::panel_ui::PanelUi;
+use crate::app::state::State;
 use crate::app::state::shaders::status::ShaderStatus;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
@@ -30,18 +33,24 @@ enum Tab {
 
 /// State of the panel between frames.
 #[derive(Default)]
-pub(in crate::app) struct ShadersState {
+pub(super) struct ShadersState {
     tab: Tab,
     files: files::FilesState,
     stages: stages::StagesState,
 }
 
+impl PanelUi for ShadersState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        show(ui, context.state, self, &mut commands.list);
+    }
+}
+
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ShadersState, commands: &mut Vec<Command>) {
-    let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
-    let diagnostics = &viewer.session.diagnostics;
-    head(ui, &viewer.shader, generation, diagnostics, viewer.is_cut_short(), commands);
-    tree(ui, &viewer.shader, commands);
+fn show(ui: &mut Ui, state: &State, own: &mut ShadersState, commands: &mut Vec<Command>) {
+    let generation = state.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+    let diagnostics = &state.session.diagnostics;
+    head(ui, &state.shader, generation, diagnostics, state.is_cut_short(), commands);
+    tree(ui, &state.shader, commands);
     ui.horizontal(|ui| {
         let problems = match diagnostics.len() {
             0 => "Problems".to_owned(),
@@ -57,14 +66,14 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ShadersState, c
             let is_wrong = tab == Tab::Problems && diagnostics.iter().any(|d| d.severity == Severity::Error);
             let title = RichText::new(title).small();
             let title = if is_wrong { title.color(ERROR) } else { title };
-            ui.selectable_value(&mut state.tab, tab, title).on_hover_text(hint);
+            ui.selectable_value(&mut own.tab, tab, title).on_hover_text(hint);
         }
     });
-    match state.tab {
-        Tab::Stages => stages::show(ui, viewer, &mut state.stages),
-        Tab::Files => files::show(ui, viewer, &mut state.files, commands),
-        Tab::Problems => problems::show(ui, viewer, commands),
-        Tab::Edits => edits::show(ui, &viewer.shader.log),
+    match own.tab {
+        Tab::Stages => stages::show(ui, state, &mut own.stages, commands),
+        Tab::Files => files::show(ui, state, &mut own.files, commands),
+        Tab::Problems => problems::show(ui, state, commands),
+        Tab::Edits => edits::show(ui, &state.shader.log),
     }
 }
 

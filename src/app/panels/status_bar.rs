@@ -3,10 +3,10 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::shaders;
-use crate::app::drawn::waits::Waits;
 use crate::app::state::shaders::log::lines;
 use crate::app::state::shaders::stages::StageRow;
 use crate::app::state::shaders::status::ShaderStatus;
+use crate::app::state::waits::Waits;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};

@@ -1,24 +1,32 @@
 //! The panels as a screen reader finds them: roles, names, and the keyboard.
 
+use std::sync::Arc;
+
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::Vec3;
 
 use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
-use super::readings::{LegendOf, Readout};
 use super::timeline::comparison;
-use super::{camera, capture, output};
+use super::{PANELS, Panel, camera, capture, output};
 use crate::app::command::{Command, CompareWith, Side};
-use crate::app::control::Captures;
-use crate::app::dialog::Dialog;
-use crate::app::drawn::compare::Compare;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::gallery::Thumbnails;
+use crate::app::readings::{LegendOf, Readings, Readout};
+use crate::app::state::State;
+use crate::app::state::captures::Captures;
+use crate::app::state::compare::Compare;
+use crate::app::state::dialog::Dialog;
 use crate::app::widgets::theme;
 use crate::control::{Request, Timeline, Turntable};
-use crate::scene::{Bounds, CameraView, Model};
+use crate::render::BakeReport;
+use crate::scene::{Bounds, CameraView, Model, built_in};
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
-use crate::shader::{Encode, Mode, Numbers, ShaderSet};
+use crate::shader::annotation::ParameterType;
+use crate::shader::{Encode, Mode, Numbers, Parameter, ShaderSet, Source};
 
 fn harness<'a, T: 'a>(state: T, mut show: impl FnMut(&mut egui::Ui, &mut T) + 'a) -> Harness<'a, T> {
     let mut has_theme = false;
@@ -201,5 +209,108 @@ fn the_buttons_of_a_comparison_fit_a_narrow_column() {
     for name in ["Keep this picture", "Compare with…"] {
         let height = harness.get_by_role_and_label(Role::Button, name).rect().height();
         assert!(height < 26.0, "`{name}` is in one line: {height}");
+    }
+}
+
+/// Label that a panel shows without a model, and with one.
+const LABELS: [(Panel, [&str; 2]); 17] = [
+    (Panel::Modes, ["Compiling shaders…", "Facing"]),
+    (Panel::Scene, ["No model yet", "Search nodes, materials, textures"]),
+    (Panel::Model, ["Statistics", "Statistics"]),
+    (Panel::Texture, ["", "The model has no textures"]),
+    (Panel::Learn, ["Energy conservation", "Energy conservation"]),
+    (Panel::Shaders, ["Reload", "Generation 3"]),
+    (Panel::Timeline, ["Keep this picture", "Keep this picture"]),
+    (Panel::Timing, ["Pipelines", "Pipelines"]),
+    (Panel::Expression, ["Watch", "Watch"]),
+    (Panel::Parameters, ["", "Tint"]),
+    (Panel::Passes, ["", ""]),
+    (Panel::Inspector, ["no pixel", "no pixel"]),
+    (Panel::Environment, ["Visible", "Visible"]),
+    (Panel::Lights, ["Ambient light", "Ambient light"]),
+    (Panel::Output, ["Copy as look file", "Copy as look file"]),
+    (Panel::Camera, ["Frame the model", "Frame the model"]),
+    (Panel::Capture, ["Capture picture", "Capture picture"]),
+];
+
+/// A window with a model and shaders, and nothing drawn yet.
+fn with_a_model() -> State {
+    let mut state = State::new(Settings::of_window(), Source::embedded());
+    state.session.set_model(&Arc::new(built_in("shader-ball").unwrap().unwrap()));
+    let mode = Mode { name: "Facing".into(), slug: "facing".into(), group: "Test".into(), ..Mode::default() };
+    let parameter = Parameter {
+        name: "tint".into(),
+        label: "Tint".into(),
+        offset: None,
+        kind: ParameterType::Float,
+        range: Some((0.0, 1.0)),
+        default: vec![0.5],
+        color: false,
+        choices: Vec::new(),
+        choice_docs: Vec::new(),
+        when: None,
+        group: String::new(),
+        doc: String::new(),
+        unit: String::new(),
+        file: String::new(),
+        line: 0,
+    };
+    let shaders = ShaderSet { generation: 3, modes: vec![mode], parameters: vec![parameter], ..ShaderSet::default() };
+    state.session.shaders = Some(Arc::new(shaders));
+    state.shader.compiling = false;
+    state
+}
+
+/// Runs the interface for some frames. Returns what the panels ask for.
+fn frames(size: egui::Vec2, state: &State, mut show: impl FnMut(&mut egui::Ui, &Context<'_>, &mut Commands)) -> Shown {
+    let (thumbnails, baked) = (Thumbnails::default(), BakeReport::default());
+    let mut asked = Vec::new();
+    let mut has_theme = false;
+    let mut harness = Harness::builder().with_size(size).build_ui(|ui| {
+        if !std::mem::replace(&mut has_theme, true) {
+            theme::apply(ui.ctx());
+        }
+        let readings = Readings {
+            baking: None,
+            baked: &baked,
+            memory: None,
+            thumbnails: &thumbnails,
+            texture: None,
+            pipelines: 0,
+            value: None,
+            title: None,
+            legend: None,
+        };
+        let mut commands = Commands::new(&state.session.settings);
+        show(ui, &Context::new(state, readings), &mut commands);
+        asked.extend(commands.finish(&state.session.settings).0);
+    });
+    harness.run_steps(3);
+    let texts = |node: egui_kittest::Node<'_>| [node.accesskit_node().label(), node.accesskit_node().value()];
+    let labels: Vec<String> = harness.root().children_recursive().flat_map(texts).flatten().collect();
+    drop(harness);
+    Shown { labels, asked }
+}
+
+/// The labels that a screen reader finds, and the commands.
+struct Shown {
+    labels: Vec<String>,
+    asked: Vec<Command>,
+}
+
+const SIZES: [egui::Vec2; 2] = [egui::vec2(190.0, 420.0), egui::vec2(900.0, 240.0)];
+
+#[test]
+fn every_panel_is_shown_without_a_device_and_changes_nothing_by_itself() {
+    let states = [State::new(Settings::of_window(), Source::embedded()), with_a_model()];
+    for (panel, make) in PANELS {
+        let (_, expected) = LABELS.into_iter().find(|(of, _)| *of == panel).unwrap();
+        for ((state, expected), size) in states.iter().zip(expected).flat_map(|of| SIZES.map(|size| (of, size))) {
+            let mut shown_panel = make();
+            let shown = frames(size, state, |ui, context, commands| shown_panel.ui(ui, context, commands));
+            assert!(shown.asked.is_empty(), "{panel:?} at {size:?}: {:?}", shown.asked);
+            let has_label = expected.is_empty() || shown.labels.iter().any(|label| label.contains(expected));
+            assert!(has_label, "{panel:?} at {size:?} lacks `{expected}`: {:?}", shown.labels);
+        }
     }
 }

@@ -4,23 +4,16 @@
 use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::scene::tree::textures;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
 use crate::app::state::selection::Selected;
-use crate::app::viewer::Viewer;
+use crate::app::state::workspace::TextureRequest;
 use crate::app::widgets::search;
 use crate::app::widgets::theme::{EDGE, QUIET, small_mono_font};
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
-
-/// Texture view that the panel requests from the screen.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::app) struct TextureRequest {
-    pub(in crate::app) source: TextureSource,
-    pub(in crate::app) view: TextureView,
-    pub(in crate::app) meshes: Vec<UvMesh>,
-    /// Pixels.
-    pub(in crate::app) size: (u32, u32),
-}
 
 /// The channels that can be looked at, with their hover texts.
 const CHANNELS: [(&str, &str); 6] = [
@@ -33,11 +26,7 @@ const CHANNELS: [(&str, &str); 6] = [
 ];
 
 /// State of the panel between frames.
-pub(in crate::app) struct TextureState {
-    /// Current request; `None` while the panel is not visible.
-    pub(in crate::app) request: Option<TextureRequest>,
-    /// The preview that the screen has drawn, and the part of it that shows the texture.
-    pub(in crate::app) shown: Option<(egui::TextureId, Rect)>,
+pub(super) struct TextureState {
     source: Option<TextureSource>,
     /// The texture that was selected in the scene in the last frame.
     selected: Option<TextureSource>,
@@ -56,8 +45,6 @@ pub(in crate::app) struct TextureState {
 impl Default for TextureState {
     fn default() -> Self {
         Self {
-            request: None,
-            shown: None,
             source: None,
             selected: None,
             channels: 0,
@@ -70,31 +57,40 @@ impl Default for TextureState {
     }
 }
 
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
-    let Some(scene) = viewer.session.scene() else { return };
+impl PanelUi for TextureState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        commands.sight.texture = show(ui, context, self);
+    }
+}
+
+/// Shows the panel. Returns the picture that it needs.
+fn show(ui: &mut Ui, context: &Context<'_>, own: &mut TextureState) -> Option<TextureRequest> {
+    let scene = context.scene.as_ref()?;
     let model = scene.model();
     let all = textures(model);
-    let selected = if let Selected::Texture(source) = viewer.selected { Some(source) } else { None };
+    let selected = if let Selected::Texture(source) = context.state.selected { Some(source) } else { None };
     // A texture that the user has chosen in the list since then stays.
-    if std::mem::replace(&mut state.selected, selected) != selected && selected.is_some() {
-        (state.source, state.level, state.scale, state.middle) = (selected, None, None, [0.5; 2]);
+    if std::mem::replace(&mut own.selected, selected) != selected && selected.is_some() {
+        (own.source, own.level, own.scale, own.middle) = (selected, None, None, [0.5; 2]);
     }
-    let source = state.source.filter(|source| all.contains_key(source)).or_else(|| all.keys().next().copied());
+    let source = own.source.filter(|source| all.contains_key(source)).or_else(|| all.keys().next().copied());
     let Some(source) = source else {
         ui.label(RichText::new("The model has no textures").color(QUIET));
-        return;
+        return None;
     };
-    state.source = Some(source);
+    own.source = Some(source);
     let (uses, image) = (&all[&source], source.image(model));
     let (width, height) = image.map_or((1, 1), |image| (image.width, image.height));
     let names: Vec<(TextureSource, &str)> = all.keys().map(|other| (*other, name_of(*other, model))).collect();
-    list(ui, state, source, &names);
-    controls(ui, state, mips::count(width, height));
+    list(ui, own, source, &names);
+    controls(ui, own, mips::count(width, height));
     let about = about(model, source, uses, (width, height));
     let text_height = 4.0 * 14.0;
     let area = vec2(ui.available_width(), (ui.available_height() - text_height).max(80.0));
-    picture(ui, state, source, (width, height), area, meshes(&scene, source, uses));
+    let meshes = if own.shows_uv { meshes(scene, source, uses) } else { Vec::new() };
+    let (view, size) = picture(ui, own, source, (width, height), area, context.readings.texture);
     ui.add(Label::new(RichText::new(about).small().color(QUIET)).selectable(true));
+    Some(TextureRequest { source, view, meshes, size })
 }
 
 /// The name of the image of a texture.
@@ -103,20 +99,20 @@ fn name_of(source: TextureSource, model: &Model) -> &str {
 }
 
 /// The list of all textures with their names, with a search.
-fn list(ui: &mut Ui, state: &mut TextureState, source: TextureSource, all: &[(TextureSource, &str)]) {
+fn list(ui: &mut Ui, own: &mut TextureState, source: TextureSource, all: &[(TextureSource, &str)]) {
     let name = all.iter().find(|(other, _)| *other == source).map_or("", |(_, name)| name);
     let list = egui::ComboBox::from_id_salt("texture").selected_text(name).width(ui.available_width()).truncate();
     // A click into the search leaves the list open.
     let list = list.close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let list = list.show_ui(ui, |ui| {
-        let words = search::above(ui, &mut state.search, "textures", all.len());
+        let words = search::above(ui, &mut own.search, "textures", all.len());
         if !all.iter().any(|(_, name)| words.are_in(name)) {
             words.no_match(ui, "texture");
         }
         for (other, name) in all.iter().filter(|(_, name)| words.are_in(name)) {
             if ui.selectable_label(*other == source, *name).clicked() {
-                state.source = Some(*other);
-                state.search.clear();
+                own.source = Some(*other);
+                own.search.clear();
                 ui.close();
             }
         }
@@ -125,31 +121,31 @@ fn list(ui: &mut Ui, state: &mut TextureState, source: TextureSource, all: &[(Te
 }
 
 /// Channels, level and texture coordinates.
-fn controls(ui: &mut Ui, state: &mut TextureState, levels: u32) {
+fn controls(ui: &mut Ui, own: &mut TextureState, levels: u32) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         for ((name, doc), channels) in CHANNELS.into_iter().zip(0..) {
-            ui.selectable_value(&mut state.channels, channels, name).on_hover_text(doc);
+            ui.selectable_value(&mut own.channels, channels, name).on_hover_text(doc);
         }
     });
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let shown = state.level.map_or_else(|| "auto".to_owned(), |level| level.to_string());
+        let shown = own.level.map_or_else(|| "auto".to_owned(), |level| level.to_string());
         let list = egui::ComboBox::from_id_salt("level").selected_text(format!("level {shown}")).width(74.0);
         let list = list.show_ui(ui, |ui| {
-            ui.selectable_value(&mut state.level, None, "auto");
+            ui.selectable_value(&mut own.level, None, "auto");
             for level in 0..levels {
-                ui.selectable_value(&mut state.level, Some(level), format!("level {level}"));
+                ui.selectable_value(&mut own.level, Some(level), format!("level {level}"));
             }
         });
         list.response.on_hover_text("Mip level: each has half the width and height of the one before");
-        ui.toggle_value(&mut state.shows_uv, "UV")
+        ui.toggle_value(&mut own.shows_uv, "UV")
             .on_hover_text("Draw the texture coordinates of the meshes that use it, as lines");
         if ui.small_button("Fit").on_hover_text("Show the whole texture").clicked() {
-            (state.scale, state.middle) = (None, [0.5; 2]);
+            (own.scale, own.middle) = (None, [0.5; 2]);
         }
         if ui.small_button("1:1").on_hover_text("One texel per point").clicked() {
-            state.scale = Some(1.0);
+            own.scale = Some(1.0);
         }
     });
 }
@@ -157,46 +153,44 @@ fn controls(ui: &mut Ui, state: &mut TextureState, levels: u32) {
 /// Shows the picture, zooms and pans, and asks the screen to draw it.
 fn picture(
     ui: &mut Ui,
-    state: &mut TextureState,
+    own: &mut TextureState,
     source: TextureSource,
     (width, height): (u32, u32),
     area: Vec2,
-    meshes: Vec<UvMesh>,
-) {
+    shown: Option<(egui::TextureId, Rect)>,
+) -> (TextureView, (u32, u32)) {
     let (rect, response) = ui.allocate_exact_size(area, Sense::click_and_drag());
     let texels = vec2(width as f32, height as f32);
     let fit = (area.x / texels.x).min(area.y / texels.y);
-    let mut scale = state.scale.unwrap_or(fit);
+    let mut scale = own.scale.unwrap_or(fit);
     // Texture coordinates of a point of the window.
     let corner_of = |middle: [f32; 2], scale: f32| {
         [middle[0] - 0.5 * area.x / (scale * texels.x), middle[1] - 0.5 * area.y / (scale * texels.y)]
     };
     let drag = response.drag_delta();
     if drag != Vec2::ZERO {
-        state.scale = Some(scale);
-        state.middle[0] -= drag.x / (scale * texels.x);
-        state.middle[1] -= drag.y / (scale * texels.y);
+        own.scale = Some(scale);
+        own.middle[0] -= drag.x / (scale * texels.x);
+        own.middle[1] -= drag.y / (scale * texels.y);
     }
     let zoom = ui.input(|input| input.zoom_delta() * (input.smooth_scroll_delta().y * 0.005).exp());
     if let Some(at) = response.hover_pos().filter(|_| zoom != 1.0) {
         let next = (scale * zoom).clamp(fit * 0.2, 64.0_f32.max(fit));
         let offset = at - rect.center();
         for (axis, (offset, texels)) in [(offset.x, texels.x), (offset.y, texels.y)].into_iter().enumerate() {
-            state.middle[axis] += offset / texels * (scale.recip() - next.recip());
+            own.middle[axis] += offset / texels * (scale.recip() - next.recip());
         }
-        (scale, state.scale) = (next, Some(next));
+        (scale, own.scale) = (next, Some(next));
     }
     if response.double_clicked() {
-        (state.scale, state.middle) = (None, [0.5; 2]);
+        (own.scale, own.middle) = (None, [0.5; 2]);
         scale = fit;
     }
-    let (corner, size) = (corner_of(state.middle, scale), [area.x / (scale * texels.x), area.y / (scale * texels.y)]);
+    let (corner, size) = (corner_of(own.middle, scale), [area.x / (scale * texels.x), area.y / (scale * texels.y)]);
     let per_point = ui.ctx().pixels_per_point();
     let pixels = ((area.x * per_point).round().max(1.0) as u32, (area.y * per_point).round().max(1.0) as u32);
-    let view = TextureView { corner, size, level: state.level, channels: state.channels, is_srgb: source.is_srgb() };
-    let meshes = if state.shows_uv { meshes } else { Vec::new() };
-    state.request = Some(TextureRequest { source, view, meshes, size: pixels });
-    match state.shown {
+    let view = TextureView { corner, size, level: own.level, channels: own.channels, is_srgb: source.is_srgb() };
+    match shown {
         Some((texture, part)) => {
             ui.painter().image(texture, rect, part, Color32::WHITE);
         }
@@ -222,6 +216,7 @@ fn picture(
         painter.galley(back.min + vec2(2.0, 2.0), galley, Color32::WHITE);
         response.on_hover_cursor(egui::CursorIcon::Crosshair);
     }
+    (view, pixels)
 }
 
 /// The meshes whose texture coordinates read a texture, each once.

@@ -7,9 +7,13 @@ use std::sync::Arc;
 use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, TextureHandle, Ui, Vec2, vec2};
 
 use crate::app::command::{Command, CompareWith};
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
+use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::state::shaders::versions::{Thumbnail, Version, Versions};
-use crate::app::viewer::Viewer;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
@@ -61,37 +65,42 @@ impl Thumbnails {
     }
 }
 
-impl TimelineState {
-    /// Asks the user whether to write a version to the files.
-    pub(in crate::app) fn ask(&mut self, number: u64) {
-        self.asked = Some(number);
+impl PanelUi for TimelineState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        commands.sight.timeline = true;
+        show(ui, context.state, self, &mut commands.list);
+    }
+
+    fn on_request(&mut self, request: &PanelRequest) {
+        if let PanelRequest::AskVersion(number) = request {
+            self.asked = Some(*number);
+        }
     }
 }
 
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
+fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<Command>) {
     let area = ui.available_size();
     // A wide tile runs from left to right, with the newest version first as in a tall one.
     let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
-    let count = viewer.versions.iter().count();
+    let count = state.versions.iter().count();
     // A strip has no height to spare, so the search stands beside the buttons there.
-    let beside = (is_strip && count > search::FEW).then_some(&mut state.search);
-    comparison::show(ui, &mut viewer.compare, beside, commands);
+    let beside = (is_strip && count > search::FEW).then_some(&mut own.search);
+    comparison::show(ui, &state.compare, beside, commands);
     let words = match is_strip {
         true if count <= search::FEW => Words::default(),
-        true => Words::new(&state.search),
-        false => search::above(ui, &mut state.search, ENTRIES, count),
+        true => Words::new(&own.search),
+        false => search::above(ui, &mut own.search, ENTRIES, count),
     };
-    if let Some(number) = state.asked {
-        ask(ui, viewer, number, &mut state.asked, commands);
+    if let Some(number) = own.asked {
+        ask(ui, state, number, &mut own.asked, commands);
         // The scroll bar of a list without room would lie over the answers.
         if is_strip && ui.available_height() < ROOM_FOR_CARDS {
             return;
         }
     }
-    let viewer = &*viewer;
-    state.thumbnails.update(ui.ctx(), &viewer.versions);
-    let newest = viewer.shown_generation();
+    own.thumbnails.update(ui.ctx(), &state.versions);
+    let newest = state.shown_generation();
     let scroll = if is_strip { egui::ScrollArea::horizontal() } else { egui::ScrollArea::vertical() };
     scroll.auto_shrink(false).show(ui, |ui| {
         let layout = match is_strip {
@@ -99,15 +108,15 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             false => egui::Layout::top_down(egui::Align::Min),
         };
         ui.with_layout(layout, |ui| {
-            let mut found = viewer.versions.iter().rev().filter(|version| is_found(viewer, version, &words)).peekable();
+            let mut found = state.versions.iter().rev().filter(|version| is_found(state, version, &words)).peekable();
             if found.peek().is_none() && !words.is_empty() {
                 words.no_match(ui, "version");
             }
             for version in found {
-                let thumbnail = version.thumbnail.as_ref().and_then(|thumbnail| state.thumbnails.of(thumbnail));
-                let entry = Entry { viewer, version, newest, thumbnail };
+                let thumbnail = version.thumbnail.as_ref().and_then(|thumbnail| own.thumbnails.of(thumbnail));
+                let entry = Entry { state, version, newest, thumbnail };
                 let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
-                entry.respond(response, &mut state.asked, commands);
+                entry.respond(response, &mut own.asked, commands);
             }
             if count == 0 {
                 ui.label(RichText::new("Your edits appear here once they are shown").color(QUIET));
@@ -117,16 +126,16 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
 }
 
 /// Whether a version has the words of the search in its number, files and time, or in a line that it changed.
-fn is_found(viewer: &Viewer, version: &Version, words: &Words) -> bool {
+fn is_found(state: &State, version: &Version, words: &Words) -> bool {
     let title = || format!("{} {} {}", version.number, version.title(), version.since.format("%H:%M:%S"));
     let is_change = |line: &&Line| matches!(line.kind, Kind::Added | Kind::Removed);
-    let mut lines = viewer.versions.difference(version).iter().filter(is_change);
+    let mut lines = state.versions.difference(version).iter().filter(is_change);
     words.is_empty() || words.are_in(&title()) || lines.any(|line| words.are_in(&line.text))
 }
 
 /// A version in the panel.
 struct Entry<'a> {
-    viewer: &'a Viewer,
+    state: &'a State,
     version: &'a Version,
     /// The version on screen.
     newest: u64,
@@ -135,17 +144,17 @@ struct Entry<'a> {
 
 impl Entry<'_> {
     fn is_chosen(&self) -> bool {
-        self.viewer.compare.version() == Some(self.version.number)
+        self.state.compare.version() == Some(self.version.number)
     }
 
     fn can_show(&self) -> bool {
-        self.viewer.versions.can_show(self.version, self.newest)
+        self.state.versions.can_show(self.version, self.newest)
     }
 
     /// Whether a click on the version on screen ends a comparison, or shows the newest version in place of an older one.
     fn ends_something(&self) -> bool {
         let is_now = self.version.number == self.newest;
-        is_now && (self.viewer.compare.is_on() || self.viewer.edits.restored.is_some())
+        is_now && (self.state.compare.is_on() || self.state.edits.restored.is_some())
     }
 
     /// Number and files.
@@ -225,20 +234,20 @@ impl Entry<'_> {
     /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
     /// files.
     fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
-        let Self { viewer, version, newest, .. } = self;
+        let Self { state, version, newest, .. } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
         if response.double_clicked() && can_show {
             commands.extend([Command::Compare(CompareWith::Nothing), Command::ShowVersion(Some(version.number))]);
         } else if response.clicked() && can_show {
             let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
             commands.push(Command::Compare(with));
-        } else if response.clicked() && viewer.compare.is_on() {
+        } else if response.clicked() && state.compare.is_on() {
             commands.push(Command::Compare(CompareWith::Nothing));
         } else if response.clicked() && self.ends_something() {
             commands.push(Command::ShowVersion(None));
         }
         response.context_menu(|ui| {
-            let lines = viewer.versions.difference(version);
+            let lines = state.versions.difference(version);
             if ui.add_enabled(!lines.is_empty(), egui::Button::new("Copy the difference")).clicked() {
                 let text: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
                 ui.ctx().copy_text(text.join("\n"));
@@ -250,7 +259,7 @@ impl Entry<'_> {
                 commands.push(Command::ShowVersion(Some(version.number)));
                 ui.close();
             }
-            let can_write = !viewer.files_of_version(version.number).is_empty();
+            let can_write = !state.files_of_version(version.number).is_empty();
             if ui.add_enabled(can_write, egui::Button::new("Write to the files…")).clicked() {
                 *asked = Some(version.number);
                 ui.close();
@@ -259,15 +268,15 @@ impl Entry<'_> {
         let hint = match (can_show, version.number == *newest) {
             (true, _) if is_chosen => "Click to stop comparing, double click to show it alone",
             (true, _) => "Click to compare the picture with this version, double click to show it alone",
-            (false, true) if viewer.compare.is_on() => "The picture on screen. Click to stop comparing",
-            (false, true) if viewer.edits.restored.is_some() => {
+            (false, true) if state.compare.is_on() => "The picture on screen. Click to stop comparing",
+            (false, true) if state.edits.restored.is_some() => {
                 "The picture on screen. Click to go back to the newest version"
             }
             (false, true) => "The picture on screen",
             (false, false) => "A loop did not end in this version, so it is not shown again",
         };
         let about = [self.title(), self.times()];
-        response.on_hover_ui(|ui| hover(ui, &about, hint, viewer.versions.difference(version)));
+        response.on_hover_ui(|ui| hover(ui, &about, hint, state.versions.difference(version)));
     }
 }
 
@@ -292,8 +301,8 @@ fn hover(ui: &mut Ui, [title, times]: &[String; 2], hint: &str, lines: &[Line]) 
 }
 
 /// Asks whether to write a version over the files of the tree.
-fn ask(ui: &mut Ui, viewer: &Viewer, number: u64, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
-    let files = viewer.files_of_version(number);
+fn ask(ui: &mut Ui, state: &State, number: u64, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
+    let files = state.files_of_version(number);
     let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
     let question = format!("Overwrite the files on disk with version {number} of {}?", names.join(", "));
     ui.add(Label::new(RichText::new(question).color(WARNING)).wrap());

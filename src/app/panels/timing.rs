@@ -6,8 +6,9 @@ mod table;
 
 use egui::{Grid, Label, RichText, Ui};
 
-use crate::app::state::timing::MemoryClock;
-use crate::app::viewer::Viewer;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::state::State;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 use crate::gpu::MemoryUse;
@@ -16,27 +17,25 @@ use crate::pipeline::grouped;
 /// Time that the panels may take in a frame, milliseconds.
 const UI_LIMIT_MS: f64 = 2.0;
 
-/// State of the panel between frames.
-#[derive(Default)]
-pub(in crate::app) struct TimingState {
-    memory: MemoryClock,
-}
-
-pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device: &str) {
+/// The panel.
+pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    commands.sight.timing = true;
+    let Context { state, readings, .. } = context;
+    let device = &state.device;
     ui.add(elided(RichText::new(device).small().color(QUIET))).on_hover_text(device);
-    let timing = &viewer.timing;
+    let timing = &state.timing;
     let names = table::names(timing);
     graph::passes(ui, timing, &names);
     table::show(ui, timing, &names);
-    cost(ui, viewer);
-    cpu(ui, viewer);
-    counts(ui, viewer);
-    memory(ui, state.memory.read(&viewer.gpu));
+    cost(ui, state);
+    cpu(ui, state);
+    counts(ui, state, readings.pipelines);
+    readings.memory.into_iter().for_each(|used| memory(ui, used));
 }
 
 /// Describes the cost of the last edit in frame time, in a sentence.
-fn cost(ui: &mut Ui, viewer: &Viewer) {
-    let Some(cost) = viewer.timing.cost() else {
+fn cost(ui: &mut Ui, state: &State) {
+    let Some(cost) = state.timing.cost() else {
         let text = "The cost of your next edit will appear here";
         ui.label(RichText::new(text).small().color(QUIET));
         return;
@@ -59,10 +58,10 @@ fn cost(ui: &mut Ui, viewer: &Viewer) {
 }
 
 /// The CPU time of the last frames.
-fn cpu(ui: &mut Ui, viewer: &Viewer) {
-    graph::cpu(ui, &viewer.timing, UI_LIMIT_MS);
-    let Some(last) = viewer.timing.frames().back() else { return };
-    let (frames, [summary, whole]) = viewer.timing.recent_summary();
+fn cpu(ui: &mut Ui, state: &State) {
+    graph::cpu(ui, &state.timing, UI_LIMIT_MS);
+    let Some(last) = state.timing.frames().back() else { return };
+    let (frames, [summary, whole]) = state.timing.recent_summary();
     Grid::new("cpu").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let hint = format!(
             "CPU time to lay out and tessellate the panels in the last frame. Over {} frames: median {:.2}, 95th percentile \
@@ -76,7 +75,7 @@ fn cpu(ui: &mut Ui, viewer: &Viewer) {
         row(ui, ("Panels", color), &format!("{:.2} ms", last.ui_ms), &hint);
         let hint = "CPU time to record the commands of the last frame, without waiting for the device";
         row(ui, ("Recording", graph::RECORD), &format!("{:.2} ms", last.record_ms), hint);
-        if let Some(ms) = viewer.timing.cpu_ms() {
+        if let Some(ms) = state.timing.cpu_ms() {
             let hint = format!(
                 "CPU time of the window's thread for all of the last frame, without the driver's time to present it. Median {:.2}, \
                  95th percentile {:.2}, maximum {:.2} ms",
@@ -94,9 +93,8 @@ fn row(ui: &mut Ui, (name, color): (&str, egui::Color32), value: &str, hint: &st
 }
 
 /// Shows the counts of draws, triangles and pipelines.
-fn counts(ui: &mut Ui, viewer: &Viewer) {
-    let counts = viewer.timing.pictures().back().map(|sample| sample.counts).unwrap_or_default();
-    let pipelines = viewer.resources.pipelines().map_or(0, |set| set.count());
+fn counts(ui: &mut Ui, state: &State, pipelines: usize) {
+    let counts = state.timing.pictures().back().map(|sample| sample.counts).unwrap_or_default();
     Grid::new("counts").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let all = [
             ("Draws", counts.draws, "Draws of the last picture in all of its passes, without the panels"),

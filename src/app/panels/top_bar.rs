@@ -3,16 +3,15 @@
 use egui::{Button, Checkbox, RichText, Ui, vec2};
 
 use crate::app::command::Command;
-use crate::app::dialog::Dialog;
 use crate::app::layout::Layout;
 use crate::app::palette::Palette;
 use crate::app::state::arrangement::{Panel, Preset};
+use crate::app::state::dialog::Dialog;
 use crate::app::state::last_session::LastSessions;
 use crate::app::state::recent::{Kind, Recent};
-use crate::app::widgets::check_box;
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme;
 use crate::app::widgets::theme::{BAR, QUIET, icon, small_mono};
+use crate::app::widgets::{check_box, theme};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 30.0;

@@ -3,7 +3,10 @@
 use std::time::{Duration, Instant};
 
 use super::Screen;
-use crate::app::viewer::Viewer;
+use crate::app::actions::compare::cut_short;
+use crate::app::engine::Engine;
+use crate::app::frames::progress::awaits_edit;
+use crate::app::state::State;
 use crate::gpu::GpuError;
 
 /// Polling interval for a submission's end, for which drivers send no event.
@@ -24,19 +27,19 @@ pub(in crate::app) enum Next {
 
 impl Screen {
     /// Draws more between two frames, once the device has run the last submission, or reports that a frame is due.
-    pub(in crate::app) fn go_on(&mut self, viewer: &mut Viewer) -> Result<Next, GpuError> {
+    pub(in crate::app) fn go_on(&mut self, state: &mut State, engine: &mut Engine) -> Result<Next, GpuError> {
         let now = Instant::now();
         let left = |due: Option<Instant>| due.map(|due| due.saturating_duration_since(now));
         let is_finished = self.background.is_finished();
-        if left(self.due).is_some_and(|left| left.is_zero()) || (is_finished && viewer.gpu_is_fast()) {
+        if left(self.due).is_some_and(|left| left.is_zero()) || (is_finished && engine.gpu_is_fast()) {
             return Ok(Next::Frame);
         }
         let mut wait = self.time_to_poll();
-        if is_finished && !viewer.awaits_edit() {
+        if is_finished && !awaits_edit(state, engine) {
             if left(self.shows_at()).is_some_and(|left| left.is_zero()) {
                 return Ok(Next::Frame);
             }
-            wait = self.draw_background(viewer, self.egui.pixels_per_point())?;
+            wait = self.draw_background(state, engine, self.egui.pixels_per_point())?;
         }
         Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
     }
@@ -52,20 +55,20 @@ impl Screen {
     }
 
     /// Collects the results of the last submission, if it is finished. Returns whether there are any.
-    fn take_background(&mut self, viewer: &mut Viewer) -> bool {
-        self.take_thumbnail(viewer);
-        self.inspector.take(&self.background, viewer);
+    fn take_background(&mut self, state: &mut State, engine: &mut Engine) -> bool {
+        self.take_thumbnail(state);
+        self.inspector.take(&self.background, state);
         self.number.take(&self.background);
         let is_new = self.background.is_finished() && std::mem::take(&mut self.background.is_unread);
         if is_new && self.background.frames.endless_loop(0).is_some() {
-            self.end_background(viewer);
+            self.end_background(state, engine);
         }
         is_new
     }
 
     /// Collects the results for the frame that begins.
-    pub(super) fn show_background(&mut self, viewer: &mut Viewer) {
-        self.take_background(viewer);
+    pub(super) fn show_background(&mut self, state: &mut State, engine: &mut Engine) {
+        self.take_background(state, engine);
         self.background.is_unseen = false;
     }
 
@@ -76,14 +79,15 @@ impl Screen {
     /// A device error other than out of memory.
     pub(super) fn draw_background(
         &mut self,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         pixels_per_point: f32,
     ) -> Result<Option<Duration>, GpuError> {
         if !self.background.is_finished() {
             return Ok(Some(POLL));
         }
-        self.background.is_unseen |= self.take_background(viewer);
-        let recorded = self.record_background(viewer, pixels_per_point);
+        self.background.is_unseen |= self.take_background(state, engine);
+        let recorded = self.record_background(state, engine, pixels_per_point);
         let submitted = recorded.and_then(|waits| self.background.submit().map(|()| waits));
         let waits = self.survive(submitted)?;
         if waits.is_none() {
@@ -103,35 +107,31 @@ impl Screen {
 
     fn record_background(
         &mut self,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         pixels_per_point: f32,
     ) -> Result<[Option<Duration>; 3], GpuError> {
-        let recorded = self.record_thumbnail(viewer);
+        let recorded = self.record_thumbnail(state, engine);
         if self.survive(recorded)?.is_none() {
             (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
             self.lacks_thumbnails = true;
         }
         let context = (&self.layouts, pixels_per_point);
-        let thumbnails = self.gallery.draw(
-            &mut self.background,
-            (&mut *viewer, &mut self.panels.docked.gallery),
-            &mut self.ui,
-            context,
-        )?;
+        let thumbnails = self.gallery.draw(&mut self.background, (&mut *state, &mut *engine), &mut self.ui, context)?;
         let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
-        let values = self.inspector.draw(&mut self.background, viewer, &self.layouts, of_pixel)?;
-        let pointed = self.pointed_number(viewer);
-        let number = self.number.draw(&mut self.background, viewer, &self.layouts, pointed)?;
+        let values = self.inspector.draw(&mut self.background, state, engine, &self.layouts, of_pixel)?;
+        let pointed = self.pointed_number(state);
+        let number = self.number.draw(&mut self.background, state, engine, &self.layouts, pointed)?;
         Ok([thumbnails, values, number])
     }
 
     /// Draws nothing between frames until something changes.
-    pub(super) fn end_background(&mut self, viewer: &mut Viewer) {
+    pub(super) fn end_background(&mut self, state: &mut State, engine: &mut Engine) {
         self.gallery.stop();
         self.inspector.stop();
         self.number.stop();
         if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
-            viewer.cut_short(number);
+            cut_short(state, engine, number);
         }
     }
 }

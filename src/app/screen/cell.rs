@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::app::drawn::last_complete::LastComplete;
+use crate::app::engine::last_complete::LastComplete;
 use crate::app::state::grid::PictureRect;
 use crate::gpu::Image;
 use crate::render::View;

@@ -4,7 +4,8 @@
 use super::Screen;
 use super::measured::{Copied, ErrorMap, Pair};
 use super::reference_view::ReferenceView;
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::gpu::{GpuError, Use};
 use crate::render::{BoundFrame, Output, Redraw};
 use crate::threads::Side;
@@ -12,11 +13,16 @@ use crate::threads::Side;
 impl Screen {
     /// Copies the picture and the reference if both are unchanged since the last frame and have not been measured. Returns
     /// whether another frame is needed.
-    pub(super) fn measure_error(&mut self, viewer: &mut Viewer, live: Option<&BoundFrame>) -> Result<bool, GpuError> {
-        let wanted = viewer.compare.is_on() && !viewer.compare.is_held;
+    pub(super) fn measure_error(
+        &mut self,
+        state: &mut State,
+        engine: &mut Engine,
+        live: Option<&BoundFrame>,
+    ) -> Result<bool, GpuError> {
+        let wanted = state.compare.is_on() && !state.compare.is_held;
         let Some((reference, live)) = self.reference.as_ref().filter(|_| wanted).zip(live) else {
             self.error_map = ErrorMap { number: self.error_map.number, ..ErrorMap::default() };
-            viewer.compare.measuring = None;
+            state.compare.measuring = None;
             return Ok(false);
         };
         let numbers = [reference.view.picture(), reference.still_number(), self.view.picture()];
@@ -27,7 +33,7 @@ impl Screen {
         let (rests, is_known) = (is(&self.error_map.last), is(&self.error_map.measured));
         if !is_known {
             // The last measurement belongs to other pictures.
-            (viewer.compare.difference, viewer.compare.measuring) = (None, None);
+            (state.compare.difference, state.compare.measuring) = (None, None);
             self.error_map.copied = None;
         }
         if is_known || !same_size {
@@ -35,9 +41,9 @@ impl Screen {
             return Ok(false);
         }
         if rests {
-            self.copy_pictures(viewer, live)?;
+            self.copy_pictures(state, engine, live)?;
             self.error_map.number += 1;
-            viewer.compare.measuring = self.error_map.copied.is_some().then_some(self.error_map.number);
+            state.compare.measuring = self.error_map.copied.is_some().then_some(self.error_map.number);
             self.error_map.measured = Some(pair);
         } else {
             self.error_map.last = Some(pair);
@@ -46,10 +52,10 @@ impl Screen {
     }
 
     /// Draws both pictures as they are displayed, and copies them to CPU memory.
-    fn copy_pictures(&mut self, viewer: &mut Viewer, live: &BoundFrame) -> Result<(), GpuError> {
+    fn copy_pictures(&mut self, state: &mut State, engine: &mut Engine, live: &BoundFrame) -> Result<(), GpuError> {
         let image = self.view.output_image(live.state.size)?;
         let mut encoder = self.frames.begin()?;
-        self.check_loops(viewer);
+        self.check_loops(state, engine);
         let slot = self.frames.current();
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
         encoder.untimed(|encoder| self.view.draw(encoder, slot, live, &output, Redraw::IfChanged))?;
@@ -66,10 +72,10 @@ impl Screen {
     }
 
     /// Sends copies whose frame has finished to the thread that compares them.
-    pub(super) fn take_copies(&mut self, viewer: &mut Viewer) {
+    pub(super) fn take_copies(&mut self, engine: &mut Engine) {
         let is_finished = |copied: &mut Copied| self.frames.is_finished(copied.slot);
         if let Some(Copied { pictures, part, .. }) = self.error_map.copied.take_if(is_finished) {
-            viewer.threads.compare(self.error_map.number, pictures, part);
+            engine.threads.compare(self.error_map.number, pictures, part);
         }
     }
 }

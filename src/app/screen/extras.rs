@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
 
@@ -13,19 +14,20 @@ impl Screen {
     pub(super) fn draw_extras(
         &mut self,
         (encoder, slot): (&mut Encoder, usize),
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         frame: Option<&BoundFrame>,
         image: &Arc<Image>,
     ) -> Result<(), GpuError> {
         self.draw_reference(encoder, slot, image, self.rect.at)?;
-        let outlined = self.draw_outline(encoder, viewer, frame, image);
+        let outlined = self.draw_outline(encoder, state, engine, frame, image);
         self.survive(outlined)?;
-        let shown = self.draw_texture(encoder, viewer, frame);
+        let shown = self.draw_texture(encoder, state, engine, frame);
         self.survive(shown)?;
         let grid = self.draw_grid(encoder, slot, image);
         if self.survive(grid)?.is_none() {
             self.cells.clear();
-            viewer.grid.end();
+            state.grid.end();
         }
         Ok(())
     }

@@ -7,8 +7,10 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::app::gallery::GalleryState;
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::gallery::Thumbnails as ShownThumbnails;
+use crate::app::state::State;
+use crate::app::state::workspace::Sight;
 use crate::events::{Event, emit};
 use crate::frame::mode_sets;
 use crate::gpu::{Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
@@ -27,6 +29,8 @@ const COLUMNS: u32 = 16;
 #[derive(Default)]
 pub(super) struct Gallery {
     renderer: Option<Thumbnails>,
+    /// The thumbnails as the panels show them.
+    pub(super) thumbnails: ShownThumbnails,
     /// The texture, and the size of its thumbnails in pixels.
     atlas: Option<(UiImage, (u32, u32))>,
     /// Whether the texture has been drawn to.
@@ -47,8 +51,8 @@ pub(super) struct Gallery {
 
 impl Gallery {
     /// Whether the texture must be dropped: its thumbnails have another size, or memory is short.
-    pub(super) fn is_misfit(&self, gpu: &Gpu, state: &GalleryState, pixels_per_point: f32) -> bool {
-        let size = pixels(state, scale(gpu) * pixels_per_point);
+    pub(super) fn is_misfit(&self, gpu: &Gpu, sight: &Sight, pixels_per_point: f32) -> bool {
+        let size = pixels(sight, scale(gpu) * pixels_per_point);
         let is_full = |image: &UiImage| {
             let (width, height) = (image.image().desc().width, image.image().desc().height);
             self.cells.len() as u32 > (width / size.0) * (height / size.1)
@@ -57,12 +61,11 @@ impl Gallery {
     }
 
     /// Drops the texture. The caller has waited for the frames that use it.
-    pub(super) fn drop_texture(&mut self, ui: &mut UiRenderer, state: &mut GalleryState) {
+    pub(super) fn drop_texture(&mut self, ui: &mut UiRenderer) {
         if let Some((image, _)) = self.atlas.take() {
             ui.remove_image(image);
         }
-        (state.texture, self.renderer) = (None, None);
-        state.places.clear();
+        (self.thumbnails, self.renderer) = (ShownThumbnails::default(), None);
         self.cells.clear();
         self.fresh.clear();
     }
@@ -77,16 +80,16 @@ impl Gallery {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        (viewer, state): (&mut Viewer, &mut GalleryState),
+        (state, engine): (&mut State, &mut Engine),
         ui: &mut UiRenderer,
         (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
     ) -> Result<Option<Duration>, GpuError> {
-        self.collect(viewer);
-        if state.visible.is_empty() || viewer.recorder.is_safe_mode() {
+        self.collect(state);
+        if state.workspace.sight.thumbnails.is_empty() || engine.recorder.is_safe_mode() {
             return Ok(None);
         }
-        let scale = scale(&viewer.gpu) * pixels_per_point;
-        let Some((shaders, shown)) = shown(viewer, pixels(state, scale)) else {
+        let scale = scale(&engine.gpu) * pixels_per_point;
+        let Some((shaders, shown)) = shown(state, engine, pixels(&state.workspace.sight, scale)) else {
             return Ok(None);
         };
         if self.shown.as_ref() != Some(&shown) {
@@ -97,22 +100,23 @@ impl Gallery {
         if self.failed {
             return Ok(None);
         }
-        let is_stale = |mode: &&Mode| state.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
+        let is_stale =
+            |mode: &&Mode| state.workspace.sight.thumbnails.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
         // All modes are split into sets, not only the visible ones, so that scrolling needs no other pipelines.
-        let features = viewer.session.features();
-        let is_seen = |mode: &&Mode| mode.has_data(features) || state.visible.contains(&mode.slug);
-        let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
+        let features = state.session.features();
+        let is_seen = |mode: &&Mode| mode.has_data(features) || state.workspace.sight.thumbnails.contains(&mode.slug);
+        let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&engine.gpu));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
             if self.drawn > 0 {
-                emit(&viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
+                emit(&state.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
             }
             return Ok(None);
         }
-        if let Some(left) = time_to_rest(viewer, self.since) {
+        if let Some(left) = time_to_rest(engine, self.since) {
             return Ok(Some(left));
         }
-        let drawn = self.draw_sets(background, (viewer, state), ui, layouts, &shaders, stale);
+        let drawn = self.draw_sets(background, engine, ui, layouts, &shaders, stale);
         match drawn {
             Err(error) if error.is_shortage() => {
                 self.failed = true;
@@ -123,8 +127,8 @@ impl Gallery {
     }
 
     /// Reads the samples of the last thumbnails. Those whose range they change are drawn again.
-    fn collect(&mut self, viewer: &Viewer) {
-        let (Some(renderer), Some(shaders)) = (&mut self.renderer, &viewer.session.shaders) else { return };
+    fn collect(&mut self, state: &State) {
+        let (Some(renderer), Some(shaders)) = (&mut self.renderer, &state.session.shaders) else { return };
         let changed: Vec<u32> = (0..DRAWS_PER_FRAME).flat_map(|index| renderer.collect(index)).collect();
         for mode in shaders.modes.iter().filter(|mode| changed.contains(&mode.id)) {
             self.fresh.remove(&mode.slug);
@@ -134,24 +138,24 @@ impl Gallery {
     fn draw_sets(
         &mut self,
         background: &mut Background,
-        (viewer, state): (&mut Viewer, &mut GalleryState),
+        engine: &mut Engine,
         ui: &mut UiRenderer,
         layouts: &Arc<SetLayouts>,
         shaders: &Arc<ShaderSet>,
         stale: Vec<Vec<&Mode>>,
     ) -> Result<Option<Duration>, GpuError> {
         let Some(shown) = &self.shown else { return Ok(None) };
-        let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
-        let BoundSets { ready, missing, is_new } = shown.bind(viewer, shaders, stale, &mut self.asked)?;
-        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
-            viewer.threads.worker.build_thumbnails(pipelines, missing);
+        let draws = if engine.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let BoundSets { ready, missing, is_new } = shown.bind(engine, shaders, stale, &mut self.asked)?;
+        if let Some(pipelines) = engine.resources.pipelines().filter(|_| is_new) {
+            engine.threads.worker.build_thumbnails(pipelines, missing);
         }
         if ready.is_empty() {
             return Ok(None);
         }
         let rows = (shaders.modes.len() as u32).div_ceil(COLUMNS).max(1);
         let size = shown.size;
-        self.provide(&viewer.gpu, layouts, ui, (size, rows))?;
+        self.provide(&engine.gpu, layouts, ui, (size, rows))?;
         let (Some(renderer), Some((image, _))) = (&mut self.renderer, &self.atlas) else { return Ok(None) };
         let atlas = image.image().clone();
         let before = if std::mem::replace(&mut self.is_drawn, true) { Use::Sampled } else { Use::Undefined };
@@ -176,11 +180,11 @@ impl Gallery {
                 let (width, height) = (atlas.desc().width as f32, atlas.desc().height as f32);
                 let at = egui::pos2(x as f32 / width, y as f32 / height);
                 let place = egui::Rect::from_min_size(at, egui::vec2(size.0 as f32 / width, size.1 as f32 / height));
-                state.places.insert(mode.slug.clone(), place);
+                self.thumbnails.places.insert(mode.slug.clone(), place);
                 self.fresh.insert(mode.slug.clone());
             }
             self.drawn += set.len();
-            state.texture = Some(image.texture);
+            self.thumbnails.texture = Some(image.texture);
         }
         // The user interface samples the texture from the next frame on.
         encoder.transition(&atlas, Use::CopyTo, Use::Sampled);
@@ -224,7 +228,8 @@ fn scale(gpu: &Gpu) -> f32 {
 }
 
 /// Width and height of a thumbnail in pixels.
-fn pixels(state: &GalleryState, scale: f32) -> (u32, u32) {
+fn pixels(sight: &Sight, scale: f32) -> (u32, u32) {
     let side = |points: f32| ((points * scale).round() as u32).clamp(1, 512);
-    (side(state.size.x), side(state.size.y))
+    let [width, height] = sight.thumbnail_size;
+    (side(width), side(height))
 }

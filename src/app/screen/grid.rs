@@ -6,17 +6,19 @@ use std::sync::Arc;
 
 use super::cell::Cell;
 use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::engine::Engine;
+use crate::app::frames::picture::frame_of_mode;
+use crate::app::state::State;
 use crate::app::state::grid::{PictureRect, cells};
-use crate::app::viewer::Viewer;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{Output, Redraw, View};
 
 impl Screen {
     /// Splits the viewport into grid cells. The selected mode takes its cell through the normal path.
-    pub(super) fn arrange_grid(&mut self, viewer: &Viewer) {
-        let modes = viewer.grid.modes();
-        let selected = &viewer.session.settings.mode;
-        let is_on = viewer.grid.is_on() && !viewer.compare.is_on();
+    pub(super) fn arrange_grid(&mut self, state: &State) {
+        let modes = state.grid.modes();
+        let selected = &state.session.settings.mode;
+        let is_on = state.grid.is_on() && !state.compare.is_on();
         let place = modes.iter().position(|mode| mode == selected).filter(|_| is_on);
         let Some(place) = place else {
             self.rect = self.whole;
@@ -36,21 +38,27 @@ impl Screen {
     }
 
     /// Updates the cells. Without memory, the grid ends.
-    pub(super) fn prepare_grid(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
+    pub(super) fn prepare_grid(&mut self, state: &mut State, engine: &mut Engine) -> Result<(), GpuError> {
         let wanted = std::mem::take(&mut self.wanted);
-        let prepared = wanted.into_iter().try_for_each(|(mode, rect)| self.prepare_cell(viewer, mode, rect));
+        let prepared = wanted.into_iter().try_for_each(|(mode, rect)| self.prepare_cell(state, engine, mode, rect));
         if self.survive(prepared)?.is_none() {
             self.cells.clear();
-            viewer.grid.end();
+            state.grid.end();
         }
         Ok(())
     }
 
-    fn prepare_cell(&mut self, viewer: &mut Viewer, mode: String, rect: PictureRect) -> Result<(), GpuError> {
+    fn prepare_cell(
+        &mut self,
+        state: &mut State,
+        engine: &mut Engine,
+        mode: String,
+        rect: PictureRect,
+    ) -> Result<(), GpuError> {
         let at = match self.cells.iter().position(|cell| cell.mode == mode) {
             Some(at) => at,
             None => {
-                let view = View::new(&viewer.gpu, viewer.resources.layouts(), FRAMES_IN_FLIGHT)?;
+                let view = View::new(&engine.gpu, engine.resources.layouts(), FRAMES_IN_FLIGHT)?;
                 let image = view.output_image(rect.size)?;
                 self.cells.push(Cell { mode, rect, view, image, shown: None });
                 self.cells.len() - 1
@@ -60,7 +68,7 @@ impl Screen {
         if (cell.image.desc().width, cell.image.desc().height) != rect.size {
             cell.image = cell.view.output_image(rect.size)?;
         }
-        cell.shown = viewer.frame_of_mode(&cell.mode, rect.size, cell.shown.take())?;
+        cell.shown = frame_of_mode(state, engine, &cell.mode, rect.size, cell.shown.take())?;
         if let Some(shown) = &cell.shown {
             cell.view.prepare(&shown.frame)?;
         }

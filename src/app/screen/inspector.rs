@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 
 use super::background::Background;
 use super::sets::{BoundSets, Shown, shown, time_to_rest};
-use crate::app::viewer::Viewer;
+use crate::app::actions::inspect::{begin_values, take_texels, take_values, values_complete};
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::frame::{TargetFormat, mode_sets};
 use crate::gpu::{GpuError, SetLayouts};
 use crate::render::{PixelModes, TexelReadback, Thumbnails, texel_places};
@@ -67,14 +69,14 @@ impl PixelReader {
     }
 
     /// Takes the values of finished draws.
-    pub(super) fn take(&mut self, background: &Background, viewer: &mut Viewer) {
+    pub(super) fn take(&mut self, background: &Background, state: &mut State) {
         let Some(renderer) = self.renderer.as_ref().filter(|_| background.is_finished()) else { return };
         if let Some((picture, readback)) = self.texels.take() {
-            viewer.take_texels(picture, readback.finish());
+            take_texels(state, picture, readback.finish());
         }
         for Pending { place, slugs, picture } in std::mem::take(&mut self.pending) {
             if picture == self.picture {
-                viewer.take_values(picture, slugs.into_iter().zip(renderer.values(place)));
+                take_values(state, picture, slugs.into_iter().zip(renderer.values(place)));
             }
         }
     }
@@ -84,12 +86,13 @@ impl PixelReader {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         layouts: &Arc<SetLayouts>,
         (size, mouse): ((u32, u32), Option<(u32, u32)>),
     ) -> Result<Option<Duration>, GpuError> {
-        let inspector = &viewer.inspection;
-        if !inspector.is_visible || viewer.recorder.is_safe_mode() {
+        let inspector = &state.inspection;
+        if !state.workspace.sight.inspector || engine.recorder.is_safe_mode() {
             // The device memory is free for other things while the panel is closed.
             (self.renderer, self.shown) = (None, None);
             return Ok(None);
@@ -103,7 +106,7 @@ impl PixelReader {
             return Ok(None);
         };
         let is_dropped = inspector.reading.is_none() && !self.drawn.is_empty();
-        let Some((shaders, mut now)) = shown(viewer, size) else { return Ok(None) };
+        let Some((shaders, mut now)) = shown(state, engine, size) else { return Ok(None) };
         (now.target, now.gives_numbers) = (TargetFormat::full(1), true);
         let now = (now, at);
         if is_dropped || self.shown.as_ref() != Some(&now) {
@@ -117,19 +120,19 @@ impl PixelReader {
         if self.stopped {
             return Ok(None);
         }
-        let features = viewer.session.features();
+        let features = state.session.features();
         let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
-        let sets = mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu));
+        let sets = mode_sets(with_data, Thumbnails::most_at_once(&engine.gpu));
         let is_stale = |set: &Vec<&Mode>| set.iter().any(|mode| !self.drawn.contains(&mode.slug));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(is_stale).collect();
         if stale.is_empty() {
             // The panel shows them with the next frame.
-            return Ok(viewer.values_complete(self.picture).then_some(Duration::ZERO));
+            return Ok(values_complete(state, engine, self.picture).then_some(Duration::ZERO));
         }
-        if let Some(left) = time_to_rest(viewer, self.since) {
+        if let Some(left) = time_to_rest(engine, self.since) {
             return Ok(Some(left));
         }
-        match self.draw_sets(background, viewer, layouts, &shaders, stale) {
+        match self.draw_sets(background, state, engine, layouts, &shaders, stale) {
             Err(error) if error.is_shortage() => {
                 (self.renderer, self.stopped) = (None, true);
                 self.pending.clear();
@@ -142,29 +145,30 @@ impl PixelReader {
     fn draw_sets(
         &mut self,
         background: &mut Background,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         layouts: &Arc<SetLayouts>,
         shaders: &Arc<ShaderSet>,
         stale: Vec<Vec<&Mode>>,
     ) -> Result<Option<Duration>, GpuError> {
         let Some((shown, at)) = &self.shown else { return Ok(None) };
-        let BoundSets { ready, missing, is_new } = shown.bind(viewer, shaders, stale, &mut self.asked)?;
-        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
-            viewer.threads.worker.build_inspected(pipelines, missing);
+        let BoundSets { ready, missing, is_new } = shown.bind(engine, shaders, stale, &mut self.asked)?;
+        if let Some(pipelines) = engine.resources.pipelines().filter(|_| is_new) {
+            engine.threads.worker.build_inspected(pipelines, missing);
         }
         if ready.is_empty() {
             return Ok(None);
         }
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
-            none => none.insert(PixelModes::new(&viewer.gpu, layouts, DRAWS_PER_FRAME)?),
+            none => none.insert(PixelModes::new(&engine.gpu, layouts, DRAWS_PER_FRAME)?),
         };
-        let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let draws = if engine.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
         let encoder = background.encoder()?;
         for (place, (set, frame)) in ready.iter().take(draws).enumerate() {
-            if viewer.begin_values(self.picture, *at, &frame.state) {
+            if begin_values(state, engine, self.picture, *at, &frame.state) {
                 let places = texel_places(&frame.state, (at[0], at[1]));
-                let readback = TexelReadback::record(&viewer.gpu, encoder, &viewer.resources, places)?;
+                let readback = TexelReadback::record(&engine.gpu, encoder, &engine.resources, places)?;
                 self.texels = Some((self.picture, readback));
             }
             renderer.draw(encoder, place, frame, (at[0], at[1]))?;

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use super::background::Background;
 use super::sets::{BoundSets, Shown, shown, time_to_rest};
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::frame::{FrameState, TargetFormat, mode_sets};
 use crate::gpu::{GpuError, SetLayouts};
 use crate::interface::MODE_FINAL;
@@ -31,16 +32,16 @@ pub(super) struct Pointed {
 impl Pointed {
     /// A pixel of a frame. `None` if the pixel drawn alone would have another value than in the frame: path tracing takes many
     /// frames, lines and layers are blended, and passes may follow the model.
-    pub(super) fn new(state: &FrameState, at: (u32, u32)) -> Option<Self> {
-        let mode = state.mode()?;
+    pub(super) fn new(frame_state: &FrameState, at: (u32, u32)) -> Option<Self> {
+        let mode = frame_state.mode()?;
         let is_number = mode.numbers.is_some();
         let is_of_model = mode.pass.is_none() && mode.id != MODE_FINAL && !mode.is_displayed;
         let is_opaque = mode.draw == DrawAs::Surfaces && !mode.through && !mode.follows_paths();
-        let mut passes = state.pipelines.passes.iter();
+        let mut passes = frame_state.pipelines.passes.iter();
         let has_no_others = passes
             .all(|pass| matches!(pass.phase, RenderPhase::BeforeModel | RenderPhase::Model | RenderPhase::Tonemap));
         let is_same = is_number || is_of_model && is_opaque && has_no_others;
-        is_same.then(|| Self { mode: mode.slug.clone(), at: [at.0, at.1], size: state.size, is_number })
+        is_same.then(|| Self { mode: mode.slug.clone(), at: [at.0, at.1], size: frame_state.size, is_number })
     }
 }
 
@@ -99,15 +100,16 @@ impl NumberReader {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         layouts: &Arc<SetLayouts>,
         pointed: Option<Pointed>,
     ) -> Result<Option<Duration>, GpuError> {
-        let Some(pointed) = pointed.filter(|_| !viewer.recorder.is_safe_mode()) else {
+        let Some(pointed) = pointed.filter(|_| !engine.recorder.is_safe_mode()) else {
             *self = Self { progress: Progress::Failed, ..Self::default() };
             return Ok(None);
         };
-        let Some((shaders, mut now)) = shown(viewer, pointed.size) else { return Ok(None) };
+        let Some((shaders, mut now)) = shown(state, engine, pointed.size) else { return Ok(None) };
         (now.target, now.gives_numbers) = (TargetFormat::full(1), true);
         let now = (now, pointed);
         if self.shown.as_ref() != Some(&now) {
@@ -119,16 +121,16 @@ impl NumberReader {
         if !matches!(self.progress, Progress::Missing) {
             return Ok(None);
         }
-        if let Some(left) = time_to_rest(viewer, self.since) {
+        if let Some(left) = time_to_rest(engine, self.since) {
             return Ok(Some(left));
         }
         let Some((shown, pointed)) = &self.shown else { return Ok(None) };
-        let features = viewer.session.features();
+        let features = state.session.features();
         let place = |set: &Vec<_>| set.iter().position(|mode: &&Mode| mode.slug == pointed.mode);
         let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
         let sets = if pointed.is_number {
             // The set that the inspector draws, so that both use the same pipelines.
-            mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu))
+            mode_sets(with_data, Thumbnails::most_at_once(&engine.gpu))
         } else {
             // A pipeline of one mode is built in a fraction of the time.
             with_data.filter(|mode| mode.slug == pointed.mode).map(|mode| vec![mode]).collect()
@@ -137,17 +139,17 @@ impl NumberReader {
             self.progress = Progress::Failed;
             return Ok(None);
         };
-        let drawn = shown.bind(viewer, &shaders, vec![set], &mut self.asked).and_then(|bound| {
+        let drawn = shown.bind(engine, &shaders, vec![set], &mut self.asked).and_then(|bound| {
             let BoundSets { ready, missing, is_new } = bound;
             // The open inspector requests it, too.
-            let is_asked = viewer.inspection.is_visible && viewer.inspection.reading.is_some();
-            if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new && !is_asked) {
-                viewer.threads.worker.build_inspected(pipelines, missing);
+            let is_asked = state.workspace.sight.inspector && state.inspection.reading.is_some();
+            if let Some(pipelines) = engine.resources.pipelines().filter(|_| is_new && !is_asked) {
+                engine.threads.worker.build_inspected(pipelines, missing);
             }
             let Some((_, frame)) = ready.first() else { return Ok(false) };
             let renderer = match &mut self.renderer {
                 Some(renderer) => renderer,
-                none => none.insert(PixelModes::new(&viewer.gpu, layouts, 1)?),
+                none => none.insert(PixelModes::new(&engine.gpu, layouts, 1)?),
             };
             renderer.draw(background.encoder()?, 0, frame, (pointed.at[0], pointed.at[1]))?;
             Ok(true)

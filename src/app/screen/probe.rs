@@ -2,10 +2,10 @@
 
 use super::number::Pointed;
 use super::{FRAMES_IN_FLIGHT, Screen};
-use crate::app::drawn::readout::readout;
 use crate::app::panels::overlay::swatches::swatches;
-use crate::app::panels::readings::{LegendOf, Readout};
-use crate::app::viewer::Viewer;
+use crate::app::readings::{LegendOf, Readout};
+use crate::app::screen::readout::readout;
+use crate::app::state::State;
 use crate::frame::FrameState;
 use crate::render::View;
 
@@ -62,45 +62,45 @@ impl Screen {
     }
 
     /// The value under the mouse.
-    pub(super) fn readout(&self, viewer: &Viewer) -> Option<Readout> {
+    pub(super) fn readout(&self, state: &State) -> Option<Readout> {
         let (pixel, is_of_reference) = self.pixel.filter(|_| self.mouse.over)?;
         let reference = self.reference.as_ref().filter(|_| is_of_reference).map(|reference| &*reference.frame.state);
-        let state = reference.or_else(|| self.pointed_at(viewer))?;
-        let number = self.pointed_number(viewer).filter(|_| !is_of_reference);
+        let frame_state = reference.or_else(|| self.pointed_at(state))?;
+        let number = self.pointed_number(state).filter(|_| !is_of_reference);
         let number = number.filter(|pointed| (pointed.at[0], pointed.at[1]) == pixel.at);
-        let sides = self.reference.as_ref().and_then(|_| viewer.side_names());
+        let sides = self.reference.as_ref().and_then(|_| state.side_names());
         let side = sides.map(|[earlier, now]| if is_of_reference { earlier } else { now });
-        let readout = readout(state, &pixel, number.and_then(|pointed| self.number.value(&pointed)))?;
+        let readout = readout(frame_state, &pixel, number.and_then(|pointed| self.number.value(&pointed)))?;
         Some(Readout { side, ..readout })
     }
 
     /// The pixel under the mouse, if its value can be read in 32 bits.
-    pub(super) fn pointed_number(&self, viewer: &Viewer) -> Option<Pointed> {
+    pub(super) fn pointed_number(&self, state: &State) -> Option<Pointed> {
         let of_cell = self.cells.iter().find_map(|cell| cell.view.probe);
         let at = of_cell.or(self.view.probe).filter(|_| self.mouse.over)?;
-        Pointed::new(self.pointed_at(viewer)?, at)
+        Pointed::new(self.pointed_at(state)?, at)
     }
 
     /// The state of the picture under the mouse: that of a cell of the grid, or of the selected mode.
-    fn pointed_at<'a>(&'a self, viewer: &'a Viewer) -> Option<&'a FrameState> {
+    fn pointed_at<'a>(&'a self, state: &'a State) -> Option<&'a FrameState> {
         let cell = self.cells.iter().find(|cell| cell.view.probe.is_some());
         let of_cell = cell.and_then(|cell| cell.shown.as_ref()).map(|shown| &*shown.frame.state);
-        of_cell.or_else(|| viewer.shown())
+        of_cell.or_else(|| state.shown())
     }
 
     /// Returns the contents of the legend for the picture under the mouse.
-    pub(super) fn legend(&self, viewer: &Viewer) -> Option<LegendOf> {
-        let state = self.pointed_at(viewer)?;
+    pub(super) fn legend(&self, state: &State) -> Option<LegendOf> {
+        let frame_state = self.pointed_at(state)?;
         let view = self.cells.iter().find(|cell| cell.view.probe.is_some()).map_or(&self.view, |cell| &cell.view);
-        let mode = state.mode()?.clone();
-        let scene = viewer.session.scene();
+        let mode = frame_state.mode()?.clone();
+        let scene = state.session.scene();
         Some(LegendOf {
-            swatches: swatches(&mode, scene.as_ref(), &state.shaders),
+            swatches: swatches(&mode, scene.as_ref(), &frame_state.shaders),
             mode,
             limits: view.limits(),
             range_sample: view.range_sample().cloned(),
-            colormap: state.display.colormap(),
-            exposure: state.exposure(),
+            colormap: frame_state.display.colormap(),
+            exposure: frame_state.exposure(),
         })
     }
 

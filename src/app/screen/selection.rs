@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use super::Screen;
+use crate::app::actions::select::selected_instances;
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::app::state::selection::stands_out;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::SELECTION;
 use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
@@ -19,16 +21,17 @@ impl Screen {
     pub(super) fn draw_outline(
         &mut self,
         encoder: &mut Encoder,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         frame: Option<&BoundFrame>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let selected = viewer.selected_instances();
+        let selected = selected_instances(state);
         let stands_out =
             |frame: &BoundFrame| frame.state.scene.as_ref().is_some_and(|scene| stands_out(scene, &selected));
         let frame =
             frame.filter(|frame| frame.state.pipelines.draws_model && !selected.is_empty() && stands_out(frame));
-        let Some((frame, tools)) = frame.and_then(|frame| Some((frame, viewer.tools()?))) else {
+        let Some((frame, tools)) = frame.and_then(|frame| Some((frame, engine.tools()?))) else {
             self.outline = None;
             return Ok(());
         };

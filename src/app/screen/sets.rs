@@ -5,7 +5,9 @@ use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::frames::progress::awaits_edit;
+use crate::app::state::State;
 use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::gpu::GpuError;
 use crate::render::{BoundFrame, GpuEnvironment};
@@ -56,7 +58,7 @@ impl Shown {
     /// Out of memory.
     pub(super) fn bind<'a>(
         &self,
-        viewer: &mut Viewer,
+        engine: &mut Engine,
         shaders: &Arc<ShaderSet>,
         sets: Vec<Vec<&'a Mode>>,
         asked: &mut HashSet<String>,
@@ -72,14 +74,14 @@ impl Shown {
         };
         let mut bound = BoundSets { ready: Vec::new(), missing: VecDeque::new(), is_new: false };
         for set in sets {
-            let state = FrameState::of_modes(&inputs, &set);
-            let state = Arc::new(if self.gives_numbers { state.with_numbers() } else { state });
-            match viewer.resources.bind(&state, false)?.0 {
+            let frame_state = FrameState::of_modes(&inputs, &set);
+            let frame_state = Arc::new(if self.gives_numbers { frame_state.with_numbers() } else { frame_state });
+            match engine.resources.bind(&frame_state, false)?.0 {
                 Some(frame) => bound.ready.push((set, frame)),
                 None => {
                     let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
                     bound.is_new |= asked.insert(slugs);
-                    bound.missing.push_back(state.pipelines.clone());
+                    bound.missing.push_back(frame_state.pipelines.clone());
                 }
             }
         }
@@ -88,27 +90,27 @@ impl Shown {
 }
 
 /// The time until the picture has been idle for long enough.
-pub(super) fn time_to_rest(viewer: &Viewer, since: Option<Instant>) -> Option<Duration> {
-    let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
+pub(super) fn time_to_rest(engine: &Engine, since: Option<Instant>) -> Option<Duration> {
+    let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
     since.and_then(|since| rest.checked_sub(since.elapsed())).filter(|left| !left.is_zero())
 }
 
 /// Returns the inputs of sets that are drawn with `size` pixels. `None` while the shaders or resources of the picture are incomplete.
-pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
-    let state = viewer.shown()?;
-    let shaders = viewer.session.shaders.clone()?;
-    let is_current = state.shaders.generation == shaders.generation;
-    if !is_current || !shaders.is_complete() || viewer.awaits_edit() {
+pub(super) fn shown(state: &State, engine: &Engine, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
+    let frame_state = state.shown()?;
+    let shaders = state.session.shaders.clone()?;
+    let is_current = frame_state.shaders.generation == shaders.generation;
+    if !is_current || !shaders.is_complete() || awaits_edit(state, engine) {
         return None;
     }
-    let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
+    let environment: *const GpuEnvironment = Arc::as_ptr(engine.resources.environment());
     let shown = Shown {
-        settings: viewer.session.shared_settings(),
+        settings: state.session.shared_settings(),
         shaders: Arc::as_ptr(&shaders) as usize,
-        scene: viewer.session.scene()?,
-        revisions: viewer.session.revisions,
+        scene: state.session.scene()?,
+        revisions: state.session.revisions,
         environment: environment as usize,
-        target: target(viewer, state.pipelines.target),
+        target: target(engine, frame_state.pipelines.target),
         gives_numbers: false,
         size,
     };
@@ -117,6 +119,6 @@ pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>
 
 /// A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
 /// sample per pixel, which egui halves.
-fn target(viewer: &Viewer, picture: TargetFormat) -> TargetFormat {
-    if viewer.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
+fn target(engine: &Engine, picture: TargetFormat) -> TargetFormat {
+    if engine.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
 }

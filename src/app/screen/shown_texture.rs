@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::app::panels::texture::TextureRequest;
+use crate::app::state::workspace::TextureRequest;
 use crate::frame::Scene;
 use crate::gpu::{DescriptorSet, Image, UiImage};
 
@@ -10,6 +10,8 @@ use crate::gpu::{DescriptorSet, Image, UiImage};
 #[derive(Default)]
 pub(super) struct ShownTexture {
     pub(super) image: Option<UiImage>,
+    /// The texture for egui, and the part of it that shows the picture.
+    pub(super) shown: Option<(egui::TextureId, egui::Rect)>,
     /// The texture that is read, with its descriptor set.
     pub(super) source: Option<(Arc<Image>, Arc<DescriptorSet>)>,
     /// Request that the image shows, and the scene whose meshes it draws.

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::Screen;
-use crate::app::viewer::Viewer;
+use crate::app::engine::Engine;
+use crate::app::state::State;
 use crate::gpu::{DescriptorSet, Encoder, GpuError, Image, UiImage, Use};
 use crate::render::BoundFrame;
 
@@ -13,17 +14,17 @@ const SIDES: (u32, u32) = (256, 2048);
 impl Screen {
     /// Makes room for the preview that the panel requests in this frame, before egui draws it. SYNC: waits for the frames in
     /// flight when the panel grows beyond the last image.
-    pub(super) fn prepare_texture(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
-        let Some(request) = &self.panels.docked.texture.request else { return Ok(()) };
+    pub(super) fn prepare_texture(&mut self, state: &mut State, engine: &mut Engine) -> Result<(), GpuError> {
+        let Some(request) = &state.workspace.sight.texture else { return Ok(()) };
         let side = request.size.0.max(request.size.1).next_power_of_two().clamp(SIDES.0, SIDES.1);
         let fits = |image: &UiImage| image.image().desc().width >= side;
         if self.texture.image.as_ref().is_some_and(fits) {
             return Ok(());
         }
-        let Some(tools) = viewer.tools() else { return Ok(()) };
+        let Some(tools) = engine.tools() else { return Ok(()) };
         if let Some(old) = self.texture.image.take() {
             self.frames.wait_all()?;
-            self.panels.docked.texture.shown = None;
+            self.texture.shown = None;
             self.ui.remove_image(old);
         }
         self.texture.drawn = None;
@@ -35,17 +36,18 @@ impl Screen {
     pub(super) fn draw_texture(
         &mut self,
         encoder: &mut Encoder,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
         frame: Option<&BoundFrame>,
     ) -> Result<(), GpuError> {
-        let Some(request) = self.panels.docked.texture.request.clone() else { return Ok(()) };
-        let Some(tools) = viewer.tools() else { return Ok(()) };
+        let Some(request) = state.workspace.sight.texture.clone() else { return Ok(()) };
+        let Some(tools) = engine.tools() else { return Ok(()) };
         let Some(image) = self.texture.image.as_ref() else {
             // The next frame starts with one.
             self.redraws = self.shortage.is_none();
             return Ok(());
         };
-        let Some(texture) = viewer.resources.texture(&request.source).cloned() else { return Ok(()) };
+        let Some(texture) = engine.resources.texture(&request.source).cloned() else { return Ok(()) };
         let scene = frame.and_then(|frame| frame.state.scene.clone());
         let wanted = (request, scene);
         if self.texture.drawn.as_ref() == Some(&wanted) {
@@ -68,7 +70,7 @@ impl Screen {
             tools.draw_texture(encoder, &set, &request.view, &request.meshes, frame, target, size);
         });
         let part = egui::vec2(size.0 as f32 / side as f32, size.1 as f32 / side as f32);
-        self.panels.docked.texture.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
+        self.texture.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
         self.texture.drawn = Some(wanted);
         self.redraws = true;
         Ok(())

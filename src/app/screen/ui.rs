@@ -6,54 +6,81 @@ use std::time::{Duration, Instant};
 use winit::window::Window;
 
 use super::Screen;
+use crate::app::actions::select::selected_instances;
+use crate::app::actions::sessions::update_offer;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::engine::Engine;
+use crate::app::execute::execute;
+use crate::app::frames::stages::update_stages;
+use crate::app::frames::title::title;
 use crate::app::panels;
-use crate::app::panels::readings::Readings;
+use crate::app::readings::Readings;
+use crate::app::state::State;
 use crate::app::state::grid::PictureRect;
-use crate::app::viewer::Viewer;
 use crate::gpu::{Attachments, Encoder, GpuError, Image, Rect, Use};
+use crate::scene::built_in_pictures;
+use crate::threads::Message;
 
 impl Screen {
     /// Runs the panels. Returns their primitives, the pixels per point, and the delay until egui wants a repaint.
     pub(super) fn run_ui(
         &mut self,
         window: &Window,
-        viewer: &mut Viewer,
+        state: &mut State,
+        engine: &mut Engine,
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
         self.read_range_sample();
-        self.show_background(viewer);
-        self.take_copies(viewer);
-        self.finish_window_shot(viewer);
-        if self.gallery.is_misfit(&viewer.gpu, &self.panels.docked.gallery, self.egui.pixels_per_point()) {
+        self.show_background(state, engine);
+        self.take_copies(engine);
+        self.finish_window_shot(engine);
+        if self.gallery.is_misfit(&engine.gpu, &state.workspace.sight, self.egui.pixels_per_point()) {
             // SYNC: rare, because thumbnails change their size only with the width of their panel.
             self.frames.wait_all()?;
             self.background.wait()?;
-            self.gallery.drop_texture(&mut self.ui, &mut self.panels.docked.gallery);
+            self.gallery.drop_texture(&mut self.ui);
         }
-        self.take_times(viewer);
-        let prepared = self.prepare_texture(viewer);
+        self.take_times(state, engine);
+        let prepared = self.prepare_texture(state, engine);
         self.survive(prepared)?;
+        update_stages(state, engine);
+        update_offer(state);
+        selected_instances(state);
+        state.workspace.take_requests().iter().for_each(|request| self.panels.carry_out(request));
         let readings = Readings {
-            value: self.readout(viewer),
-            title: viewer.title(self.view.accumulated()),
-            legend: self.legend(viewer),
+            value: self.readout(state),
+            title: title(state, self.view.accumulated()),
+            legend: self.legend(state),
+            thumbnails: &self.gallery.thumbnails,
+            texture: self.texture.shown,
+            baking: engine.threads.baker.progress(),
+            pipelines: engine.resources.pipelines().map_or(0, |set| set.count()),
+            baked: &engine.resources.environment().report,
+            memory: state.workspace.sight.timing.then(|| self.memory.read(&engine.gpu)),
         };
         let input = self.input.take_egui_input(window);
         let begin = Instant::now();
-        let (mut shown, mut commands, panels) = (None, Vec::new(), &mut self.panels);
-        let output =
-            self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, viewer, panels, &readings, &mut commands)));
+        let (context, mut commands) = (Context::new(state, readings), Commands::new(&state.session.settings));
+        let (mut shown, panels) = (None, &mut self.panels);
+        let output = self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, &context, panels, &mut commands)));
         let panels_ms = begin.elapsed().as_secs_f64() * 1e3;
-        commands.into_iter().for_each(|command| viewer.execute(command));
+        if std::mem::take(&mut self.panels.open_gallery.wants_pictures) {
+            engine.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
+        }
+        let (commands, sight) = commands.finish(&state.session.settings);
+        state.workspace.sight = sight;
+        commands.into_iter().for_each(|command| execute(state, engine, command));
+        state.grid.follow(&state.session.settings.mode);
         // A drag, or a number that is being typed, is one step.
         let is_held = self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input();
-        viewer.history.record(&viewer.session.shared_settings(), is_held);
+        state.history.record(&state.session.shared_settings(), is_held);
         self.input.handle_platform_output(window, output.platform_output);
         if let Some((swapchain, area)) = self.swapchain.as_ref().zip(shown) {
             self.whole = pixels(area.rect, output.pixels_per_point, swapchain.extent());
             self.free = area.free;
         }
-        self.arrange_grid(viewer);
+        self.arrange_grid(state);
         self.take_textures(output.textures_delta)?;
         let begin = Instant::now();
         let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::app::control::Shot;
+use crate::app::state::waiting::Shot;
 use crate::gpu::Buffer;
 
 /// A capture of the window in flight.

@@ -33,7 +33,7 @@ impl Grid {
     }
 
     /// Adds a mode beside the selected one, or removes it. Returns whether there was room for it.
-    pub(in crate::app) fn toggle(&mut self, slug: &str, selected: &str) -> bool {
+    fn toggle(&mut self, slug: &str, selected: &str) -> bool {
         if self.modes.is_empty() {
             self.modes.push(selected.to_owned());
         }
@@ -51,6 +51,12 @@ impl Grid {
             self.modes.clear();
         }
         true
+    }
+
+    /// The modes with one more beside the selected one, or without it; `None` if there is no room for it.
+    pub(in crate::app) fn toggled(&self, slug: &str, selected: &str) -> Option<Vec<String>> {
+        let mut grid = Self { modes: self.modes.clone() };
+        grid.toggle(slug, selected).then_some(grid.modes)
     }
 
     /// Whether the grid can show a mode: it takes one frame.

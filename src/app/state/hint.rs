@@ -11,6 +11,7 @@ const FILE: &str = "hint.json";
 const DISMISSED: &str = "{\"dismissed\": true}";
 
 /// Whether the hint is shown, and what it offers.
+#[derive(Default)]
 pub(in crate::app) struct Hint {
     is_shown: bool,
     /// The folder to which its button writes the built-in shaders.

@@ -1,6 +1,10 @@
 //! Requests to panels for the next frame, and the panels that the last frame has shown.
 
+use std::collections::BTreeSet;
+
 use super::arrangement::{Panel, Preset};
+use crate::render::tools::{TextureView, UvMesh};
+use crate::scene::TextureSource;
 
 /// A change of the user interface that something else than the user interface asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +45,16 @@ pub(in crate::app) enum PanelRequest {
     FollowSelection,
 }
 
+/// A picture of a texture that the panel Texture shows.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct TextureRequest {
+    pub(in crate::app) source: TextureSource,
+    pub(in crate::app) view: TextureView,
+    pub(in crate::app) meshes: Vec<UvMesh>,
+    /// Pixels.
+    pub(in crate::app) size: (u32, u32),
+}
+
 /// The panels and rows that the last frame has shown. Values that nobody sees are neither drawn nor measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::app) struct Sight {
@@ -50,6 +64,14 @@ pub(in crate::app) struct Sight {
     pub(in crate::app) timeline: bool,
     /// Whether the times of frames were.
     pub(in crate::app) timing: bool,
+    /// Whether the values of the inspected pixel were.
+    pub(in crate::app) inspector: bool,
+    /// The texture that is shown.
+    pub(in crate::app) texture: Option<TextureRequest>,
+    /// The modes whose thumbnails are in sight, by their slugs.
+    pub(in crate::app) thumbnails: BTreeSet<String>,
+    /// Width and height of a thumbnail, points.
+    pub(in crate::app) thumbnail_size: [f32; 2],
     /// The mode that the mouse rests on, which the picture previews.
     pub(in crate::app) preview: Option<String>,
     /// Whether there is an arrangement of the user's own to go back to.
@@ -61,17 +83,17 @@ pub(in crate::app) struct Sight {
 pub(in crate::app) struct Workspace {
     requests: Vec<PanelRequest>,
     pub(in crate::app) sight: Sight,
+    /// Whether the legend over the picture has a histogram of its values.
+    pub(in crate::app) shows_histogram: bool,
 }
 
 impl Workspace {
     /// Asks for a change in the next frame.
     pub(in crate::app) fn request(&mut self, request: PanelRequest) {
-        self.requests.push(request);
-    }
-
-    /// Asks for a change that the user must see: hidden panels are shown.
-    pub(in crate::app) fn request_in_sight(&mut self, request: PanelRequest) {
-        self.requests.extend([PanelRequest::Unhide, request]);
+        match request {
+            PanelRequest::ToggleHistogram => self.shows_histogram ^= true,
+            request => self.requests.push(request),
+        }
     }
 
     /// The requests since the last frame, in their order.
@@ -88,7 +110,8 @@ mod tests {
     fn requests_are_carried_out_once_and_in_order() {
         let mut workspace = Workspace::default();
         workspace.request(PanelRequest::Toggle);
-        workspace.request_in_sight(PanelRequest::Open(Panel::Timeline));
+        workspace.request(PanelRequest::Unhide);
+        workspace.request(PanelRequest::Open(Panel::Timeline));
         let all = [PanelRequest::Toggle, PanelRequest::Unhide, PanelRequest::Open(Panel::Timeline)];
         assert_eq!(workspace.take_requests(), all);
         assert_eq!(workspace.take_requests(), []);

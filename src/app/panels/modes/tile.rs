@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, CornerRadius, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use crate::app::gallery::GalleryState;
+use crate::app::gallery::Thumbnails;
 use crate::app::widgets::theme::{ACCENT, EDGE, LINE, QUIET, small_font, small_mono_font};
 use crate::shader::Mode;
 
@@ -31,25 +31,23 @@ pub(super) fn grid<T>(ui: &mut Ui, columns: usize, tiles: &[T], mut tile: impl F
     }
 }
 
-/// Shows a mode. `key` selects it.
+/// Shows a mode. `key` selects it. Returns its response, and whether it is in sight.
 pub(super) fn show(
     ui: &mut Ui,
     mode: &Mode,
     key: Option<char>,
     is_current: bool,
-    gallery: &mut GalleryState,
-) -> Response {
-    let size = gallery.size;
+    (thumbnails, size): (&Thumbnails, egui::Vec2),
+) -> (Response, bool) {
     let (rect, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click());
     crate::app::widgets::spoken::button(&response, &mode.name);
     if !ui.is_rect_visible(rect) {
-        return response;
+        return (response, false);
     }
-    gallery.visible.insert(mode.slug.clone());
     let picture = Rect::from_min_size(rect.min, size);
     let painter = ui.painter();
     painter.rect_filled(picture, ROUND, EDGE);
-    match gallery.texture.zip(gallery.places.get(&mode.slug)) {
+    match thumbnails.texture.zip(thumbnails.places.get(&mode.slug)) {
         Some((texture, place)) => {
             let image = egui::Image::new((texture, size)).uv(*place).corner_radius(ROUND);
             image.paint_at(ui, picture);
@@ -75,7 +73,7 @@ pub(super) fn show(
     let name = ui.painter().layout_job(job);
     let left = picture.center().x - 0.5 * name.size().x;
     ui.painter().galley(pos2(left, picture.max.y + 2.0), name, color);
-    response
+    (response, true)
 }
 
 /// The key that selects the mode, in a corner.

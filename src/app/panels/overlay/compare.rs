@@ -8,9 +8,11 @@ use egui::{
 };
 use image::RgbImage;
 
-use crate::app::drawn::compare::Difference;
-use crate::app::viewer::Viewer;
+use crate::app::command::Command;
+use crate::app::state::State;
+use crate::app::state::compare::Difference;
 use crate::app::widgets::theme::{PICTURE_ACCENT, small_font};
+use crate::control::{Compare, Request};
 
 /// Width of the draggable strip, in points.
 const GRIP: f32 = 16.0;
@@ -20,14 +22,20 @@ const MARK: f32 = 9.0;
 const MARGIN: Vec2 = vec2(8.0, 4.0);
 
 /// Shows the border over the picture, and moves it with the mouse. It lies below messages and errors.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, shown: &mut ShownMap, picture: Rect) {
-    let Some([earlier, now]) = viewer.comparison_labels() else { return };
+pub(super) fn show(
+    egui: &egui::Context,
+    state: &State,
+    shown: &mut ShownMap,
+    picture: Rect,
+    commands: &mut Vec<Command>,
+) {
+    let Some([earlier, now]) = state.comparison_labels() else { return };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("compare"))).with_clip_rect(picture);
     let bottom = picture.center_bottom() - vec2(0.0, 12.0);
-    if viewer.compare.is_held {
+    if state.compare.is_held {
         return name(&painter, bottom, Align2::CENTER_BOTTOM, &earlier);
     }
-    let compare = &mut viewer.compare;
+    let compare = &state.compare;
     if compare.shows_map {
         shown.paint(&painter, compare.difference.as_ref(), picture);
         return name(&painter, bottom, Align2::CENTER_BOTTOM, "FLIP: black is equal, white is the largest difference");
@@ -37,7 +45,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, shown: &mut ShownM
     let area = Area::new(Id::new("wipe")).order(Order::Middle).fixed_pos(strip.min).constrain(false).fade_in(false);
     let response = area.show(egui, |ui| ui.allocate_response(strip.size(), Sense::drag())).inner;
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.drag_stopped()) {
-        compare.wipe = ((at.x - picture.min.x) / picture.width().max(1.0)).clamp(0.0, 1.0);
+        let wipe = ((at.x - picture.min.x) / picture.width().max(1.0)).clamp(0.0, 1.0);
+        commands.push(Command::Ask(Box::new(Request::Compare(Compare { wipe: Some(wipe), ..Compare::default() }))));
         // The next press finds the strip where it was in the last frame.
         egui.request_repaint();
     }

@@ -4,8 +4,10 @@
 use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
+use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::state::State;
 use crate::app::state::selection::{LightId, Selected, name_or};
-use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{SELECTION, small_font, small_mono_font};
 use crate::scene::{Bounds, CameraView, Light, light_direction, ray};
 use crate::settings::{LightSettings, LightSource};
@@ -150,17 +152,17 @@ impl Frame {
 }
 
 /// Shows the handles over the picture while a light is selected.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, gizmo: &mut Gizmo, rect: Rect) {
-    let Selected::Light(selected) = viewer.selected else {
+pub(super) fn show(egui: &egui::Context, state: &State, gizmo: &mut Gizmo, rect: Rect, commands: &mut Commands) {
+    let Selected::Light(selected) = state.selected else {
         gizmo.drag = None;
         return;
     };
-    let Some(state) = viewer.shown().filter(|state| state.pipelines.draws_model) else { return };
-    let Some(model) = state.scene.as_ref().map(|scene| scene.model().clone()) else { return };
-    let frame = Frame { view: state.camera, bounds: model.bounds, rect, size: state.size };
+    let Some(picture) = state.shown().filter(|picture| picture.pipelines.draws_model) else { return };
+    let Some(model) = picture.scene.as_ref().map(|scene| scene.model().clone()) else { return };
+    let frame = Frame { view: picture.camera, bounds: model.bounds, rect, size: picture.size };
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("gizmo"))).with_clip_rect(rect);
     gizmo.follow(&frame.view);
-    let lights = &mut viewer.session.settings.lights;
+    let lights = &mut commands.settings.lights;
     let mut shown = Vec::new();
     if lights.source == LightSource::Orbit {
         shown.extend((0..lights.orbit.len()).map(LightId::Orbit));
@@ -181,7 +183,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, gizmo: &mut Gizmo,
         }
     }
     if let Some(light) = chosen.filter(|light| *light != selected) {
-        viewer.select(Selected::Light(light));
+        commands.push(Command::Select(Selected::Light(light)));
     }
 }
 

@@ -2,14 +2,12 @@
 
 use egui::{Align2, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use crate::app::gallery::GalleryState;
-
 use crate::app::state::grid::{GAP, Grid, PictureRect, places};
 use crate::app::widgets::theme::{ACCENT, CARD, EDGE, PANEL, STRONG, small_font};
 use crate::session::Session;
 
 /// Shows the names over the picture, below cards.
-pub(super) fn show(egui: &egui::Context, (session, grid): (&Session, &Grid), gallery: &GalleryState, picture: Rect) {
+pub(super) fn show(egui: &egui::Context, (session, grid): (&Session, &Grid), preview: Option<&str>, picture: Rect) {
     let Some(shaders) = &session.shaders else { return };
     if !grid.is_on() {
         return;
@@ -38,7 +36,7 @@ pub(super) fn show(egui: &egui::Context, (session, grid): (&Session, &Grid), gal
     for (slug, (_, rect)) in grid.modes().iter().zip(rects) {
         let is_selected = *slug == session.settings.mode;
         // The selected mode previews the one that the mouse rests on.
-        let slug = gallery.preview().filter(|_| is_selected).unwrap_or(slug);
+        let slug = preview.filter(|_| is_selected).unwrap_or(slug);
         let name = shaders.modes.iter().find(|mode| mode.slug == slug).map_or(slug, |mode| &mode.name);
         let text = painter.layout_no_wrap(name.to_owned(), small_font(), STRONG.color());
         let card = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(6.0, -6.0), text.size() + vec2(14.0, 6.0));

@@ -5,21 +5,21 @@ use egui::{Align2, Id, Rect, RichText, Ui};
 use super::card::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
+use crate::app::state::State;
 use crate::app::state::exercise::LearnCommand;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::learn::exercises;
 
 /// Shows the card while the hint is not dismissed.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {
-    if !viewer.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
+pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) {
+    if !state.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
         return;
     }
     // Which tree it is is known with the first shaders. A single file is the user's own already.
-    if viewer.shader.tree.is_empty() || viewer.shader.is_single_file {
+    if state.shader.tree.is_empty() || state.shader.is_single_file {
         return;
     }
-    let tree = viewer.shader.location.clone();
+    let tree = state.shader.location.clone();
     // An area keeps its first size, so another text is another area.
     let id = Id::new(("hint", tree.is_some(), picture.width() as u32));
     let mut is_done = false;
@@ -42,7 +42,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                     let text =
                         "Write them to a folder of your own, edit a file there and save it: the picture updates.";
                     ui.label(RichText::new(text).color(QUIET));
-                    let standard = viewer.hint.folder.clone();
+                    let standard = state.hint.folder.clone();
                     buttons(ui, commands, &mut is_done, |ui| {
                         let hover = "Writes the shaders there, as `specula new` does, and opens them";
                         let text = format!("Write to ./{}", standard.display());
@@ -56,7 +56,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
         });
     });
     if is_done {
-        viewer.hint.dismiss();
+        commands.push(Command::DismissHint);
     }
 }
 

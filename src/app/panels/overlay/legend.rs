@@ -6,7 +6,7 @@ use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, 
 
 use super::card::wrapped;
 use super::swatches;
-use crate::app::panels::readings::{LegendOf, Readout};
+use crate::app::readings::{LegendOf, Readout};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
 use crate::frame::Limits;

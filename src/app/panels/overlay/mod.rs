@@ -15,12 +15,12 @@ mod version;
 use egui::{Align2, Id, Rect, RichText, TextStyle};
 
 use super::inspector::marker;
-use super::readings::Readings;
 use crate::app::command::Command;
-use crate::app::gallery::GalleryState;
-use crate::app::viewer::Viewer;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::state::State;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme::{LINE, WARNING};
-use crate::settings::ViewSettings;
 use card::{area, card, wrapped};
 use compare::ShownMap;
 use diagnostics::{Files, Shown};
@@ -38,69 +38,71 @@ const NAMES: f32 = 36.0;
 /// State of the overlay between frames.
 #[derive(Default)]
 pub(in crate::app) struct Overlay {
-    pub(in crate::app) legend: LegendState,
+    legend: LegendState,
     files: Files,
     gizmo: Gizmo,
     labels: Labels,
     map: ShownMap,
 }
 
-/// Shows what lies over the picture. `with_panels`: the panels are shown as well. Returns the version of the shaders that the user wants to
-/// write to the files.
+/// Shows what lies over the picture. `with_panels`: the panels are shown as well.
 pub(super) fn show(
     egui: &egui::Context,
-    (viewer, state): (&mut Viewer, &mut Overlay),
-    (gallery, with_panels): (&GalleryState, bool),
-    readings: &Readings,
+    context: &Context<'_>,
+    own: &mut Overlay,
+    with_panels: bool,
     picture: Rect,
-    commands: &mut Vec<Command>,
-) -> Option<u64> {
-    in_picture(egui, (&mut *viewer, &mut *state), (gallery, with_panels), readings, picture);
-    let cut_short = viewer.is_cut_short();
+    commands: &mut Commands,
+) {
+    let state = context.state;
+    in_picture(egui, context, own, with_panels, picture, commands);
+    let diagnostics = &state.session.diagnostics;
     let mut free = picture;
-    if !viewer.session.diagnostics.is_empty() {
-        let shown = Shown { diagnostics: &viewer.session.diagnostics, cut_short, picture };
-        let (card, hides) = diagnostics::show(egui, &shown, &mut state.files, commands);
+    if !diagnostics.is_empty() {
+        let shown = Shown { diagnostics, cut_short: state.is_cut_short(), picture };
+        let (card, hides) = diagnostics::show(egui, &shown, &mut own.files, &mut commands.list);
         free.max.y = card.top();
         if hides {
-            viewer.session.diagnostics.clear();
+            commands.push(Command::HideDiagnostics);
         }
+    } else if with_panels {
+        hint::show(egui, state, picture, &mut commands.list);
     }
-    if with_panels && viewer.session.diagnostics.is_empty() {
-        hint::show(egui, viewer, picture, commands);
-    }
-    restore::show(egui, viewer, picture, commands);
-    let asked = version::show(egui, viewer, picture, commands);
-    warnings(egui, viewer, picture);
-    notice(egui, viewer, picture, free);
+    restore::show(egui, state, picture, &mut commands.list);
+    version::show(egui, state, picture, &mut commands.list);
+    warnings(egui, state, picture, &mut commands.list);
+    notice(egui, state, picture, free);
     if with_panels {
-        label(egui, &mut viewer.session.settings.view, &mut state.legend, readings, picture);
+        label(egui, context, &mut own.legend, picture, commands);
     }
-    asked
 }
 
 /// Shows what belongs to places of the picture.
 fn in_picture(
     egui: &egui::Context,
-    (viewer, state): (&mut Viewer, &mut Overlay),
-    (gallery, with_panels): (&GalleryState, bool),
-    readings: &Readings,
+    context: &Context<'_>,
+    own: &mut Overlay,
+    with_panels: bool,
     picture: Rect,
+    commands: &mut Commands,
 ) {
-    compare::show(egui, viewer, &mut state.map, picture);
-    marker(egui, &viewer.inspection, picture);
-    gizmo::show(egui, viewer, &mut state.gizmo, picture);
-    grid::show(egui, (&viewer.session, &viewer.grid), gallery, picture);
-    let has_labels = with_panels && readings.legend.is_some() && !viewer.grid.is_on();
-    if let Some(model) = viewer.session.model().filter(|_| has_labels) {
-        labels::show(egui, &mut state.labels, model, &viewer.session.settings.camera, picture);
+    let state = context.state;
+    compare::show(egui, state, &mut own.map, picture, &mut commands.list);
+    if commands.sight.inspector {
+        marker(egui, &state.inspection, picture);
+    }
+    gizmo::show(egui, state, &mut own.gizmo, picture, commands);
+    grid::show(egui, (&state.session, &state.grid), commands.sight.preview.as_deref(), picture);
+    let has_labels = with_panels && context.readings.legend.is_some() && !state.grid.is_on();
+    if let Some(model) = state.session.model().filter(|_| has_labels) {
+        labels::show(egui, &mut own.labels, model, &state.session.settings.camera, picture);
     }
 }
 
 /// Kept messages and the model's warnings, until the user hides them.
-fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
-    let model = viewer.session.model().filter(|_| viewer.model.shows_warnings);
-    let mut lines: Vec<String> = viewer.notices.kept().to_vec();
+fn warnings(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) {
+    let model = state.session.model().filter(|_| state.model.shows_warnings);
+    let mut lines: Vec<String> = state.notices.kept().to_vec();
     lines.extend(model.map(|model| model.first_warnings(MODEL_WARNINGS)).unwrap_or_default());
     if lines.is_empty() {
         return;
@@ -118,24 +120,23 @@ fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
         });
     });
     if hide {
-        viewer.notices.dismiss();
-        viewer.model.shows_warnings = false;
+        commands.push(Command::HideWarnings);
     }
 }
 
 /// The passing message, or that a model is loading. `free` is the part of the picture above the diagnostics.
-fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
-    let has_model = viewer.session.model().is_some_and(|model| !model.instances.is_empty());
+fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
+    let has_model = state.session.model().is_some_and(|model| !model.instances.is_empty());
     // If no model could be loaded, the message stays.
-    let stays = !has_model && !viewer.model.loading;
-    let notice = viewer.notices.passing(stays);
+    let stays = !has_model && !state.model.loading;
+    let notice = state.notices.passing(stays);
     if let Some((_, left)) = notice.filter(|_| !stays) {
         egui.request_repaint_after(left);
     }
-    let loading = viewer.model.loading.then_some("Loading the model…");
+    let loading = state.model.loading.then_some("Loading the model…");
     let Some(text) = notice.map(|(text, _)| text).or(loading) else { return };
     // Where the diagnostics leave no room below, it stands at the top.
-    let above_names = if viewer.compare.is_on() { NAMES } else { 0.0 };
+    let above_names = if state.compare.is_on() { NAMES } else { 0.0 };
     let (corner, room) = match free.height() >= NOTICE {
         true => (Align2::CENTER_BOTTOM, free.with_max_y(free.max.y - above_names)),
         false => (Align2::CENTER_TOP, picture),
@@ -150,15 +151,21 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
 }
 
 /// The legend of the mode, and the value under the mouse.
-fn label(egui: &egui::Context, view: &mut ViewSettings, state: &mut LegendState, readings: &Readings, picture: Rect) {
+fn label(egui: &egui::Context, context: &Context<'_>, own: &mut LegendState, picture: Rect, commands: &mut Commands) {
+    let readings = &context.readings;
     let Some(of) = &readings.legend else { return };
     let legend = Legend { title: readings.title.as_deref(), of, value: readings.value.as_ref() };
-    if legend.value.is_none() && !legend.is_whole(view, state) {
+    let view = &mut commands.settings.view;
+    own.shows_histogram = context.state.workspace.shows_histogram;
+    if legend.value.is_none() && !legend.is_whole(view, own) {
         return;
     }
     // An area keeps its first size: one with a histogram or other swatches is another.
-    let id = Id::new(("mode", legend.is_whole(view, state), state.shows_histogram, of.swatches.len()));
+    let id = Id::new(("mode", legend.is_whole(view, own), own.shows_histogram, of.swatches.len()));
     area(id, Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
-        card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, state, picture.width()));
+        card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, own, picture.width()));
     });
+    if own.shows_histogram != context.state.workspace.shows_histogram {
+        commands.push(Command::Panels(PanelRequest::ToggleHistogram));
+    }
 }

@@ -4,15 +4,15 @@ use egui::{Align2, Id, Rect, RichText};
 
 use super::card::{area, card};
 use crate::app::command::Command;
-use crate::app::viewer::Viewer;
+use crate::app::state::State;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 
 /// Shows the offer over the picture, until the user answers or begins something else.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {
-    if !viewer.offers_session() {
+pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) {
+    if !state.offers_session {
         return;
     }
-    let Some(words) = viewer.last_sessions.here.as_ref().map(|session| session.words()) else { return };
+    let Some(words) = state.last_sessions.here.as_ref().map(|session| session.words()) else { return };
     area(Id::new("restore"), Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(ACCENT).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).clamp(180.0, 420.0));
@@ -29,7 +29,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                     commands.extend([Command::RestoreAlways(true), Command::RestoreSession]);
                 }
                 if ui.button("Not now").on_hover_text("You can still restore it from the Open menu").clicked() {
-                    viewer.offers_session = false;
+                    commands.push(Command::RefuseSession);
                 }
             });
         });

@@ -4,14 +4,14 @@ use egui::{Align2, Id, Rect, RichText};
 
 use super::card::{area, card};
 use crate::app::command::Command;
+use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
-use crate::app::viewer::Viewer;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 
-/// Shows the card over the picture while an older version is shown. Returns the version that the user wants to write.
-pub(super) fn show(egui: &egui::Context, viewer: &Viewer, picture: Rect, commands: &mut Vec<Command>) -> Option<u64> {
-    let number = viewer.edits.restored.as_ref()?.number;
-    let mut asks = None;
+/// Shows the card over the picture while an older version is shown.
+pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) {
+    let Some(number) = state.edits.restored.as_ref().map(|restored| restored.number) else { return };
     area(Id::new(("version", number)), Align2::RIGHT_TOP, picture).fade_in(false).show(egui, |ui| {
         card(ACCENT).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).clamp(160.0, 240.0));
@@ -23,10 +23,9 @@ pub(super) fn show(egui: &egui::Context, viewer: &Viewer, picture: Rect, command
                 }
                 if ui.button("Write to the files…").on_hover_text("Asks first, in the panel Timeline").clicked() {
                     commands.push(Command::OpenPanel(Panel::Timeline));
-                    asks = Some(number);
+                    commands.push(Command::Panels(PanelRequest::AskVersion(number)));
                 }
             });
         });
     });
-    asks
 }

@@ -4,8 +4,8 @@
 use egui::{Button, Grid, Id, Label, Modal, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
+use crate::app::state::State;
 use crate::app::state::shaders::edits::NO_FOLDER;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 
 /// State of the confirmation dialog.
@@ -55,13 +55,13 @@ pub(super) fn menu(ui: &mut Ui, name: &str, is_enabled: bool) {
 }
 
 /// Shows the dialog while it is open.
-pub(in crate::app) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut Asked, commands: &mut Vec<Command>) {
+pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut Asked, commands: &mut Vec<Command>) {
     if let Some(only) = egui.data_mut(|data| data.remove_temp::<Option<String>>(wish())) {
-        state.ask(only);
+        own.ask(only);
     }
-    let Some(only) = state.about.clone() else { return };
-    let edits = viewer.edits_of_defaults(only.as_deref());
-    let has_folder = viewer.has_folder();
+    let Some(only) = own.about.clone() else { return };
+    let edits = state.edits_of_defaults(only.as_deref());
+    let has_folder = state.has_folder();
     let mut closes = false;
     let modal = Modal::new(Id::new("write defaults dialog")).show(egui, |ui| {
         ui.set_max_width(560.0);
@@ -105,6 +105,6 @@ pub(in crate::app) fn show(egui: &egui::Context, viewer: &Viewer, state: &mut As
         });
     });
     if closes || modal.should_close() {
-        state.about = None;
+        own.about = None;
     }
 }

@@ -6,24 +6,24 @@ use super::material;
 use super::title::title;
 use super::tree::kind;
 use crate::app::command::Command;
+use crate::app::commands::Commands;
 use crate::app::panels::lights;
+use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::{LightId, Selected, common_material, name_or};
-use crate::app::viewer::Viewer;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::heading;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::frame::Scene;
 use crate::scene::{Bounds, Model};
-use crate::settings::LightSource;
+use crate::settings::{LightSource, Settings};
 
 pub(super) fn show(
     ui: &mut Ui,
-    viewer: &mut Viewer,
-    scene: &Scene,
+    (state, scene): (&State, &Scene),
     selected: Selected,
     kept: &mut Counts,
-    commands: &mut Vec<Command>,
+    commands: &mut Commands,
 ) {
     let model = scene.model();
     match selected {
@@ -31,14 +31,14 @@ pub(super) fn show(
         Selected::Node(node) => {
             let Some(of) = model.nodes.get(node) else { return };
             title(ui, "Node", &name_or(&of.name, || format!("#{}", of.index)));
-            parts(ui, viewer, scene, selected, kept, commands);
+            parts(ui, (state, scene), selected, kept, commands);
         }
         Selected::Instance(index) => {
             let Some(instance) = model.instances.get(index) else { return };
             title(ui, "Primitive", &model.primitives[instance.primitive].name);
-            parts(ui, viewer, scene, selected, kept, commands);
+            parts(ui, (state, scene), selected, kept, commands);
         }
-        Selected::Material(index) => material::show(ui, viewer, scene, index, commands),
+        Selected::Material(index) => material::show(ui, &mut commands.settings, scene, index, &mut commands.list),
         Selected::Texture(source) => {
             let image = source.image(model);
             title(ui, "Texture", image.map_or("", |image| &image.name));
@@ -53,7 +53,7 @@ pub(super) fn show(
                 commands.push(Command::LookThrough(index));
             }
         }
-        Selected::Light(light) => show_light(ui, viewer, model, light),
+        Selected::Light(light) => show_light(ui, &mut commands.settings, model, light),
     }
 }
 
@@ -97,18 +97,17 @@ fn counts(kept: &mut Counts, scene: &Scene, selected: Selected, instances: &[boo
 /// The counts of the selected primitives, what is done with them, and their material.
 fn parts(
     ui: &mut Ui,
-    viewer: &mut Viewer,
-    scene: &Scene,
+    (state, scene): (&State, &Scene),
     selected: Selected,
     kept: &mut Counts,
-    commands: &mut Vec<Command>,
+    commands: &mut Commands,
 ) {
     let model = scene.model();
-    let instances = viewer.selected_instances();
+    let instances = state.selected_instances();
     let (text, material) = counts(kept, scene, selected, &instances);
     ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(true));
     ui.horizontal_wrapped(|ui| {
-        let is_isolated = !viewer.session.settings.scene.isolated.is_empty();
+        let is_isolated = !commands.settings.scene.isolated.is_empty();
         if ui.button("Hide").on_hover_text("Do not draw it (Ctrl+H). Alt+H draws everything again").clicked() {
             commands.push(Command::HideSelected);
         }
@@ -125,7 +124,7 @@ fn parts(
     });
     if let Some(index) = material {
         ui.add_space(4.0);
-        material::show(ui, viewer, scene, index, commands);
+        material::show(ui, &mut commands.settings, scene, index, &mut commands.list);
     } else {
         heading(ui, "Materials");
         let of = model.instances.iter().zip(instances.iter()).filter(|(_, is)| **is);
@@ -143,8 +142,8 @@ fn parts(
 }
 
 /// Offers to switch on lights that are off.
-fn use_source(ui: &mut Ui, viewer: &mut Viewer, source: LightSource, text: &str) {
-    let now = &mut viewer.session.settings.lights.source;
+fn use_source(ui: &mut Ui, settings: &mut Settings, source: LightSource, text: &str) {
+    let now = &mut settings.lights.source;
     if *now != source
         && ui.button(text).on_hover_text("This light is off because another light source is selected").clicked()
     {
@@ -152,21 +151,21 @@ fn use_source(ui: &mut Ui, viewer: &mut Viewer, source: LightSource, text: &str)
     }
 }
 
-fn show_light(ui: &mut Ui, viewer: &mut Viewer, model: &Model, light: LightId) {
+fn show_light(ui: &mut Ui, settings: &mut Settings, model: &Model, light: LightId) {
     match light {
         LightId::Orbit(index) => {
             title(ui, "Orbiting light", &format!("Light {}", index + 1));
-            use_source(ui, viewer, LightSource::Orbit, "Use the orbiting lights");
-            lights::orbit(ui, &mut viewer.session.settings, index);
+            use_source(ui, settings, LightSource::Orbit, "Use the orbiting lights");
+            lights::orbit(ui, settings, index);
         }
         LightId::Rectangle => {
             title(ui, "Area light", "Rectangle");
-            lights::rectangle(ui, &mut viewer.session.settings);
+            lights::rectangle(ui, settings);
         }
         LightId::Model(index) => {
             let Some(light) = model.lights.get(index) else { return };
             title(ui, kind(light.kind), &name_or(&light.name, || format!("light {index} of the file")));
-            use_source(ui, viewer, LightSource::Model, "Use the lights of the file");
+            use_source(ui, settings, LightSource::Model, "Use the lights of the file");
             let unit = if kind(light.kind) == "directional" { "lx" } else { "cd" };
             let [r, g, b] = light.intensity.to_array();
             let [x, y, z] = light.position.to_array();

@@ -8,7 +8,6 @@ use crate::app::command::Command;
 use crate::app::numbers::Scale;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
-use crate::app::viewer::Viewer;
 use crate::app::widgets::rows::{Row, color, edit_number, heading, set_option, short};
 use crate::app::widgets::theme::{ACCENT, QUIET, WARNING};
 use crate::frame::Scene;
@@ -16,11 +15,10 @@ use crate::scene::{Material, MaterialFactor, material_factors, slot_name};
 use crate::settings::{FactorValue, Settings, factor_path};
 
 /// Shows the material with this index. Values that are set are stored under its name.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, index: usize, commands: &mut Vec<Command>) {
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, scene: &Scene, index: usize, commands: &mut Vec<Command>) {
     let model = scene.model();
     let Some(of_file) = model.materials.get(index) else { return };
     let key = model.material_key(index);
-    let settings = &mut viewer.session.settings;
     ui.horizontal(|ui| {
         title(ui, "Material", &key);
         if settings.materials.get(&key).is_some_and(|values| !values.is_empty())

@@ -9,11 +9,16 @@ pub(super) mod tree;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::panels::panel_ui::PanelUi;
+use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
-use crate::app::viewer::Viewer;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::QUIET;
+use crate::frame::Scene;
 use tree::Tree;
 
 /// Height of the part about the selection at first, points.
@@ -29,63 +34,65 @@ pub(in crate::app) struct SceneState {
     follows: bool,
 }
 
-impl SceneState {
-    /// Makes the list scroll to the selection.
-    pub(in crate::app) fn follow(&mut self) {
-        self.follows = true;
+impl PanelUi for SceneState {
+    fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+        match &context.scene {
+            Some(scene) => show(ui, (context.state, scene), self, commands),
+            None => _ = ui.label(RichText::new("No model yet").color(QUIET)),
+        }
+    }
+
+    fn on_request(&mut self, request: &PanelRequest) {
+        self.follows |= *request == PanelRequest::FollowSelection;
     }
 }
 
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, commands: &mut Vec<Command>) {
-    let Some(scene) = viewer.session.scene() else {
-        ui.label(RichText::new("No model yet").color(QUIET));
-        return;
-    };
-    let selected = viewer.selected;
+fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, commands: &mut Commands) {
+    let selected = state.selected;
     if selected != Selected::Nothing {
         let below =
             egui::Panel::bottom("selection").resizable(true).default_size(DETAILS.min(0.6 * ui.available_height()));
         below.frame(egui::Frame::new().inner_margin(egui::Margin { top: 6, ..Default::default() })).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                details::show(ui, viewer, &scene, selected, &mut state.counts, commands);
+                details::show(ui, (state, scene), selected, &mut own.counts, commands);
             });
         });
     }
     ui.horizontal(|ui| {
-        let settings = &viewer.session.settings.scene;
+        let settings = &commands.settings.scene;
         let is_whole = settings.hidden.is_empty() && settings.isolated.is_empty();
-        search::field(ui, &mut state.search, "nodes, materials, textures", if is_whole { 0.0 } else { 66.0 });
+        search::field(ui, &mut own.search, "nodes, materials, textures", if is_whole { 0.0 } else { 66.0 });
         if !is_whole && ui.small_button("Show all").on_hover_text("Draw everything that is hidden (Alt+H)").clicked() {
             commands.push(Command::ShowAll);
         }
     });
-    if state.follows {
-        state.tree.reveal(&scene, selected);
+    if own.follows {
+        own.tree.reveal(scene, selected);
     }
-    state.tree.update(&scene, &state.search);
-    let rows = state.tree.rows().len();
+    own.tree.update(scene, &own.search);
+    let rows = own.tree.rows().len();
     if rows == 0 {
-        Words::new(&state.search).no_match(ui, "part of the scene");
+        Words::new(&own.search).no_match(ui, "part of the scene");
         return;
     }
     let height = row::HEIGHT + ui.spacing().item_spacing.y;
     let mut area = ScrollArea::vertical().auto_shrink(false);
-    if std::mem::take(&mut state.follows)
-        && let Some(at) = state.tree.place(selected)
+    if std::mem::take(&mut own.follows)
+        && let Some(at) = own.tree.place(selected)
     {
         area = area.vertical_scroll_offset((at as f32 * height - 0.4 * ui.available_height()).max(0.0));
     }
-    let (mut toggled, chosen_part) = (None, state.tree.part_of(selected));
+    let (mut toggled, chosen_part) = (None, own.tree.part_of(selected));
     // Leaves room for the scroll bar also while there is none, so that the switches stay in place.
     let width = ui.available_width() - ui.spacing().scroll.allocated_width();
     area.show_rows(ui, row::HEIGHT, rows, |ui, range| {
         ui.set_max_width(width);
         for at in range {
-            let row = &state.tree.rows()[at];
+            let row = &own.tree.rows()[at];
             let shown = row::State {
-                is_drawn: row.item.is_none_or(|item| state.tree.is_drawn(item)),
+                is_drawn: row.item.is_none_or(|item| own.tree.is_drawn(item)),
                 is_selected: row.item.is_some() && row.item == chosen_part,
-                is_found: !state.search.is_empty(),
+                is_found: !own.search.is_empty(),
             };
             match row::show(ui, row, &shown) {
                 Some(row::Action::Toggle) => toggled = Some(at),
@@ -97,7 +104,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
                 }
                 Some(row::Action::LookThrough(camera)) => commands.push(Command::LookThrough(camera)),
                 Some(row::Action::Show(key, is_shown)) => {
-                    let settings = &mut viewer.session.settings.scene;
+                    let settings = &mut commands.settings.scene;
                     settings.hidden.retain(|name| *name != key);
                     if !is_shown {
                         settings.hidden.push(key);
@@ -108,6 +115,6 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
         }
     });
     if let Some(at) = toggled {
-        state.tree.toggle(at);
+        own.tree.toggle(at);
     }
 }

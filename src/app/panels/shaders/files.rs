@@ -8,7 +8,7 @@ use egui::{Align2, Color32, CursorIcon, Rect, RichText, ScrollArea, Sense, Ui, p
 
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::viewer::Viewer;
+use crate::app::state::State;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, WARNING, body_font, small_font};
@@ -136,22 +136,22 @@ impl Mark {
     }
 }
 
-pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, commands: &mut Vec<Command>) {
-    let Some(shaders) = viewer.session.shaders.clone() else {
+pub(super) fn show(ui: &mut Ui, state: &State, own: &mut FilesState, commands: &mut Vec<Command>) {
+    let Some(shaders) = state.session.shaders.clone() else {
         ui.label(RichText::new("Compiling shaders…").small().color(QUIET));
         return;
     };
-    state.update(&shaders, &viewer.shader.tree);
-    let field = search::field(ui, &mut state.search, "files", 0.0);
+    own.update(&shaders, &state.shader.tree);
+    let field = search::field(ui, &mut own.search, "files", 0.0);
     field.on_hover_text("Files that no stage includes are not listed");
-    let rows = rows(&state.graph, &state.search, &state.closed, &state.unfolded);
+    let rows = rows(&own.graph, &own.search, &own.closed, &own.unfolded);
     if rows.is_empty() {
-        Words::new(&state.search).no_match(ui, "file");
+        Words::new(&own.search).no_match(ui, "file");
     }
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, ROW, rows.len(), |ui, range| {
         for row in &rows[range] {
-            show_row(ui, viewer, &shaders, row, state, commands);
+            show_row(ui, state, &shaders, row, own, commands);
         }
     });
     ui.spacing_mut().item_spacing.y = spacing;
@@ -159,10 +159,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, command
 
 fn show_row(
     ui: &mut Ui,
-    viewer: &Viewer,
+    state: &State,
     shaders: &ShaderSet,
     row: &Row,
-    state: &mut FilesState,
+    own: &mut FilesState,
     commands: &mut Vec<Command>,
 ) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
@@ -176,21 +176,21 @@ fn show_row(
             text(ui, x + INDENT, rect, name, ui.visuals().text_color(), response.hovered());
             let count = pos2(rect.right() - 4.0, rect.center().y);
             ui.painter().text(count, Align2::RIGHT_CENTER, files.to_string(), small_font(), QUIET.color());
-            if response.on_hover_text(format!("{path}/: {files} files")).clicked() && !state.closed.remove(path) {
-                state.closed.insert(path.clone());
+            if response.on_hover_text(format!("{path}/: {files} files")).clicked() && !own.closed.remove(path) {
+                own.closed.insert(path.clone());
             }
         }
         Row::File { path, depth } => {
-            let display = viewer.source().display_path(path);
-            let mark = mark(viewer, state, path, &display);
+            let display = state.source.display_path(path);
+            let mark = mark(state, own, path, &display);
             let x = rect.left() + INDENT * *depth as f32;
-            let is_unfolded = state.unfolded.contains(path);
+            let is_unfolded = own.unfolded.contains(path);
             let fold = Rect::from_min_size(pos2(x, rect.top()), vec2(INDENT, ROW));
             let folds = ui.interact(fold, ui.id().with(("fold", path)), Sense::click());
             spoken::button(&folds, &format!("Includes of {path}"));
             arrow(ui, x, rect, is_unfolded);
-            if folds.on_hover_text("What it includes, and what includes it").clicked() && !state.unfolded.remove(path) {
-                state.unfolded.insert(path.clone());
+            if folds.on_hover_text("What it includes, and what includes it").clicked() && !own.unfolded.remove(path) {
+                own.unfolded.insert(path.clone());
             }
             let name = path.as_str().rsplit('/').next().unwrap_or_default();
             let response = ui.interact(rect.with_min_x(fold.right()), ui.id().with(("file", path)), Sense::click());
@@ -200,18 +200,18 @@ fn show_row(
             if mark != Mark::None {
                 ui.painter().circle_filled(pos2(rect.right() - 8.0, rect.center().y), 3.0, color);
             }
-            open_on_click(response, &display, commands, |ui| about(ui, shaders, &state.graph, path, mark));
+            open_on_click(response, &display, commands, |ui| about(ui, shaders, &own.graph, path, mark));
         }
         Row::Include { path, depth, is_included } => {
-            let display = viewer.source().display_path(path);
+            let display = state.source.display_path(path);
             let x = rect.left() + INDENT * (*depth as f32 + 1.0);
             let response = ui.interact(rect, ui.id().with(("include", row_id(row), rect.top() as i32)), Sense::click());
             let word = if *is_included { "includes" } else { "included by" };
             let words = format!("{word} {path}");
             spoken::button(&response, &words);
             text(ui, x, rect, &words, QUIET.color(), response.hovered());
-            let mark = mark(viewer, state, path, &display);
-            open_on_click(response, &display, commands, |ui| about(ui, shaders, &state.graph, path, mark));
+            let mark = mark(state, own, path, &display);
+            open_on_click(response, &display, commands, |ui| about(ui, shaders, &own.graph, path, mark));
         }
     }
 }
@@ -224,13 +224,13 @@ fn row_id(row: &Row) -> (&str, bool) {
     }
 }
 
-fn mark(viewer: &Viewer, state: &FilesState, path: &TreePath, display: &str) -> Mark {
+fn mark(state: &State, own: &FilesState, path: &TreePath, display: &str) -> Mark {
     let is_error = |d: &crate::shader::Diagnostic| d.severity == Severity::Error && d.file == display;
-    if viewer.session.diagnostics.iter().any(is_error) {
+    if state.session.diagnostics.iter().any(is_error) {
         Mark::Wrong
-    } else if viewer.shader.log.is_waiting(display) {
+    } else if state.shader.log.is_waiting(display) {
         Mark::Waiting
-    } else if state.edited.contains(path) {
+    } else if own.edited.contains(path) {
         Mark::Edited
     } else {
         Mark::None

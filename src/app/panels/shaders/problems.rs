@@ -6,7 +6,7 @@ use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
 use crate::app::command::Command;
 use crate::app::editor::Place;
-use crate::app::viewer::Viewer;
+use crate::app::state::State;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
@@ -40,8 +40,8 @@ fn grouped<'a>(diagnostics: &'a [Diagnostic], words: &Words) -> Vec<Line<'a>> {
     lines.collect()
 }
 
-pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
-    let diagnostics = &viewer.session.diagnostics;
+pub(super) fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let diagnostics = &state.session.diagnostics;
     if diagnostics.is_empty() {
         ui.label(RichText::new("No errors and no warnings").small().color(QUIET));
         return;
@@ -51,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
     if lines.is_empty() {
         words.no_match(ui, "problem");
     }
-    let has_files = viewer.shader.location.is_some();
+    let has_files = state.shader.location.is_some();
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, lines.len(), |ui, range| {
         for line in &lines[range] {
             match line {

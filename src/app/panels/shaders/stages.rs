@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use egui::{Checkbox, Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
+use crate::app::command::Command;
+use crate::app::state::State;
 use crate::app::state::shaders::stages::{StageRow, StageState};
-use crate::app::viewer::Viewer;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{ERROR, GOOD, QUIET, WARNING};
@@ -25,17 +26,17 @@ pub(super) struct StagesState {
     shows_all: bool,
 }
 
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
+pub(super) fn show(ui: &mut Ui, state: &State, own: &mut StagesState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let count = viewer.stages.rows().len();
-        let all = Checkbox::new(&mut state.shows_all, RichText::new(format!("All {count}")).small());
+        let count = state.stages.rows().len();
+        let all = Checkbox::new(&mut own.shows_all, RichText::new(format!("All {count}")).small());
         check_box::show(ui, all).on_hover_text(
             "Also list the stages that the current picture does not use: bakes, other modes, disabled passes",
         );
-        ask(ui, viewer);
+        ask(ui, state, commands);
     });
-    let is_shown = |row: &&StageRow| state.shows_all || row.state <= StageState::Pending;
-    let rows: Vec<&StageRow> = viewer.stages.rows().iter().filter(is_shown).collect();
+    let is_shown = |row: &&StageRow| own.shows_all || row.state <= StageState::Pending;
+    let rows: Vec<&StageRow> = state.stages.rows().iter().filter(is_shown).collect();
     if rows.is_empty() {
         ui.label(RichText::new("No picture yet").small().color(QUIET));
     }
@@ -53,10 +54,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
                     clicked | more.inner
                 }
             };
-            if clicked && !state.open.remove(&row.path) {
-                state.open.insert(row.path.clone());
+            if clicked && !own.open.remove(&row.path) {
+                own.open.insert(row.path.clone());
             }
-            if state.open.contains(&row.path) {
+            if own.open.contains(&row.path) {
                 ui.indent(&row.path, |ui| details(ui, row));
             }
         }
@@ -64,8 +65,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
 }
 
 /// The switch for querying the driver's statistics.
-fn ask(ui: &mut Ui, viewer: &mut Viewer) {
-    let tells = viewer.gpu.tells_statistics();
+fn ask(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let tells = state.tells_statistics;
     let hint = match tells {
         true => {
             "Query the driver's statistics for each pipeline of the picture: registers, instructions, spills, code size \
@@ -77,10 +78,11 @@ fn ask(ui: &mut Ui, viewer: &mut Viewer) {
              SPIR-V word counts below are exact"
         }
     };
-    let asks = Checkbox::new(&mut viewer.shader.asks_driver, RichText::new("Ask the driver").small());
-    let response = ui.add_enabled_ui(tells, |ui| check_box::show(ui, asks)).inner;
+    let mut asks = state.shader.asks_driver;
+    let switch = Checkbox::new(&mut asks, RichText::new("Ask the driver").small());
+    let response = ui.add_enabled_ui(tells, |ui| check_box::show(ui, switch)).inner;
     if response.changed() {
-        viewer.shader.told = None;
+        commands.push(Command::AskDriver(asks));
     }
     response.on_hover_text(hint).on_disabled_hover_text(hint);
 }
@@ -102,8 +104,8 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
     clicked
 }
 
-fn color(state: StageState) -> Color32 {
-    match state {
+fn color(own: StageState) -> Color32 {
+    match own {
         StageState::Failed => ERROR.color(),
         StageState::OnScreen => GOOD.color(),
         StageState::Pending => WARNING.color(),

@@ -3,8 +3,8 @@
 use egui::{Label, RichText, TextWrapMode, Ui};
 
 use crate::app::command::{Command, CompareWith};
-use crate::app::dialog::Dialog;
-use crate::app::drawn::compare::{Compare, Difference};
+use crate::app::state::compare::{Compare, Difference};
+use crate::app::state::dialog::Dialog;
 use crate::app::widgets::search;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, small_mono};
@@ -21,7 +21,7 @@ const SEARCH: f32 = 180.0;
 /// Shows the buttons that begin and end a comparison, and its numbers. A `search` of the versions stands beside them.
 pub(in crate::app::panels) fn show(
     ui: &mut Ui,
-    compare: &mut Compare,
+    compare: &Compare,
     search: Option<&mut String>,
     commands: &mut Vec<Command>,
 ) {
@@ -33,9 +33,10 @@ pub(in crate::app::panels) fn show(
             if stop.on_hover_text("Stop comparing, and show the newest picture alone (Ctrl+K)").clicked() {
                 commands.push(Command::Compare(CompareWith::Nothing));
             }
-            ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
-                "Show the FLIP of each pixel over the picture: black is equal, white is the largest difference",
-            );
+            let hint = "Show the FLIP of each pixel over the picture: black is equal, white is the largest difference";
+            if ui.selectable_label(compare.shows_map, "Difference").on_hover_text(hint).clicked() {
+                commands.push(Command::ToggleDifference);
+            }
             for number in numbers(compare.difference.as_ref()) {
                 ui.label(monospace(number)).on_hover_text(FLIP);
             }

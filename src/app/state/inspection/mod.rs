@@ -42,8 +42,6 @@ impl Page {
 /// The values that are known of the inspected pixel. Nothing is read or measured while its panel is out of sight.
 #[derive(Default)]
 pub(in crate::app) struct Inspection {
-    /// Whether the panel is in sight in this frame.
-    pub(in crate::app) is_visible: bool,
     /// The pixel that the user has clicked.
     pub(in crate::app) pin: Option<[u32; 2]>,
     /// Whether the message that the panel reads pixels was shown.
@@ -71,7 +69,7 @@ impl Inspection {
 
     /// Whether a pixel is pinned, and visible.
     pub(in crate::app) fn is_pinned(&self) -> bool {
-        self.is_visible && self.pin.is_some()
+        self.pin.is_some()
     }
 
     /// Unpins the pixel. Its values are dropped, unless the pixel under the mouse replaces it.

@@ -2,7 +2,6 @@
 //! history of frames and not of time.
 
 mod cost;
-mod memory;
 mod sample;
 
 use std::collections::VecDeque;
@@ -10,7 +9,6 @@ use std::collections::VecDeque;
 use crate::events::Summary;
 use crate::gpu::{DrawCounts, PassTime};
 pub(in crate::app) use cost::Cost;
-pub(in crate::app) use memory::MemoryClock;
 pub(in crate::app) use sample::{CpuTimes, Sample, Shown};
 
 /// Number of frames in the history.

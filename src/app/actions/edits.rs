@@ -1,0 +1,129 @@
+//! Shader edits that the window makes: the watched expression, dragged numbers, and values that become defaults in the files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::time::Instant;
+
+use crate::app::actions::restored::follow_restored;
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::app::state::shaders::edits::{Draft, NO_FOLDER};
+use crate::shader::rewrite::{Edit, applied};
+use crate::shader::source::draft::DraftText;
+use crate::shader::values::is_default;
+use crate::shader::{Change, Expression, ShaderSet};
+use crate::threads::Message;
+use crate::write_back;
+
+/// Tells the worker of another watched expression. It reads the settings.
+pub(in crate::app) fn watch_expression(state: &mut State, engine: &mut Engine) {
+    let expression = &state.session.settings.expression;
+    if state.edits.watched != *expression {
+        state.edits.watched = expression.clone();
+        engine.threads.worker.change(Change::Paths(BTreeSet::new()), Instant::now());
+    }
+}
+
+/// Shows the picture with these numbers in place of those in the file; no edits go back to the file.
+pub(in crate::app) fn draft(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) {
+    let Some(shaders) = &state.session.shaders else { return };
+    let Some(path) = edits.first().map(|edit| edit.path.clone()) else { return end_draft(state, engine) };
+    if let Some(restored) = &state.edits.restored {
+        return state.say(format!("Version {} is shown; go back to the newest one to drag numbers", restored.number));
+    }
+    let line = edits.first().map_or(0, |edit| edit.line);
+    let base = match &state.edits.draft {
+        Some(draft) if draft.is_at(&path, line) => Some(draft.base.clone()),
+        Some(_) => {
+            end_draft(state, engine);
+            None
+        }
+        None => shaders.texts.get(&path).cloned(),
+    };
+    let Some(base) = base else { return };
+    let text = applied(base.as_bytes(), &edits).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+    let Some(text) = text else {
+        return state.say(format!("{path} has changed; choose the number again"));
+    };
+    let texts = BTreeMap::from([(path.clone(), DraftText { base: base.clone(), text: text.into() })]);
+    let source = state.source.with_draft(texts);
+    state.edits.draft = Some(Draft { edits, path: path.clone(), line, base });
+    engine.threads.worker.read_from(source, BTreeSet::from([path]));
+}
+
+/// Goes back to the numbers in the file.
+pub(in crate::app) fn end_draft(state: &mut State, engine: &mut Engine) {
+    if let Some(draft) = state.edits.draft.take() {
+        let source = state.source.without_draft();
+        engine.threads.worker.read_from(source, BTreeSet::from([draft.path]));
+    }
+}
+
+/// Ends the dragging if the file has changed otherwise. Keeps the line of the watched expression. Drops settings whose values have become defaults.
+pub(in crate::app) fn follow_edits(state: &mut State, engine: &mut Engine, shaders: &ShaderSet) {
+    let is_other = |draft: &Draft| shaders.texts.get(&draft.path).is_none_or(|text| !draft.is_of(text));
+    if state.edits.draft.as_ref().is_some_and(is_other) {
+        end_draft(state, engine);
+    }
+    follow_restored(state, engine, shaders);
+    let expression = &mut state.session.settings.expression;
+    let watched = Expression::parse(&expression.at, expression.evaluation).ok();
+    if let Some((of_set, line)) = shaders.watched.as_ref().filter(|(of_set, _)| Some(of_set) == watched.as_ref()) {
+        expression.at = Expression { line: *line, ..of_set.clone() }.to_string();
+        state.edits.watched.clone_from(expression);
+    }
+    let settings = &mut state.session.settings.shader;
+    state.edits.written.retain(|name, value| {
+        let is_written = is_default(shaders, name, value);
+        if is_written && settings.get(name) == Some(value) {
+            settings.remove(name);
+        }
+        !is_written
+    });
+}
+
+/// Writes edits into the files of the tree, on a thread of its own.
+pub(in crate::app) fn write_edits(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) {
+    let Some(root) = state.source.root().map(Path::to_owned) else { return state.say(NO_FOLDER) };
+    let values = &state.session.settings.shader;
+    let names = edits.iter().filter_map(|edit| Some((edit.name.clone(), values.get(&edit.name)?.clone())));
+    state.edits.written.extend(names);
+    engine.threads.wait(move || {
+        let written = write_back::write(&root, &edits);
+        Some(Message::Written(written.map(|()| told(&edits))))
+    });
+}
+
+/// Takes the result of writing.
+pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written: Result<String, String>) {
+    state.waiting.answer_edits(written.as_ref().map(|_| ()).map_err(String::as_str));
+    match written {
+        Ok(text) => {
+            // The file has the dragged numbers now, so nothing is compiled.
+            if state.edits.draft.is_some() {
+                state.versions.keep_draft();
+            }
+            end_draft(state, engine);
+            state.say(text);
+        }
+        Err(message) => {
+            state.edits.written.clear();
+            state.say(message);
+        }
+    }
+}
+
+/// Summarizes the written edits in one line.
+fn told(edits: &[Edit]) -> String {
+    let change = |edit: &Edit| {
+        let new = edit.new.trim_start_matches([' ', '=']);
+        // A number has no name.
+        match edit.name == edit.old() {
+            true => format!("{new} for {} in line {}", edit.old(), edit.line),
+            false => format!("{} = {new}", edit.name),
+        }
+    };
+    let changes: Vec<String> = edits.iter().map(change).collect();
+    let files: BTreeSet<&str> = edits.iter().map(|edit| edit.path.as_str()).collect();
+    format!("Wrote {} to {}", changes.join(", "), files.into_iter().collect::<Vec<_>>().join(", "))
+}

@@ -1,0 +1,52 @@
+//! Opens files: models, shader trees, and any file in the user's editor.
+
+use crate::app::actions::compare::forget_all_references;
+use crate::app::actions::watch::watch_tree;
+use crate::app::editor::{self, Place};
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::scene::LoadOptions;
+use crate::shader::Source;
+use crate::threads::Message;
+use std::path::Path;
+use std::path::PathBuf;
+
+/// Loads a model. The current model stays until the new one is ready.
+pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: Option<PathBuf>) {
+    engine.threads.loader.load(path.clone(), LoadOptions { allow_outside: state.allow_outside });
+    begin_loading(state, path);
+}
+
+/// Notes that the model of `path` is being loaded, and watches the file while it is read.
+pub(in crate::app) fn begin_loading(state: &mut State, path: Option<PathBuf>) {
+    let more = path.iter().filter_map(|path| std::path::absolute(path).ok());
+    state.model.files = state.model.files.iter().cloned().chain(more).collect();
+    state.model.requested = path;
+    state.model.loading = true;
+}
+
+/// Shows the shaders of another tree, once they compile. If there is none, for example because a look names one that is gone, the
+/// present tree stays with its versions.
+pub(in crate::app) fn open_tree(state: &mut State, engine: &mut Engine, path: &Path) {
+    let source = match Source::find(path) {
+        Ok(source) => source,
+        Err(message) => return state.say(message),
+    };
+    state.source = source.clone();
+    state.picture.settled = None;
+    // Versions of another tree must never be written into this one.
+    forget_all_references(state, engine);
+    state.edits.forget_draft();
+    watch_tree(state, engine, &source);
+    state.shader.compiling = true;
+    engine.threads.worker.open_tree(source);
+    engine.find_exercise(&state.source);
+}
+
+/// Opens a file or folder in the user's editor.
+pub(in crate::app) fn edit(state: &mut State, engine: &Engine, place: &Place) {
+    match editor::open(place) {
+        Ok(editor) => engine.threads.wait(|| editor.failure().map(Message::Say)),
+        Err(message) => state.say(message),
+    }
+}

@@ -1,0 +1,11 @@
+//! What commands and messages do to the state and the engine, by topic.
+
+pub(super) mod compare;
+pub(super) mod edits;
+pub(super) mod exercises;
+pub(super) mod files;
+pub(super) mod inspect;
+pub(super) mod restored;
+pub(super) mod select;
+pub(super) mod sessions;
+pub(super) mod watch;

@@ -1,0 +1,75 @@
+//! What draws the other picture of a comparison.
+
+use std::sync::Arc;
+
+use super::last_complete::LastComplete;
+use crate::comparison::{Picture, Still};
+use crate::frame::FrameState;
+use crate::pipeline::PipelineSet;
+use crate::render::BoundFrame;
+use crate::threads::second_tree::SecondTree;
+use crate::threads::worker::Snapshot;
+
+/// What draws the picture that `state.compare.with` names. A version needs nothing else than its pipelines.
+#[derive(Default)]
+pub(in crate::app) enum Compared {
+    #[default]
+    Nothing,
+    Kept(Box<LastComplete>),
+    File(ScaledPicture),
+    Tree(Box<TreePicture>),
+}
+
+/// A picture from a file, and the same scaled to the size of the view.
+pub(in crate::app) struct ScaledPicture {
+    pub(in crate::app) picture: Arc<Picture>,
+    /// The number of the request that has read it.
+    pub(in crate::app) number: u64,
+    /// The newest scaled picture, with the number of the request that made it.
+    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
+    /// [`Self::number`] and the size for which `still` was made, or for which scaling failed.
+    pub(in crate::app) scaled: Option<(u64, (u32, u32))>,
+    /// The number of the scaling that is under way.
+    pub(in crate::app) scaling: Option<u64>,
+}
+
+/// The picture of a second shader tree.
+pub(in crate::app) struct TreePicture {
+    pub(in crate::app) tree: SecondTree,
+    /// The pipelines of its last good shaders.
+    pub(in crate::app) set: Option<Arc<PipelineSet>>,
+    /// Its last frame from the thread, with its own light.
+    pub(in crate::app) like: Option<LastComplete>,
+    /// The frame that the thread was last asked for.
+    pub(in crate::app) asked: Option<LastAsked>,
+}
+
+/// The inputs of a picture that the thread was asked for.
+pub(in crate::app) struct LastAsked {
+    /// A picture without resources.
+    pub(in crate::app) state: Arc<FrameState>,
+    pub(in crate::app) snapshot: Snapshot,
+}
+
+impl LastAsked {
+    /// Whether a frame needs the same resources.
+    pub(in crate::app) fn has_needs_of(&self, state: &FrameState) -> bool {
+        let asked = &*self.state;
+        Arc::ptr_eq(&asked.shaders, &state.shaders)
+            && asked.pipelines == state.pipelines
+            && asked.scene == state.scene
+            && asked.environment == state.environment
+            && asked.tables == state.tables
+            && asked.measured == state.measured
+    }
+}
+
+/// The other picture, as a frame draws it for a comparison.
+pub(in crate::app) struct Reference {
+    /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
+    pub(in crate::app) frame: BoundFrame,
+    /// The picture from a file, with the number of its request.
+    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
+    /// The part of the width that shows it, from the left, 0..1.
+    pub(in crate::app) part: f32,
+}

@@ -1,0 +1,197 @@
+//! The picture to draw: the one that the settings describe once it is complete, until then the last complete one.
+
+use std::sync::Arc;
+
+use crate::app::actions::edits::watch_expression;
+use crate::app::actions::exercises::check_exercise;
+use crate::app::engine::Engine;
+use crate::app::engine::last_complete::{LastComplete, target};
+use crate::app::frames::progress::is_settled;
+use crate::app::state::State;
+use crate::app::state::waits::Waits;
+use crate::events::{Event, emit};
+use crate::frame::{Clock, FrameState};
+use crate::gpu::GpuError;
+use crate::recovery::SessionState;
+use crate::render::{BoundFrame, Missing};
+use crate::settings::Settings;
+use crate::shader::expression;
+use crate::threads::worker::Snapshot;
+
+/// The frame to draw: the one that the settings describe if it is complete, otherwise the last good frame with the current
+/// camera. Requests the missing resources from the threads. `None` before the first shaders. `prepare` allocates the targets;
+/// a frame for which that fails does not count as shown.
+pub(in crate::app) fn next_frame(
+    state: &mut State,
+    engine: &mut Engine,
+    size: (u32, u32),
+    prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
+) -> Result<Option<BoundFrame>, GpuError> {
+    let preview = state.workspace.sight.preview.clone().filter(|_| !engine.recorder.is_safe_mode());
+    let Some(preview) = preview else {
+        return frame_of_settings(state, engine, size, prepare);
+    };
+    // Hover previews are transient: not recorded, and dropped when the pointer leaves.
+    let selected = std::mem::replace(&mut state.session.settings.mode, preview);
+    let frame = frame_of_settings(state, engine, size, prepare);
+    state.session.settings.mode = selected;
+    // Commands that wait for the settings wait until the preview ends.
+    state.picture.shows_settings = false;
+    frame
+}
+
+fn frame_of_settings(
+    state: &mut State,
+    engine: &mut Engine,
+    size: (u32, u32),
+    mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
+) -> Result<Option<BoundFrame>, GpuError> {
+    let is_animated = state.is_animated();
+    let clock = state.playback.next(is_animated, state.reads_keys());
+    let target = target(&engine.gpu, &state.session.settings);
+    let Some(frame_state) = state.session.frame_state(clock, size, target) else { return Ok(None) };
+    follow_settings(state, engine, &frame_state);
+    (state.picture.clock, state.picture.is_complete, state.picture.shows_settings) = (clock, false, false);
+    // The first frame of a model does not wait for its environment.
+    let is_first = engine.shown.as_ref().is_none_or(|shown| shown.scene().is_none());
+    let (frame, missing) = engine.resources.bind(&frame_state, is_first)?;
+    let lacks_nothing = request_missing(state, engine, missing, &frame_state);
+    let is_complete = lacks_nothing && frame_state.shaders.is_complete();
+    state.picture.is_complete = is_complete;
+    if let Some(frame) = frame {
+        prepare(&frame)?;
+        let generation = frame_state.shaders.generation;
+        // A reload is reported first.
+        let settles = is_complete && frame_state.scene.is_some() && state.first_frame.is_none();
+        if settles && state.picture.settled.replace(generation) != Some(generation) {
+            emit(&state.events, &Event::Settled { generation });
+            check_exercise(state, engine);
+        }
+        let shown = LastComplete { settings: state.session.shared_settings(), frame: frame.clone() };
+        state.picture.shown = Some(shown.description());
+        let last = engine.shown.replace(shown);
+        keep_version(state, engine, last);
+        state.picture.shows_settings = lacks_nothing;
+        return Ok(Some(frame));
+    }
+    let interim = engine.shown.as_ref().map(|shown| interim(state, shown, clock, size));
+    interim.iter().try_for_each(prepare)?;
+    Ok(interim)
+}
+
+/// The frame of another mode, drawn beside the selected one. Until its resources are there, it is `last` with the current
+/// camera.
+pub(in crate::app) fn frame_of_mode(
+    state: &mut State,
+    engine: &mut Engine,
+    mode: &str,
+    size: (u32, u32),
+    last: Option<LastComplete>,
+) -> Result<Option<LastComplete>, GpuError> {
+    let selected = std::mem::replace(&mut state.session.settings.mode, mode.to_owned());
+    let frame_state =
+        state.session.frame_state(state.picture.clock, size, target(&engine.gpu, &state.session.settings));
+    let settings = state.session.shared_settings();
+    state.session.settings.mode = selected;
+    let Some(frame_state) = frame_state else { return Ok(last) };
+    let (frame, missing) = engine.resources.bind(&frame_state, false)?;
+    if let Some(frame) = frame {
+        return Ok(Some(LastComplete { settings, frame }));
+    }
+    // The main picture comes first.
+    if state.picture.is_complete
+        && !frame_state.pipelines.needs_pending(&frame_state.shaders)
+        && missing.pipelines
+        && let Some(set) = engine.resources.pipelines()
+    {
+        engine.threads.worker.build(set, &frame_state.pipelines);
+    }
+    Ok(last.map(|last| {
+        let frame = interim(state, &last, state.picture.clock, size);
+        LastComplete { frame, ..last }
+    }))
+}
+
+/// Adds the shaders on screen to the versions if they are new, and keeps the last frame of the previous ones.
+fn keep_version(state: &mut State, engine: &mut Engine, last: Option<LastComplete>) {
+    let generation = state.shown_generation();
+    let has_model = engine.shown.as_ref().is_some_and(|shown| shown.scene().is_some());
+    if let Some(last) = last.filter(|last| last.scene().is_some() && last.frame.state.shaders.generation != generation)
+    {
+        let number = last.frame.state.shaders.generation;
+        if state.versions.get(number).is_some_and(|version| !version.is_cut_short()) {
+            engine.generations.retire(last);
+        }
+    }
+    if let Some(set) = engine.resources.pipelines().filter(|set| has_model && !state.versions.has(&set.shaders)) {
+        let edit = state.first_frame.as_ref().filter(|first| first.generation == generation);
+        let reload = edit.map(|first| first.event.clone()).or_else(|| state.shader.last.clone()).unwrap_or_default();
+        let again = state.edits.restored.as_ref().map(|restored| restored.number);
+        state.versions.add(&set.shaders, reload, again.is_some() || state.edits.draft.as_ref().is_some(), again);
+        engine.generations.add(set, &state.versions);
+    }
+}
+
+/// The last good frame at this size and time. While the model is the same, camera and orbiting lights follow the current
+/// settings, since they need no new resources. Everything else is unchanged.
+pub(in crate::app) fn interim(state: &State, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
+    let same_model = match (shown.scene(), state.session.model()) {
+        (Some(scene), Some(model)) => Arc::ptr_eq(scene.loaded(), model),
+        (scene, model) => scene.is_none() && model.is_none(),
+    };
+    let frame_state = &shown.frame.state;
+    shown.frame.with_state(match same_model {
+        true => frame_state.moved(&shown.settings.placed_as(&state.session.settings), clock, size),
+        false => frame_state.moved(&shown.settings, clock, size),
+    })
+}
+
+/// The number and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open.
+pub(in crate::app) fn missing_thumbnail(state: &State, engine: &Engine, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
+    let newest = state.shown_generation();
+    // The thumbnail of the newest version waits until its lighting is complete.
+    let shown = engine.shown.as_ref().filter(|shown| is_settled(state, engine) && shown.scene().is_some());
+    // Do not use a watched expression as the version's thumbnail.
+    let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
+    let lacks = state.versions.without_thumbnail();
+    if !state.workspace.sight.timeline {
+        return None;
+    }
+    let mut with_picture = lacks.filter_map(|version| {
+        let picture = if version.number == newest { shown } else { engine.generations.picture(version.number) };
+        Some((version.number, picture?))
+    });
+    let (number, picture) = with_picture.next()?;
+    Some((number, interim(state, picture, state.picture.clock, size)))
+}
+
+/// Tells the worker what the next reload is for.
+fn follow_settings(state: &mut State, engine: &mut Engine, frame_state: &FrameState) {
+    let (settings, scene) = (state.session.shared_settings(), frame_state.scene.clone());
+    let suns = state.session.revisions.suns_of(&settings);
+    engine.threads.worker.set_snapshot(Snapshot { settings, scene, target: frame_state.pipelines.target, suns });
+    watch_expression(state, engine);
+}
+
+/// Requests the resources that a state lacks from the threads. Returns whether it is complete.
+fn request_missing(state: &mut State, engine: &mut Engine, missing: Missing, frame_state: &FrameState) -> bool {
+    let Some(set) = engine.resources.pipelines() else { return false };
+    let is_empty = missing.is_empty();
+    state.picture.wait_for(Waits::of(&missing));
+    if missing.pipelines {
+        engine.threads.worker.build(set, &frame_state.pipelines);
+    }
+    engine.threads.baker.bake_tables(set, missing.tables, &engine.resources);
+    engine.threads.baker.bake(set, missing.environment, &engine.resources);
+    engine.threads.baker.read(missing.measured);
+    engine.threads.baker.build_path_tracing(missing.path_tracing);
+    is_empty
+}
+
+/// The settings and the files of the picture on screen, from the current camera.
+pub(in crate::app) fn shown_session_state(state: &State) -> SessionState {
+    let now = &state.session.settings;
+    let shown = state.picture.shown.as_ref().map_or(now, |shown| &*shown.settings);
+    let settings = Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() };
+    SessionState { settings: Arc::new(settings), ..state.session_state() }
+}

@@ -1,0 +1,101 @@
+//! Shows the model that the loader has read, and reads changed files again.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::app::actions::compare::file::on_picture_changed;
+use crate::app::actions::files::load_model;
+use crate::app::actions::select::follow_lights;
+use crate::app::actions::watch::watch_files;
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::app::state::recent::Kind;
+use crate::app::state::selection::Selected;
+use crate::message;
+use crate::scene::BUILT_IN;
+use crate::settings::{LightSource, SceneSettings};
+use crate::threads::Loaded;
+
+pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: Loaded) {
+    if !engine.threads.loader.is_newest(loaded.number) {
+        return;
+    }
+    state.model.loading = false;
+    match loaded.result {
+        Ok(uploaded) => {
+            // The pictures of older versions would keep the old model on the device.
+            engine.generations.drop_pictures();
+            engine.forget_second_picture();
+            let (model, is_other) = (uploaded.model(), loaded.path != state.model.path);
+            for warning in &model.warnings {
+                message::warn(format_args!("{}: {warning}", model.name));
+            }
+            if state.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
+                state.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
+            }
+            // A session that is restored brings its own settings.
+            let is_restored = std::mem::take(&mut state.model.keeps_camera);
+            if is_other && !is_restored {
+                state.frame_model();
+                // They name parts of the model before.
+                state.session.settings.scene = SceneSettings::default();
+                state.session.settings.materials.clear();
+            }
+            let keeps_selection = |before| !is_other && state.selected.is_same(before, model);
+            if !state.session.model().is_some_and(|before| keeps_selection(before)) {
+                state.select(Selected::Nothing);
+            }
+            if !is_restored && (is_other || state.session.model().is_none()) {
+                follow_lights(state, model);
+            }
+            state.model.shows_warnings = true;
+            if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
+                state.recent.remember(Kind::Model, path);
+            }
+            state.model.path = loaded.path;
+            state.model.load_ms = loaded.ms;
+            state.model.files = model.files.as_slice().into();
+            state.session.set_model(model);
+            engine.resources.set_model(&uploaded);
+            let settings = &state.session.settings;
+            let unknown = model.unknown_part(&settings.scene);
+            let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
+            unknown.into_iter().for_each(|problem| state.say(problem));
+        }
+        Err((message, tried)) => {
+            state.model.keeps_camera = false;
+            // Watch the model on screen as well as the files that must be repaired.
+            let on_screen = state.session.model().map(|model| model.files.clone()).unwrap_or_default();
+            state.model.files = on_screen.into_iter().chain(tried).collect();
+            if let Some(path) = &loaded.path {
+                state.recent.forget(Kind::Model, path);
+            }
+            state.waiting.model_failed(&message);
+            state.say(message);
+        }
+    }
+    watch_files(state, engine);
+}
+
+/// Handles changed files of the environment, the measured BRDF or the model.
+pub(in crate::app) fn on_files_changed(state: &mut State, engine: &mut Engine, changed: &BTreeSet<PathBuf>) {
+    let (environment, measured) = (state.session.environment_files(), state.session.measured_files());
+    let is_changed = |files: &[PathBuf]| files.iter().any(|file| changed.contains(file));
+    if is_changed(&environment) {
+        state.session.revisions.environment += 1;
+    }
+    if is_changed(&measured) {
+        state.session.revisions.measured += 1;
+    }
+    on_picture_changed(state, engine, changed);
+    if is_changed(&state.model.files) {
+        let on_screen = state.session.model().is_some_and(|model| is_changed(&model.files));
+        let path = if on_screen && !state.model.loading { &state.model.path } else { &state.model.requested };
+        load_model(state, engine, path.clone());
+    }
+}
+
+/// Whether a path is the name of a built-in model.
+fn is_built_in(path: &Path) -> bool {
+    BUILT_IN.iter().any(|name| Path::new(name) == path)
+}

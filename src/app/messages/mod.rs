@@ -1,0 +1,122 @@
+//! Applies the results of the threads to the state and the engine.
+
+mod bakes;
+mod loaded;
+mod panics;
+pub(super) mod reloads;
+
+use std::path::PathBuf;
+
+use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
+use crate::app::actions::compare::tree::on_second_tree;
+use crate::app::actions::compare::write::on_version_written;
+use crate::app::actions::compare::{compare_with, on_compared};
+use crate::app::actions::edits::on_written;
+use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
+use crate::app::actions::files::open_tree;
+use crate::app::actions::inspect::{on_curves, on_not_finite};
+use crate::app::actions::sessions::show_look;
+use crate::app::actions::watch::watch_files;
+use crate::app::command::{Command, CompareWith, open_as};
+use crate::app::control::on_asked;
+use crate::app::engine::Engine;
+use crate::app::execute::execute;
+use crate::app::messages::bakes::on_bake;
+use crate::app::messages::loaded::{on_files_changed, on_loaded};
+use crate::app::messages::panics::on_panic;
+use crate::app::messages::reloads::{
+    arrange_for, check_names, on_completed, on_reload, remember_tree, show_endless_loop,
+};
+use crate::app::state::State;
+use crate::app::state::dialog::Dialog;
+use crate::threads::Message;
+use crate::threads::WorkerMessage;
+
+pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message: Message) {
+    match message {
+        Message::Worker(WorkerMessage::Built(Err(message))) => {
+            state.waiting.fail(&message);
+            state.say(message);
+        }
+        Message::Worker(WorkerMessage::Built(Ok(()))) => {
+            engine.threads.worker.built();
+            state.stages.invalidate();
+        }
+        Message::Worker(WorkerMessage::DriverTold) => state.stages.invalidate(),
+        // The message wakes the window, which draws the thumbnails.
+        Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
+        Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source, edits }) => {
+            engine.threads.worker.reloaded(edits);
+            state.shader.compiling = false;
+            state.shader.tree = source.name();
+            state.shader.location = source.location().map(Into::into);
+            arrange_for(state, source.is_toy());
+            engine.threads.follow_tree(&source);
+            state.source = source;
+            remember_tree(state, &reload.outcome);
+            on_reload(state, engine, &reload, detect_ms);
+        }
+        Message::Worker(WorkerMessage::Completed(reload)) => on_completed(state, engine, &reload),
+        Message::Loaded(loaded) => on_loaded(state, engine, *loaded),
+        Message::Bake(message) => on_bake(state, engine, message),
+        Message::EndlessLoop(words, diagnostic) => show_endless_loop(state, words, diagnostic.map(|found| *found)),
+        Message::FilesChanged(paths) => on_files_changed(state, engine, &paths),
+        Message::Curves(measured) => on_curves(state, *measured),
+        Message::NotFinite(number, found) => on_not_finite(state, number, *found),
+        Message::Say(text) => state.say(text),
+        Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),
+        Message::Tools(Err(message)) => {
+            state.say(format!("Selections have no outline, and textures cannot be shown: {message}"));
+        }
+        Message::Look(Ok(look)) => {
+            let model = show_look(state, engine, *look);
+            if model.is_none() {
+                check_names(state);
+            }
+            state.waiting.look_read(Ok(model));
+            watch_files(state, engine);
+        }
+        Message::Written(written) => on_written(state, engine, written),
+        Message::Look(Err(message)) => {
+            state.say(message.clone());
+            state.waiting.look_read(Err(message));
+        }
+        Message::Asked(asked) => on_asked(state, engine, *asked),
+        // The screen has taken them.
+        Message::Accessibility(_) | Message::Pictures(_) => {}
+        Message::Captures(number, done, of) => state.captures.progress(number, done, of),
+        Message::Captured(number) => state.captures.ended(number),
+        Message::Compared(number, compared) => on_compared(state, number, compared),
+        Message::PictureRead(number, read) => on_picture_read(state, engine, number, read),
+        Message::PictureFits(number, still) => on_picture_fits(state, engine, number, still),
+        Message::SecondTree(number, message) => on_second_tree(state, engine, number, message),
+        Message::VersionWritten(number, written) => on_version_written(state, engine, number, &written),
+        Message::Chosen(answer) => {
+            let dialog = state.choosing.take();
+            match answer {
+                Ok(path) => path.into_iter().for_each(|path| chosen(state, engine, dialog, path)),
+                Err(message) => state.say(message),
+            }
+        }
+        Message::NewTree(answer) => {
+            state.choosing = None;
+            match answer {
+                Ok(path) => path.into_iter().for_each(|path| open_tree(state, engine, &path)),
+                Err(message) => state.say(message),
+            }
+        }
+        Message::Prepared(exercise, prepared) => on_prepared(state, engine, exercise, prepared),
+        Message::Exercise(folder, exercise) => on_exercise(state, engine, folder, exercise),
+        Message::Checked(checked) => on_checked(state, checked),
+        Message::Panicked(task, text) => on_panic(state, engine, task, &text),
+    }
+}
+
+/// Opens what the user has chosen in a dialog.
+fn chosen(state: &mut State, engine: &mut Engine, dialog: Option<Dialog>, path: PathBuf) {
+    match dialog {
+        Some(Dialog::Picture) => compare_with(state, engine, CompareWith::File(path)),
+        Some(Dialog::SecondTree) => compare_with(state, engine, CompareWith::Tree(path)),
+        _ => execute(state, engine, open_as(path).unwrap_or_else(Command::Say)),
+    }
+}

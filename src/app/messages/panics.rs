@@ -1,0 +1,87 @@
+//! Reports threads that have panicked.
+
+use crate::app::actions::compare::file::on_picture_fits;
+use crate::app::actions::compare::tree::second_tree_failed;
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::app::state::inspection::Shown;
+use crate::threads::TaskKind;
+
+/// Reports that a thread has panicked, and treats its work as failed.
+pub(in crate::app) fn on_panic(state: &mut State, engine: &mut Engine, task: TaskKind, text: &str) {
+    let thread = match task {
+        TaskKind::Worker => {
+            engine.threads.worker.panicked();
+            state.shader.compiling = false;
+            "worker"
+        }
+        TaskKind::Loader(number) => {
+            state.model.loading &= !engine.threads.loader.is_newest(number);
+            "loader"
+        }
+        TaskKind::Baker(number) => {
+            let failed = engine.threads.baker.ended(number);
+            failed.into_iter().for_each(|key| engine.resources.set_environment(key, None));
+            "baker"
+        }
+        TaskKind::Tables(key) => {
+            if engine.threads.baker.has_tables(&key) {
+                engine.resources.set_tables(key, None);
+            }
+            "baker"
+        }
+        TaskKind::MeasuredBrdf(key) => {
+            if engine.threads.baker.has_read(&key) {
+                engine.resources.set_measured(key, None);
+            }
+            "reader"
+        }
+        TaskKind::LoopDiagnosis(words) => {
+            if state.endless_loop.as_ref().is_some_and(|endless| endless.words == words) {
+                state.endless_loop = None;
+            }
+            "explainer"
+        }
+        TaskKind::Checker => {
+            state.learning.checking = None;
+            "checking"
+        }
+        TaskKind::Measurer => {
+            // The same question would panic again, so it stays asked until another one comes.
+            let inspector = &mut state.inspection;
+            if let Some(asked) = &inspector.asked {
+                let now = Err("the measurement failed".to_owned());
+                inspector.curves = Some(Shown { of: asked.material, now, before: None });
+            }
+            "measuring"
+        }
+        TaskKind::Finder => {
+            state.inspection.fail_search();
+            "finding"
+        }
+        TaskKind::Capture(number) => {
+            state.captures.ended(number);
+            "capturing"
+        }
+        TaskKind::ToolPipelines => "toolmaker",
+        TaskKind::SecondTree(number) => {
+            second_tree_failed(state, engine, number);
+            "second tree"
+        }
+        TaskKind::ImageScaling(number) => {
+            on_picture_fits(state, engine, number, Err("the picture could not be scaled".to_owned()));
+            "scaling"
+        }
+        TaskKind::External => {
+            (state.choosing, state.compare.measuring) = (None, None);
+            "waiting"
+        }
+        TaskKind::PathTracing(key) => {
+            if engine.threads.baker.has_path_tracing(&key) {
+                engine.resources.set_path_tracing(key, None);
+            }
+            "tracer"
+        }
+    };
+    state.keep_saying(format!("Specula's {thread} thread failed ({text}). Please report this; your files are safe"));
+}

@@ -1,0 +1,83 @@
+//! Starts the window's work: its stores as the last window left them, the threads, and the first load.
+
+use std::sync::Arc;
+
+use super::actions::compare::compare_at_start;
+use super::actions::files::begin_loading;
+use super::actions::sessions::report_loss;
+use super::actions::watch::watch_tree;
+use super::engine::compared::Compared;
+use super::engine::generations::Generations;
+use super::engine::last_complete::target;
+use super::engine::{Engine, ToolsState};
+use super::options::{AppOptions, Early};
+use super::state::State;
+use super::state::exercise::Learning;
+use super::state::hint::Hint;
+use super::state::last_session::LastSessions;
+use super::state::model::ModelStatus;
+use super::state::recent::Recent;
+use crate::gpu::{Gpu, GpuError, SetLayouts};
+use crate::render::Resources;
+use crate::threads::worker::{Snapshot, Worker};
+use crate::threads::{MessageSender, Threads};
+
+/// Starts the threads, and the first load.
+///
+/// # Errors
+/// No memory on the device.
+pub(super) fn start(
+    gpu: &Arc<Gpu>,
+    layouts: &Arc<SetLayouts>,
+    options: AppOptions,
+    early: Early,
+    sender: &MessageSender,
+) -> Result<(State, Engine), GpuError> {
+    let (source, recorder) = (options.source, options.recorder);
+    let mut state = State {
+        model: ModelStatus { path: options.model.clone(), ..Default::default() },
+        events: early.events,
+        start: options.start,
+        recent: Recent::restored(),
+        last_sessions: LastSessions::restored(),
+        hint: Hint::restored(),
+        learning: Learning::restored(),
+        follows_lights: options.follows_lights,
+        allow_outside: options.allow_outside,
+        offers_session: options.plain.is_some(),
+        plain: options.plain,
+        device: format!("{} · Vulkan {}", gpu.info().name, gpu.info().api),
+        tells_statistics: gpu.tells_statistics(),
+        ..State::new(options.settings, source.clone())
+    };
+    let session = &state.session;
+    let lights = &session.settings.lights;
+    let resources = Resources::new(gpu, layouts, lights.ambient_color.map(|c| c * lights.ambient_strength))?;
+    let snapshot = Snapshot {
+        settings: session.shared_settings(),
+        scene: None,
+        target: target(gpu, &session.settings),
+        suns: session.revisions.suns_of(&session.settings),
+    };
+    let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, sender);
+    let threads = Threads::start((gpu, layouts), &options.compiler, worker, early.watcher, sender);
+    let mut engine = Engine {
+        tools: ToolsState::default(),
+        gpu: gpu.clone(),
+        resources,
+        compared: Compared::default(),
+        opening_tree: None,
+        threads,
+        recorder,
+        shown: None,
+        generations: Generations::default(),
+        compiler: options.compiler,
+    };
+    watch_tree(&mut state, &mut engine, &source);
+    engine.find_exercise(&source);
+    engine.threads.loader.upload(early.reading);
+    begin_loading(&mut state, options.model);
+    report_loss(&mut state, &engine);
+    compare_at_start(&mut state, &mut engine, options.compare);
+    Ok((state, engine))
+}

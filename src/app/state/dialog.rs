@@ -1,0 +1,16 @@
+//! The dialogs that let the user choose a file or a folder.
+
+/// The dialog to show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Dialog {
+    /// A model, an environment, a measured BRDF, or a single shader.
+    File,
+    /// A folder with a shader tree.
+    Tree,
+    /// A folder to write the shaders to.
+    New,
+    /// A picture to compare with.
+    Picture,
+    /// A folder with a shader tree to compare with.
+    SecondTree,
+}

@@ -1,0 +1,49 @@
+//! What the picture on screen shows. The engine has the frame itself.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::waits::Waits;
+use crate::frame::{Clock, FrameState};
+use crate::settings::Settings;
+
+/// The contents of a complete frame.
+#[derive(Clone)]
+pub(in crate::app) struct ShownPicture {
+    pub(in crate::app) state: Arc<FrameState>,
+    pub(in crate::app) settings: Arc<Settings>,
+    /// Whether a shader of it reads the time or what it drew before.
+    pub(in crate::app) is_animated: bool,
+    /// Whether a shader of it reads keys.
+    pub(in crate::app) reads_keys: bool,
+}
+
+/// The picture on screen, and what it lacks of the settings.
+#[derive(Default)]
+pub(in crate::app) struct Picture {
+    /// The last complete frame: the one that the engine draws again until the next one is complete.
+    pub(in crate::app) shown: Option<ShownPicture>,
+    /// The time in the last frame.
+    pub(in crate::app) clock: Clock,
+    /// Whether nothing was missing for the last frame.
+    pub(in crate::app) is_complete: bool,
+    /// Whether the last frame showed the settings, and lacked nothing but stages that it does not need.
+    pub(in crate::app) shows_settings: bool,
+    /// The shader generation that was last shown with all of its stages and light.
+    pub(in crate::app) settled: Option<u64>,
+    /// The work that the picture waits for, and since when; `None` when it has everything.
+    waits: Option<(Waits, Instant)>,
+}
+
+impl Picture {
+    /// Notes what the picture waits for. The time counts from the first frame that waits for it.
+    pub(in crate::app) fn wait_for(&mut self, waits: Option<Waits>) {
+        let since = self.waits.filter(|(before, _)| Some(*before) == waits).map(|(_, since)| since);
+        self.waits = waits.map(|waits| (waits, since.unwrap_or_else(Instant::now)));
+    }
+
+    /// What the picture waits for, and for how long.
+    pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
+        self.waits.map(|(waits, since)| (waits, since.elapsed()))
+    }
+}
