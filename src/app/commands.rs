@@ -1,6 +1,7 @@
 //! What panels give back in a frame.
 
-use super::command::Command;
+use super::command::settings::change;
+use super::command::spec::Command;
 use super::state::workspace::Sight;
 use crate::settings::Settings;
 
@@ -24,7 +25,8 @@ impl Commands {
     /// The commands, that of changed settings first, and what the panels show.
     pub(super) fn finish(mut self, before: &Settings) -> (Vec<Command>, Sight) {
         if self.settings != *before {
-            self.list.insert(0, Command::Settings(Box::new(self.settings)));
+            let settings = self.settings;
+            self.list.insert(0, change("settings", move |old| old.clone_from(&settings)));
         }
         (self.list, self.sight)
     }

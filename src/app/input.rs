@@ -1,20 +1,20 @@
 //! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer. While the picture reads keys,
 //! those that type a character go to its shaders instead.
 
-mod keyboard;
+pub(super) mod keyboard;
 
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 
-use super::command::Command;
 use super::mouse::Mouse;
 use super::screen::Screen;
 use crate::app::actions::compare::hold_reference;
 use crate::app::actions::select::focus;
+use crate::app::command::execute;
+use crate::app::command::scene::CLICK;
 use crate::app::engine::Engine;
-use crate::app::execute::execute;
 use crate::app::state::State;
 use crate::frame::BEYOND;
 use crate::scene::CameraController;
@@ -132,7 +132,7 @@ fn on_left_button(state: &mut State, engine: &mut Engine, screen: &mut Screen, p
         return true;
     }
     let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) else { return false };
-    execute(state, engine, Command::Pick([x, y]));
+    execute(state, engine, CLICK.with([x, y]));
     true
 }
 

@@ -69,11 +69,6 @@ const FUNCTIONS: [KeyCode; 12] = [
     KeyCode::F12,
 ];
 
-/// The digit of a key in the row above the letters.
-pub(super) fn digit(key: KeyCode) -> Option<u32> {
-    DIGITS.iter().zip(0..).find_map(|(other, digit)| (*other == key).then_some(digit))
-}
-
 /// The number of a key in JavaScript's `keyCode`, by its position on a US keyboard.
 pub(super) fn number(key: KeyCode) -> Option<u8> {
     let rows: [(&[KeyCode], u8); 4] = [(&LETTERS, b'A'), (&DIGITS, b'0'), (&NUMPAD, 96), (&FUNCTIONS, 112)];

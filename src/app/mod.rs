@@ -11,7 +11,6 @@ mod control;
 mod dialog;
 mod editor;
 mod engine;
-mod execute;
 mod frames;
 mod gallery;
 mod input;
@@ -49,13 +48,13 @@ use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
 use engine::Engine;
-use execute::open_path;
 use messages::on_message;
 use options::Early;
 use screen::{Next, Screen};
 use start::start;
 use state::State;
 
+pub use command::registry::{Described, described};
 pub use options::{AppOptions, OtherPicture};
 pub use state::last_session::session_to_restore;
 
@@ -268,7 +267,10 @@ impl App {
                 open.screen.is_covered = is_covered;
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open_path(&mut open.state, &mut open.engine, path),
+            WindowEvent::DroppedFile(path) => {
+                let dropped = command::file::dropped(&open.state, path);
+                command::execute(&mut open.state, &mut open.engine, dropped);
+            }
             WindowEvent::RedrawRequested => {
                 let drawn = open.screen.draw(&open.window, &mut open.state, &mut open.engine);
                 match drawn {

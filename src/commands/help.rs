@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Command;
-use specula::control::{COMMANDS, Described};
+use specula::app::{Described, described};
 use specula::message::{nearest, print_output};
 use specula::scene::BUILT_IN;
 use specula::settings::{Factor, Setting, catalog, factor_path};
@@ -111,7 +111,7 @@ fn print_commands() {
         "Each is answered by a line: {{\"event\": \"done\", \"id\", \"command\", \"result\"}} or \"error\" with a \"message\". `id` is whatever you send."
     );
     out!("A field with a ? may be left out.\n");
-    for Described { command, takes, doc } in COMMANDS {
+    for Described { command, takes, doc } in described() {
         let fields = if takes.is_empty() { String::new() } else { format!(", {takes}") };
         out!("{{\"command\": \"{command}\"{fields}}}\n    {doc}");
     }

@@ -1,39 +1,36 @@
-//! Commands from outside, as JSON lines on stdin or on a local socket, and the lines that answer them. `crate::app::control` carries
-//! them out; this module knows neither window nor device.
+//! Commands from outside, as JSON lines on stdin or on a local socket, and the lines that answer them. `crate::app::command` carries
+//! them out; this module knows neither window nor device, nor the commands.
 //!
-//! A thread for each input reads lines, parses them and sends a request with its `Reply`; the window's thread only
-//! executes. A `Reply` is answered exactly once, also when it is dropped. A client's lines are written by a thread of
+//! A thread for each input reads lines and sends the name and the fields of a command with its `Reply` to the window's thread. A `Reply` is answered exactly once, also when it is dropped. A client's lines are written by a thread of
 //! its own; 16 MiB unread end a client of the socket, and cost stdout lines. A client may have 64 commands open; its
 //! next line is read when one is answered, so a flood fills a pipe and not the memory. All events of a window go
 //! through these threads, so a reader that does not read never stops it. The supervisor forwards its stdin to the
 //! child, and to the next child after a loss.
 
 mod client;
-mod described;
-mod fields;
+mod line;
 mod reader;
 mod reply;
-mod request;
 mod socket;
-mod values;
 
 use std::io::Read;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
+use serde_json::{Map, Value};
 
 pub use client::{Client, Clients};
-pub use described::{COMMANDS, Described};
-pub(crate) use fields::{Camera, Capture, Compare, Numbers, Playback, Probe, Run, Sheet, Timeline, Turntable};
+pub(crate) use line::kind;
 pub(crate) use reply::Reply;
-pub(crate) use request::{Open, Request, VersionsRequest};
 pub use socket::{Socket, remove_sockets, socket_path};
 
 use crate::message::warn;
 
 /// A command, and the client that waits for its answer.
 pub(crate) struct Asked {
-    pub(crate) request: Request,
+    /// Its name, which may be unknown.
+    pub(crate) command: String,
+    pub(crate) fields: Map<String, Value>,
     pub(crate) reply: Reply,
 }
 

@@ -1,11 +1,11 @@
-//! Reads commands, a line each. What is no command is answered with what is wrong, and changes nothing.
+//! Reads commands, a line each. A line that names no command is answered here.
 
 use std::io::{BufRead as _, BufReader, Read};
 
 use crossbeam_channel::Sender;
 use serde_json::Value;
 
-use super::request::{Parsed, parse};
+use super::line::{Parsed, parse};
 use super::{Asked, Client, Reply};
 
 /// Most bytes of a command.
@@ -31,11 +31,11 @@ pub(super) fn read(input: impl Read, client: &Client, sender: &Sender<Asked>) {
                 continue;
             }
         };
-        let Parsed { id, command, request } = parse(&bytes);
-        let reply = Reply::new(client, id, command);
-        match request {
+        let Parsed { id, command, fields } = parse(&bytes);
+        let reply = Reply::new(client, id, command.clone());
+        match fields {
             // After the window has closed, the reply says so.
-            Ok(request) => drop(sender.send(Asked { request, reply })),
+            Ok(fields) => drop(sender.send(Asked { command, fields, reply })),
             Err(message) => reply.error(message),
         }
     }

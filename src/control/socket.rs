@@ -5,6 +5,8 @@ use std::collections::VecDeque;
 use std::io;
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
+use std::sync::atomic::{AtomicUsize, Ordering};
+#[cfg(unix)]
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crossbeam_channel::Sender;
@@ -131,10 +133,10 @@ impl Socket {
     /// Accepts clients on a thread. Each gets the events, and has a thread that reads its commands.
     pub(super) fn accept(&self, clients: Clients, sender: Sender<Asked>) {
         let Ok(listener) = self.listener.try_clone() else { return };
-        let ended = Ended::default();
+        let connected = Arc::<Connected>::default();
         let work = move || {
             for stream in listener.incoming() {
-                match stream.and_then(|stream| connect(&stream, &clients, &ended, &sender)) {
+                match stream.and_then(|stream| connect(stream, &clients, &connected, &sender)) {
                     Ok(()) => {}
                     Err(error) => {
                         tracing::debug!("a client of the socket was not accepted: {error}");
@@ -150,22 +152,36 @@ impl Socket {
     }
 }
 
+/// Most clients that may send commands at a time. Each has two threads.
+#[cfg(unix)]
+const MOST_CLIENTS: usize = 64;
 /// Most clients that stay connected after the end of their commands.
 #[cfg(unix)]
 const MOST_ENDED: usize = 16;
 
-/// The clients that have ended their commands, the oldest first.
+/// The clients of a socket.
 #[cfg(unix)]
-type Ended = Arc<Mutex<VecDeque<super::Client>>>;
+#[derive(Default)]
+struct Connected {
+    /// Number of those that may send commands.
+    sending: AtomicUsize,
+    /// Those that have ended their commands, the oldest first.
+    ended: Mutex<VecDeque<super::Client>>,
+}
 
 #[cfg(unix)]
 fn connect(
-    stream: &std::os::unix::net::UnixStream,
+    mut stream: std::os::unix::net::UnixStream,
     clients: &Clients,
-    ended: &Ended,
+    connected: &Arc<Connected>,
     sender: &Sender<Asked>,
 ) -> io::Result<()> {
     use super::{Client, reader};
+    if connected.sending.load(Ordering::Relaxed) >= MOST_CLIENTS {
+        let message = format!("{MOST_CLIENTS} clients are connected already; connect again when one of them has ended");
+        let line = serde_json::json!({ "event": "error", "id": null, "command": "", "message": message });
+        return io::Write::write_all(&mut stream, format!("{line}\n").as_bytes());
+    }
     let (input, output, line) = (stream.try_clone()?, stream.try_clone()?, stream.try_clone()?);
     let hang_up = move || drop(line.shutdown(std::net::Shutdown::Both));
     let client = Client::start(output, Some(Box::new(hang_up)));
@@ -173,10 +189,12 @@ fn connect(
     let sender = sender.clone();
     // A client may end its commands and continue to read events, so the end of its input does not close it. Whether it still
     // reads is known only when a line is written to it, so only the newest of these clients stay open.
-    let ended = ended.clone();
+    connected.sending.fetch_add(1, Ordering::Relaxed);
+    let here = connected.clone();
     let work = move || {
         reader::read(input, &client, &sender);
-        let mut ended = ended.lock().unwrap_or_else(PoisonError::into_inner);
+        here.sending.fetch_sub(1, Ordering::Relaxed);
+        let mut ended = here.ended.lock().unwrap_or_else(PoisonError::into_inner);
         ended.push_back(client);
         if ended.len() > MOST_ENDED
             && let Some(oldest) = ended.pop_front()
@@ -184,7 +202,11 @@ fn connect(
             oldest.close();
         }
     };
-    std::thread::Builder::new().name("specula-commands".to_owned()).spawn(work).map(|_| ())
+    let started = std::thread::Builder::new().name("specula-commands".to_owned()).spawn(work);
+    if started.is_err() {
+        connected.sending.fetch_sub(1, Ordering::Relaxed);
+    }
+    started.map(|_| ())
 }
 
 #[cfg(not(unix))]
@@ -275,6 +297,27 @@ mod tests {
         std::fs::write(&path, "precious").unwrap();
         drop(third);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
+    }
+
+    #[test]
+    fn one_client_too_many_is_told_so_and_the_others_are_served() {
+        use std::io::BufRead as _;
+        let folder = private();
+        let path = folder.path().join("s.sock");
+        let (socket, clients, (sender, asked)) =
+            (Socket::bind(path.clone()).unwrap(), Clients::default(), crossbeam_channel::unbounded());
+        socket.accept(clients.clone(), sender);
+        let connect = || std::os::unix::net::UnixStream::connect(&path).unwrap();
+        let line_of = |stream| std::io::BufReader::new(stream).lines().next().unwrap().unwrap();
+        let served: Vec<_> = (0..MOST_CLIENTS).map(|_| connect()).collect();
+        let line = line_of(connect());
+        assert!(line.contains("64 clients are connected already"), "{line}");
+        clients.send("event");
+        for mut stream in served {
+            io::Write::write_all(&mut stream, b"{\"command\": \"modes\"}\n").unwrap();
+            assert_eq!(asked.recv().unwrap().command, "modes");
+            assert_eq!(line_of(stream), "event");
+        }
     }
 
     #[test]

@@ -14,7 +14,6 @@ use std::sync::Arc;
 
 use crate::app::actions::compare::file::open_picture;
 use crate::app::actions::compare::tree::open_second_tree;
-use crate::app::command::CompareWith;
 use crate::app::engine::Engine;
 use crate::app::engine::compared::Compared;
 use crate::app::engine::generations::Generations;
@@ -48,33 +47,28 @@ pub(in crate::app) fn on_compared(state: &mut State, number: u64, compared: Resu
 
 /// Begins the comparison that the command line asks for.
 pub(in crate::app) fn compare_at_start(state: &mut State, engine: &mut Engine, with: Option<OtherPicture>) {
-    let with = with.map(|with| match with {
-        OtherPicture::File(path) => CompareWith::File(path),
-        OtherPicture::Tree(path) => CompareWith::Tree(path),
-    });
-    with.into_iter().for_each(|with| compare_with(state, engine, with));
+    match with {
+        Some(OtherPicture::File(path)) => open_picture(state, engine, &path),
+        Some(OtherPicture::Tree(path)) => {
+            open_second_tree(state, engine, &path).unwrap_or_else(|message| state.say(message));
+        }
+        None => {}
+    }
 }
 
-/// Chooses the other picture. The present one stays until the other is there.
-pub(in crate::app) fn compare_with(state: &mut State, engine: &mut Engine, with: CompareWith) {
-    let with = match with {
-        CompareWith::File(path) => return open_picture(state, engine, &path),
-        CompareWith::Tree(path) => {
-            return open_second_tree(state, engine, &path).unwrap_or_else(|message| state.say(message));
-        }
-        CompareWith::Nothing => None,
-        CompareWith::Version(number) => Some((With::Version(number), Compared::Nothing)),
-        CompareWith::ThisPicture => {
-            let shown = state.picture.shown.clone().zip(engine.shown.clone());
-            let is_whole = !state.is_cut_short();
-            let Some((shown, drawn)) = shown.filter(|(_, drawn)| is_whole && drawn.scene().is_some()) else {
-                return state.say("There is no complete picture to keep");
-            };
-            let restored = state.edits.restored.as_ref().map(|restored| restored.number);
-            let number = restored.unwrap_or_else(|| state.shown_generation());
-            Some((With::Kept(Box::new(shown), number), Compared::Kept(Box::new(drawn))))
-        }
-    };
+/// The picture on screen as the other side of a comparison, if it is complete.
+pub(in crate::app) fn this_picture(state: &State, engine: &Engine) -> Option<(With, Compared)> {
+    let (shown, drawn) = state.picture.shown.clone().zip(engine.shown.clone())?;
+    if state.is_cut_short() || drawn.scene().is_none() {
+        return None;
+    }
+    let restored = state.edits.restored.as_ref().map(|restored| restored.number);
+    let number = restored.unwrap_or_else(|| state.shown_generation());
+    Some((With::Kept(Box::new(shown), number), Compared::Kept(Box::new(drawn))))
+}
+
+/// Compares with a picture that is there; `None` ends the comparison.
+pub(in crate::app) fn compare_with(state: &mut State, engine: &mut Engine, with: Option<(With, Compared)>) {
     (state.compare.opening, engine.opening_tree) = (None, None);
     compare(state, engine, with);
     state.waiting.comparison_failed(REPLACED);

@@ -78,7 +78,7 @@ pub(in crate::app) fn on_prepared(
     }
     state.session.settings = settings;
     state.select(Selected::Nothing);
-    open_tree(state, engine, &folder);
+    open_tree(state, engine, &folder).unwrap_or_else(|message| state.say(message));
     let model = PathBuf::from(&exercise.model);
     let is_default = exercise.model == crate::scene::BUILT_IN[0] && state.model.requested.is_none();
     if state.model.requested.as_ref() != Some(&model) && !is_default {
@@ -146,7 +146,7 @@ fn edit_exercise(state: &mut State, engine: &mut Engine, exercise: &Exercise) {
     let text = state.session.shaders.as_ref().and_then(|shaders| shaders.texts.get(&path));
     let line = text.and_then(|text| exercise.line_to_open(text));
     let file = state.learning.folder.join(path.as_str());
-    edit(state, engine, &Place { file, line, column: None });
+    edit(engine, &Place { file, line, column: None }).unwrap_or_else(|message| state.say(message));
 }
 
 /// Writes files of the exercise, on a thread of its own.

@@ -6,10 +6,11 @@ use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::scene::LoadOptions;
-use crate::shader::Source;
+use crate::shader::{Change, Source};
 use crate::threads::Message;
 use std::path::Path;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Loads a model. The current model stays until the new one is ready.
 pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: Option<PathBuf>) {
@@ -25,13 +26,19 @@ pub(in crate::app) fn begin_loading(state: &mut State, path: Option<PathBuf>) {
     state.model.loading = true;
 }
 
-/// Shows the shaders of another tree, once they compile. If there is none, for example because a look names one that is gone, the
-/// present tree stays with its versions.
-pub(in crate::app) fn open_tree(state: &mut State, engine: &mut Engine, path: &Path) {
-    let source = match Source::find(path) {
-        Ok(source) => source,
-        Err(message) => return state.say(message),
-    };
+/// Compiles everything again. A build that failed, for example without memory, is tried again.
+pub(in crate::app) fn reload(state: &mut State, engine: &mut Engine) {
+    engine.threads.worker.built();
+    state.shader.compiling = true;
+    engine.threads.worker.change(Change::All, Instant::now());
+}
+
+/// Shows the shaders of another tree, once they compile.
+///
+/// # Errors
+/// A message: there is no tree, for example because a look names one that is gone. The present tree stays with its versions.
+pub(in crate::app) fn open_tree(state: &mut State, engine: &mut Engine, path: &Path) -> Result<(), String> {
+    let source = Source::find(path)?;
     state.source = source.clone();
     state.picture.settled = None;
     // Versions of another tree must never be written into this one.
@@ -41,12 +48,15 @@ pub(in crate::app) fn open_tree(state: &mut State, engine: &mut Engine, path: &P
     state.shader.compiling = true;
     engine.threads.worker.open_tree(source);
     engine.find_exercise(&state.source);
+    Ok(())
 }
 
 /// Opens a file or folder in the user's editor.
-pub(in crate::app) fn edit(state: &mut State, engine: &Engine, place: &Place) {
-    match editor::open(place) {
-        Ok(editor) => engine.threads.wait(|| editor.failure().map(Message::Say)),
-        Err(message) => state.say(message),
-    }
+///
+/// # Errors
+/// A message: there is no editor.
+pub(in crate::app) fn edit(engine: &Engine, place: &Place) -> Result<(), String> {
+    let editor = editor::open(place)?;
+    engine.threads.wait(|| editor.failure().map(Message::Say));
+    Ok(())
 }

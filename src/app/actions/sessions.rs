@@ -54,7 +54,7 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
 fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model, tree }: SessionState) {
     let now = state.session_state();
     if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
-        open_tree(state, engine, &full_path(&tree));
+        open_tree(state, engine, &full_path(&tree)).unwrap_or_else(|message| state.say(message));
     }
     state.session.settings = Arc::unwrap_or_clone(settings);
     if is_other(model.as_deref(), now.model.as_deref()) {

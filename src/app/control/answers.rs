@@ -1,16 +1,45 @@
-//! Answers commands from outside once the last frame has done them.
+//! Answers commands, at once or when the last frame has done them.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::captures::begin_capture;
-use super::compare::compare_json;
-use super::requests::short;
 use crate::app::engine::Engine;
 use crate::app::frames::progress::is_settled;
 use crate::app::state::State;
-use crate::app::state::waiting::{Shot, Until};
+use crate::app::state::waiting::{self, Shot};
 use crate::control::Reply;
 use crate::shader::Diagnostic;
+use crate::threads::Message;
+
+type Until = waiting::Until<State>;
+
+/// Answers a command from outside once it is done.
+pub(in crate::app) fn answer_when(state: &mut State, reply: Reply, outcome: Result<Until, String>) {
+    match outcome {
+        Ok(Until::Now(result)) => reply.done(result),
+        Ok(until) => state.waiting.push(reply, until),
+        Err(message) => reply.error(message),
+    }
+}
+
+/// Tells the user why a command of keys or panels was refused, or which file it has written. The window tells of all else by itself.
+pub(in crate::app) fn tell_when(state: &mut State, engine: &Engine, outcome: Result<Until, String>) {
+    match outcome {
+        Err(message) => state.say(message),
+        Ok(until) if until.is_capture() => {
+            let sender = engine.threads.sender();
+            let reply = Reply::to_window(move |result| {
+                let text = match result {
+                    Ok(result) => result["file"].as_str().map(|file| format!("wrote {file}")),
+                    Err(message) => Some(message),
+                };
+                text.into_iter().for_each(|text| sender.send(Message::Say(text)));
+            });
+            state.waiting.push(reply, until);
+        }
+        Ok(_) => {}
+    }
+}
 
 /// Answers the commands that the last frame has done.
 pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
@@ -20,19 +49,20 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
     let settled = is_settled(state, engine);
     for (reply, until) in state.waiting.take() {
         match until {
-            Until::Shown if settled => reply.done(Value::Null),
-            Until::Camera if settled => reply.done(camera_json(state)),
-            Until::Grid if settled => reply.done(json!({ "modes": state.grid.modes() })),
-            Until::Compared if settled && state.compare.is_drawn() => reply.done(compare_json(state)),
+            Until::Settled(result) if settled => reply.done(result(state)),
+            Until::Compared(result) if settled && state.compare.is_drawn() => reply.done(result(state)),
             Until::Picture(job) if settled => begin_capture(state, engine, reply, job),
             Until::Reloaded if settled || (state.has_errors() && !engine.threads.worker.is_compiling()) => {
-                reloaded(state, reply);
+                match state.has_errors() {
+                    true => without_picture(state, reply),
+                    false => reply.done(json!({ "generation": state.shown_generation() })),
+                }
             }
             Until::Model(path) if !state.model.loading => match state.model.is_file(&path) {
-                true => state.waiting.push(reply, Until::Shown),
+                true => state.waiting.push(reply, Until::SHOWN),
                 false => reply.error(format!("{} was not loaded", path.display())),
             },
-            Until::Shown | Until::Camera | Until::Grid | Until::Picture(_) | Until::Screen(_) | Until::Window(_)
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Window(_)
                 if never_shows(state, engine) =>
             {
                 without_picture(state, reply);
@@ -65,26 +95,9 @@ fn never_shows(state: &State, engine: &Engine) -> bool {
     state.session.shaders.is_none() && !engine.threads.worker.is_compiling() && state.has_errors()
 }
 
-/// Answers a reload.
-fn reloaded(state: &State, reply: Reply) {
-    if state.has_errors() {
-        return without_picture(state, reply);
-    }
-    reply.done(json!({ "generation": state.shown_generation() }));
-}
-
 /// Answers with the errors of the shaders.
 fn without_picture(state: &State, reply: Reply) {
     let errors: Vec<&Diagnostic> = state.errors().collect();
     let message = errors.first().map_or_else(|| "there is no picture".to_owned(), |first| first.one_line());
     reply.error_with(message, json!({ "diagnostics": errors }));
-}
-
-/// The camera of the picture.
-fn camera_json(state: &State) -> Value {
-    state.shown().map_or(Value::Null, |frame_state| {
-        let camera = &frame_state.camera;
-        let (eye, target) = (short(camera.eye.to_array()), short(camera.target.to_array()));
-        json!({ "eye": eye, "target": target, "fovy": short(camera.fovy_rad.to_degrees()) })
-    })
 }

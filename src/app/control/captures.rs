@@ -6,16 +6,15 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use super::files::write_capture;
-use super::requests::{path_text, short};
+use super::text::{path_text, short};
 use crate::app::engine::Engine;
 use crate::app::frames::reference::version_pictures;
 use crate::app::state::State;
 use crate::app::state::captures::Job;
 use crate::capture::{
-    Animation, CaptureError, OffscreenCapture, Renderer as _, SheetPlan, Turn, Turntable, VersionPicture,
-    check_animation, modes_of,
+    Animation, CaptureError, OffscreenCapture, Renderer as _, SheetPlan, Turntable, VersionPicture, modes_of,
 };
-use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
+use crate::control::Reply;
 use crate::headless::HeadlessError;
 use crate::picture;
 use crate::recovery::SessionState;
@@ -25,48 +24,7 @@ use crate::threads::Message;
 
 /// Time between two reports of progress.
 const REPORT: Duration = Duration::from_millis(100);
-/// Size of a picture of a sheet, pixels.
-const TILE: [u32; 2] = [320, 180];
-/// Frames of a turn, and frames a second.
-const FRAMES: u32 = 75;
-const FPS: f32 = 25.0;
-/// Versions a second.
-const VERSIONS_PER_S: f32 = 1.5;
-
 impl Job {
-    pub(super) fn sheet(fields: Sheet) -> Result<Self, String> {
-        let names = match fields.modes {
-            None => vec!["modes".to_owned()],
-            Some(Value::String(name)) => vec![name],
-            Some(Value::Array(list)) => {
-                let text = |name: &Value| name.as_str().map(str::to_owned);
-                list.iter().map(text).collect::<Option<_>>().ok_or("`modes` takes names of modes")?
-            }
-            Some(other) => {
-                return Err(format!("`modes` cannot be {other}; it takes \"modes\", \"all\" or names of modes"));
-            }
-        };
-        picture::check_path(&fields.file)?;
-        let size = fields.size.unwrap_or(TILE).into();
-        Ok(Self::Sheet { file: fields.file, names, size, columns: fields.columns })
-    }
-
-    pub(super) fn turntable(fields: TurntableFields) -> Result<Self, String> {
-        let (fps, frames) = (fields.fps.unwrap_or(FPS), fields.frames.unwrap_or(FRAMES));
-        check_animation(&fields.file, fps)?;
-        if !(1..=Turntable::MOST_FRAMES).contains(&frames) {
-            return Err(format!("`frames` is {frames}; it can be 1 to {}", Turntable::MOST_FRAMES));
-        }
-        let turn = fields.turn.as_deref().map_or(Ok(Turn::default()), Turn::named)?;
-        Ok(Self::Turntable { file: fields.file, frames, fps, size: fields.size.map(Into::into), turn })
-    }
-
-    pub(super) fn timeline(fields: Timeline) -> Result<Self, String> {
-        let fps = fields.fps.unwrap_or(VERSIONS_PER_S);
-        check_animation(&fields.file, fps)?;
-        Ok(Self::Timeline { file: fields.file, fps, size: fields.size.map(Into::into) })
-    }
-
     /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with, `work` names the model and the
     /// shader tree. Returns the result of the answer.
     fn draw(

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use image::{DynamicImage, RgbaImage};
 use serde_json::json;
 
-use super::requests::path_text;
+use super::text::path_text;
 use crate::app::engine::Engine;
 use crate::app::frames::picture::shown_session_state;
 use crate::app::state::State;

@@ -5,22 +5,18 @@ mod loaded;
 mod panics;
 pub(super) mod reloads;
 
-use std::path::PathBuf;
-
 use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
+use crate::app::actions::compare::on_compared;
 use crate::app::actions::compare::tree::on_second_tree;
 use crate::app::actions::compare::write::on_version_written;
-use crate::app::actions::compare::{compare_with, on_compared};
 use crate::app::actions::edits::on_written;
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
-use crate::app::actions::files::open_tree;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
 use crate::app::actions::watch::watch_files;
-use crate::app::command::{Command, CompareWith, open_as};
-use crate::app::control::on_asked;
+use crate::app::command::file::{OPEN, Open, chosen};
+use crate::app::command::{execute, on_asked};
 use crate::app::engine::Engine;
-use crate::app::execute::execute;
 use crate::app::messages::bakes::on_bake;
 use crate::app::messages::loaded::{on_files_changed, on_loaded};
 use crate::app::messages::panics::on_panic;
@@ -28,7 +24,6 @@ use crate::app::messages::reloads::{
     arrange_for, check_names, on_completed, on_reload, remember_tree, show_endless_loop,
 };
 use crate::app::state::State;
-use crate::app::state::dialog::Dialog;
 use crate::threads::Message;
 use crate::threads::WorkerMessage;
 
@@ -94,14 +89,14 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Chosen(answer) => {
             let dialog = state.choosing.take();
             match answer {
-                Ok(path) => path.into_iter().for_each(|path| chosen(state, engine, dialog, path)),
+                Ok(path) => path.into_iter().for_each(|path| execute(state, engine, chosen(dialog, path))),
                 Err(message) => state.say(message),
             }
         }
         Message::NewTree(answer) => {
             state.choosing = None;
             match answer {
-                Ok(path) => path.into_iter().for_each(|path| open_tree(state, engine, &path)),
+                Ok(path) => path.into_iter().for_each(|path| execute(state, engine, OPEN.with(Open::Tree(path)))),
                 Err(message) => state.say(message),
             }
         }
@@ -109,14 +104,5 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Exercise(folder, exercise) => on_exercise(state, engine, folder, exercise),
         Message::Checked(checked) => on_checked(state, checked),
         Message::Panicked(task, text) => on_panic(state, engine, task, &text),
-    }
-}
-
-/// Opens what the user has chosen in a dialog.
-fn chosen(state: &mut State, engine: &mut Engine, dialog: Option<Dialog>, path: PathBuf) {
-    match dialog {
-        Some(Dialog::Picture) => compare_with(state, engine, CompareWith::File(path)),
-        Some(Dialog::SecondTree) => compare_with(state, engine, CompareWith::Tree(path)),
-        _ => execute(state, engine, open_as(path).unwrap_or_else(Command::Say)),
     }
 }

@@ -1,6 +1,8 @@
 //! Numbers that the palette asks for.
 
 use super::entries::{Action, Entry};
+use crate::app::command::settings::{change, set_shader};
+use crate::app::command::spec::Command;
 use crate::app::numbers::{Number, Scale};
 use crate::settings::{Settings, ShaderValue};
 
@@ -43,25 +45,18 @@ impl Ask {
             Target::Setting(number) => number.path().rsplit('.').next().unwrap_or_default().to_owned(),
             Target::Shader(name, _) => name.clone(),
         };
-        Entry { words, key, ..Entry::new(group, title, Action::Number(Box::new(self))) }
+        Entry { words, key, ..Entry::of(group, title, Action::Number(Box::new(self))) }
     }
 
-    /// The same number with another value.
-    pub(super) fn with(&self, now: f64) -> Self {
-        Self { now, ..self.clone() }
-    }
-
-    /// Sets the number to its present value.
-    pub(super) fn set(&self, settings: &mut Settings) {
-        let value = self.now;
+    /// The command that sets the number.
+    pub(super) fn command(&self, value: f64) -> Command {
         match &self.target {
-            Target::Setting(number) => number.set(settings, value),
-            Target::Shader(name, true) => {
-                settings.shader.insert(name.clone(), ShaderValue::Int(value.round() as i64));
+            Target::Setting(number) => {
+                let number = number.clone();
+                change(self.title.clone(), move |settings| number.set(settings, value))
             }
-            Target::Shader(name, false) => {
-                settings.shader.insert(name.clone(), ShaderValue::Float(value));
-            }
+            Target::Shader(name, true) => set_shader(name, &ShaderValue::Int(value.round() as i64)),
+            Target::Shader(name, false) => set_shader(name, &ShaderValue::Float(value)),
         }
     }
 }

@@ -2,10 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use super::act::is_in_force;
+use serde::Serialize;
+
 use super::ask::{Ask, Target};
 use super::settings::of_settings;
-use crate::app::command::{Command, CompareWith, Side};
+use crate::app::command::camera::{LOOK_THROUGH, Side, VIEW_FROM};
+use crate::app::command::compare::{COMPARE, CompareFields, TOGGLE_COMPARE, TOGGLE_DIFFERENCE};
+use crate::app::command::file::{CHOOSE, OPEN, Open};
+use crate::app::command::layout::{ARRANGE, ARRANGE_OWN, OPEN_INSPECTOR, OPEN_PANEL};
+use crate::app::command::program::LEARN;
+use crate::app::command::scene::SELECT;
+use crate::app::command::settings::{change, set_shader};
+use crate::app::command::shaders::{ASK_VERSION, VERSIONS, VersionsRequest};
+use crate::app::command::spec::{Command, Registered};
 use crate::app::numbers::{default_of, of_constant, of_parameter};
 use crate::app::state::State;
 use crate::app::state::arrangement::{Panel, Preset};
@@ -16,8 +25,9 @@ use crate::app::state::recent::Kind;
 use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::state::shaders::effects::{is_of_pass, is_switch};
 use crate::learn::exercises;
+use crate::message::did_you_mean;
 use crate::scene::environment::BUILT_IN;
-use crate::settings::{Settings, ShaderValue, Value};
+use crate::settings::{Settings, ShaderValue};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
@@ -26,64 +36,55 @@ use crate::shader::{Mode, ShaderSet};
 /// The action of an entry.
 #[derive(Clone, Debug)]
 pub(super) enum Action {
-    Mode(String),
-    Do(Command),
-    Environment(String),
-    /// Sets the setting at a path.
-    Set(String, Value),
-    /// Shows or hides the histogram of the picture's values.
-    ToggleHistogram,
-    /// Shows or hides the map of a comparison's differences.
-    ToggleDifference,
-    /// Sets a value of a parameter or constant of the shaders.
-    Value(String, ShaderValue),
+    Run(Command),
     /// Asks for a number, and sets it.
     Number(Box<Ask>),
-    Pass(String, bool),
-    Open(Panel),
-    Arrange(Preset),
-    ResetLayout,
-    /// Shows the user's own arrangement of the panels.
-    ArrangeOwn,
-    /// Asks in the timeline whether to write a version to the files.
-    WriteVersion(u64),
-    /// Shows the field for an expression.
-    AskExpression,
-    /// Shows an expression of the shaders over the model.
-    Watch(String),
-    /// Asks whether to write the values of parameters to the files.
-    WriteDefaults,
-    TogglePanels,
-    ToggleTheme,
-    ShowKeys,
 }
 
 /// A row that the palette can show.
-#[derive(Debug)]
-pub(super) struct Entry {
+#[derive(Debug, Serialize)]
+pub(in crate::app) struct Entry {
     pub(super) group: &'static str,
+    #[serde(rename = "entry")]
     pub(super) title: String,
     /// More words by which it is found.
+    #[serde(skip)]
     pub(super) words: String,
     /// Key that does the same, or the value of a number; may be empty.
+    #[serde(skip)]
     pub(super) key: String,
+    #[serde(skip)]
     pub(super) action: Action,
     /// Whether it comes after entries that match as well: it shows or switches the inside of an effect.
+    #[serde(skip)]
     pub(super) is_minor: bool,
     /// Whether it is the choice in force, so that choosing it changes nothing.
+    #[serde(rename = "now")]
     pub(super) is_in_force: bool,
 }
 
 impl Entry {
-    pub(super) fn new(group: &'static str, title: String, action: Action) -> Self {
+    pub(super) fn new(group: &'static str, title: impl Into<String>, command: Command) -> Self {
+        Self::of(group, title.into(), Action::Run(command))
+    }
+
+    pub(super) fn of(group: &'static str, title: String, action: Action) -> Self {
         Self { group, title, words: String::new(), key: String::new(), action, is_minor: false, is_in_force: false }
+    }
+
+    pub(super) fn words(self, words: impl Into<String>) -> Self {
+        Self { words: words.into(), ..self }
     }
 }
 
-/// All entries.
-pub(super) fn entries(state: &State) -> Vec<Entry> {
-    let mut entries = commands();
+/// All entries: the commands with a label, and those that the settings, the shaders, the model and the picture offer.
+pub(in crate::app) fn entries(state: &State, registry: &[&'static dyn Registered]) -> Vec<Entry> {
     let settings = &state.session.settings;
+    let mut entries: Vec<Entry> = {
+        let enabled = registry.iter().filter(|command| command.is_enabled(state));
+        enabled.filter_map(|command| of_command(*command)).collect()
+    };
+    entries.extend(of_layout());
     entries.extend(files(state));
     entries.extend(lessons());
     entries.extend(of_settings(state));
@@ -92,86 +93,121 @@ pub(super) fn entries(state: &State) -> Vec<Entry> {
         constants(&mut entries, shaders, settings);
         parameters(&mut entries, shaders, settings);
         passes(&mut entries, shaders, settings);
-        entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode)));
-    }
-    for entry in &mut entries {
-        entry.is_in_force = is_in_force(&entry.action, state);
+        let shown = state.session.mode().map(|mode| mode.slug.as_str());
+        entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode, shown)));
     }
     entries
 }
 
+/// The command of the entry with this title. `value` is for an entry that sets a number.
+///
+/// # Errors
+/// A message: no entry has the title, or the value does not fit.
+pub(in crate::app) fn entry_with(entries: &[Entry], title: &str, value: Option<f64>) -> Result<Command, String> {
+    let Some(entry) = entries.iter().find(|entry| entry.title.eq_ignore_ascii_case(title)) else {
+        let hint = did_you_mean(title, entries.iter().map(|entry| entry.title.as_str()));
+        return Err(format!("the palette has no entry `{title}`.{hint} `entries` lists them all"));
+    };
+    match (&entry.action, value) {
+        (Action::Number(ask), Some(value)) => {
+            let value = ask.scale.parse(&value.to_string()).map_err(|why| format!("`{}`: {why}", entry.title))?;
+            Ok(ask.command(value))
+        }
+        (Action::Number(ask), None) => Err(format!("`{}` needs a `value`: {}", entry.title, ask.scale.range_text())),
+        (Action::Run(_), Some(_)) => Err(format!("`{}` takes no value", entry.title)),
+        (Action::Run(command), None) => Ok(command.clone()),
+    }
+}
+
+/// The entry of a command with a label.
+pub(super) fn of_command(command: &'static dyn Registered) -> Option<Entry> {
+    let about = command.about();
+    let command = command.at(0).filter(|_| !about.label.is_empty())?;
+    Some(Entry { key: about.key(), ..Entry::new("Command", about.label, command).words(about.words) })
+}
+
+/// Arrangements and panels.
+pub(super) fn of_layout() -> impl Iterator<Item = Entry> {
+    let preset = |preset: Preset| {
+        Entry::new("Layout", format!("Layout: {}", preset.title()), ARRANGE.with(preset)).words(preset.doc())
+    };
+    let panel = |panel: Panel| {
+        Entry::new("Panel", format!("Panel: {}", panel.title()), OPEN_PANEL.with(panel)).words(panel.words())
+    };
+    let page = |page: Page| {
+        let (name, doc) = page.words();
+        let entry = Entry::new("Panel", format!("Panel: Inspector, {name}"), OPEN_INSPECTOR.with(page));
+        entry.words(format!("polar plot curves {doc}"))
+    };
+    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(Page::ALL.map(page));
+    Preset::ALL.into_iter().map(preset).chain(panels)
+}
+
 /// Environments, models and shader trees: the built-in ones and the files that were open.
 fn files(state: &State) -> impl Iterator<Item = Entry> {
-    let entry = |group: &'static str, path: &Path, action: Action| {
+    let entry = |group: &'static str, path: PathBuf, open: fn(PathBuf) -> Open| {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let words = path.display().to_string();
-        Entry { words, ..Entry::new(group, format!("{group}: {name}"), action) }
+        let (title, words) = (format!("{group}: {name}"), path.display().to_string());
+        Entry::new(group, title, OPEN.with(open(path))).words(words)
     };
-    let recent = &state.recent;
-    let built_in = BUILT_IN.into_iter().chain(["none"]).map(PathBuf::from);
-    let environment = move |path: PathBuf| entry("Environment", &path, Action::Environment(path.display().to_string()));
-    let model = move |path: PathBuf| entry("Model", &path, Action::Do(Command::OpenModel(path.clone())));
-    let tree = move |path: PathBuf| entry("Shaders", &path, Action::Do(Command::OpenTree(path.clone())));
-    let environments = built_in.chain(recent.of(Kind::Environment).iter().cloned()).map(environment);
-    let models = crate::scene::BUILT_IN.into_iter().map(PathBuf::from).chain(recent.of(Kind::Model).iter().cloned());
-    environments.chain(models.map(model)).chain(recent.of(Kind::Tree).iter().cloned().map(tree))
+    let recent = |kind| state.recent.of(kind).iter().cloned();
+    let built_in = |names: &'static [&'static str]| names.iter().map(PathBuf::from);
+    let environments = built_in(&BUILT_IN).chain([PathBuf::from("none")]).chain(recent(Kind::Environment));
+    let environments = environments.map(move |path| {
+        let is_in_force = Path::new(&state.session.settings.environment.name) == path;
+        Entry { is_in_force, ..entry("Environment", path, Open::Environment) }
+    });
+    let models = built_in(&crate::scene::BUILT_IN).chain(recent(Kind::Model));
+    let models = models.map(move |path| entry("Model", path, Open::Model));
+    environments.chain(models).chain(recent(Kind::Tree).map(move |path| entry("Shaders", path, Open::Tree)))
 }
 
 /// The exercises.
 fn lessons() -> impl Iterator<Item = Entry> {
     exercises().iter().map(|exercise| {
         let title = format!("Exercise {}: {}", exercise.number, exercise.title);
-        let entry = Entry::new("Learn", title, Action::Do(Command::Learn(LearnCommand::Open(exercise.number))));
-        Entry { words: format!("learn {} {}", exercise.slug(), exercise.idea), is_minor: true, ..entry }
+        let entry = Entry::new("Learn", title, LEARN.with(LearnCommand::Open(exercise.number)));
+        Entry { is_minor: true, ..entry.words(format!("learn {} {}", exercise.slug(), exercise.idea)) }
     })
 }
 
 /// Entries that depend on the current picture: comparisons, versions to write to the files, views of the model.
 fn of_picture(state: &State) -> Vec<Entry> {
-    let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
+    let compare = |title: String, command| Entry::new("Compare", title, command);
     let newest = state.shown_generation();
-    let mut entries = match state.compare.is_on() {
-        true => vec![
-            compare("Stop comparing".to_owned(), CompareWith::Nothing),
-            Entry {
-                words: "FLIP map heat".to_owned(),
-                ..Entry::new("Compare", "Show or hide the differences".to_owned(), Action::ToggleDifference)
-            },
-        ],
-        false => vec![compare("Keep this picture and compare".to_owned(), CompareWith::ThisPicture)],
-    };
-    entries[0].key = "Ctrl+K".to_owned();
-    let choose = |title: &str, words: &str, dialog| {
-        let entry = Entry::new("Compare", title.to_owned(), Action::Do(Command::Choose(dialog)));
-        Entry { words: words.to_owned(), ..entry }
-    };
+    let toggle = if state.compare.is_on() { "Stop comparing" } else { "Keep this picture and compare" };
+    let key = TOGGLE_COMPARE.about().key();
+    let mut entries = vec![Entry { key, ..Entry::new("Compare", toggle, TOGGLE_COMPARE.with(())) }];
+    if TOGGLE_DIFFERENCE.is_enabled(state) {
+        let entry = Entry::new("Compare", "Show or hide the differences", TOGGLE_DIFFERENCE.with(()));
+        entries.push(entry.words("FLIP map heat"));
+    }
+    let choose = |title: &str, words: &str, dialog| Entry::new("Compare", title, CHOOSE.with(dialog)).words(words);
     entries.push(choose("Compare with a picture…", "file image PNG JPEG EXR HDR reference", Dialog::Picture));
     entries.push(choose("Compare with another shader tree…", "second folder A B", Dialog::SecondTree));
-    for version in state.versions.iter().filter(|version| state.versions.can_show(version, newest)) {
+    let others = || state.versions.iter().filter(|version| state.versions.can_show(version, newest));
+    entries.extend(others().map(|version| {
         let title = format!("Compare with version {}: {}", version.number, version.title());
-        entries.push(compare(title, CompareWith::Version(version.number)));
-    }
-    let mut show = |title: String, version| {
-        entries.push(Entry::new("Compare", title, Action::Do(Command::ShowVersion(version))));
-    };
+        compare(title, COMPARE.with(CompareFields::version(version.number)))
+    }));
     if state.edits.restored.is_some() {
-        show("Go back to the newest version".to_owned(), None);
+        entries.push(compare("Go back to the newest version".to_owned(), VERSIONS.with(VersionsRequest::ShowNewest)));
     }
-    for version in state.versions.iter().filter(|version| state.versions.can_show(version, newest)) {
-        show(format!("Show version {} alone: {}", version.number, version.title()), Some(version.number));
-    }
-    for version in state.versions.iter().filter(|version| !state.files_of_version(version.number).is_empty()) {
-        let title = format!("Write version {} to the files…", version.number);
-        entries.push(Entry::new("Compare", title, Action::WriteVersion(version.number)));
-    }
+    entries.extend(others().map(|version| {
+        let title = format!("Show version {} alone: {}", version.number, version.title());
+        compare(title, VERSIONS.with(VersionsRequest::Show(version.number)))
+    }));
+    let writable = state.versions.iter().filter(|version| !state.files_of_version(version.number).is_empty());
+    entries.extend(writable.map(|version| {
+        compare(format!("Write version {} to the files…", version.number), ASK_VERSION.with(version.number))
+    }));
     entries.extend(Side::ALL.map(|side| {
-        let (name, key) = side.words();
-        let entry = Entry::new("Camera", format!("View from the {name}"), Action::Do(Command::ViewFrom(side)));
-        Entry { key: key.to_owned(), ..entry }
+        let entry = Entry::new("Camera", format!("View from the {}", side.name()), VIEW_FROM.with(side));
+        Entry { key: side.key(), ..entry }
     }));
     entries.extend(of_scene(state));
-    if state.workspace.sight.has_own_arrangement {
-        entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
+    if ARRANGE_OWN.is_enabled(state) {
+        entries.push(Entry::new("Layout", "Layout: Own", ARRANGE_OWN.with(())));
     }
     entries
 }
@@ -183,7 +219,7 @@ const MOST_NODES: usize = 300;
 fn of_scene(state: &State) -> Vec<Entry> {
     let Some(model) = state.session.model() else { return Vec::new() };
     let select = |title: String, selected| {
-        let entry = Entry::new("Scene", title, Action::Do(Command::Select(selected)));
+        let entry = Entry::new("Scene", title, SELECT.with(selected));
         Entry { is_minor: true, ..entry }
     };
     let nodes = model.nodes.iter().enumerate().filter(|(_, node)| !node.name.is_empty()).take(MOST_NODES);
@@ -199,69 +235,24 @@ fn of_scene(state: &State) -> Vec<Entry> {
     }));
     entries.extend(model.cameras.iter().enumerate().map(|(index, camera)| {
         let name = name_or(&camera.name, || index.to_string());
-        Entry::new("Camera", format!("Look through camera {name}"), Action::Do(Command::LookThrough(index)))
+        Entry::new("Camera", format!("Look through camera {name}"), LOOK_THROUGH.with(index))
     }));
     entries
 }
 
-/// Commands, panels and arrangements.
-pub(super) fn commands() -> Vec<Entry> {
-    let commands = [
-        ("Open the gallery", "built-in models environments pictures browse", "", Action::Do(Command::ShowGallery)),
-        ("Restore the last session", "continue", "", Action::Do(Command::RestoreSession)),
-        ("Open a file", "model environment shader measured BRDF", "Ctrl+O", Action::Do(Command::Choose(Dialog::File))),
-        ("Open a shader tree", "folder", "", Action::Do(Command::Choose(Dialog::Tree))),
-        ("Frame the model", "camera", "R", Action::Do(Command::FrameModel)),
-        ("Reload all shaders", "compile", "F5", Action::Do(Command::Reload)),
-        ("Watch an expression of the shaders…", "variable value debug line", "", Action::AskExpression),
-        ("Write the values of parameters to GLSL…", "save defaults annotation", "", Action::WriteDefaults),
-        ("Undo", "", "Ctrl+Z", Action::Do(Command::Undo)),
-        ("Redo", "", "Ctrl+Shift+Z", Action::Do(Command::Redo)),
-        ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
-        ("Keys", "shortcuts help", "F1", Action::ShowKeys),
-        ("Show or hide the histogram", "distribution values", "", Action::ToggleHistogram),
-        ("Reset the arrangement of the panels", "default layout restore tiles", "", Action::ResetLayout),
-        ("Hide or show the panels", "", "H", Action::TogglePanels),
-        ("Light or dark theme", "colors appearance", "", Action::ToggleTheme),
-        ("Hide the selection", "scene node primitive", "Ctrl+H", Action::Do(Command::HideSelected)),
-        ("Isolate the selection", "scene node solo local view", "/", Action::Do(Command::IsolateSelected)),
-        ("Show everything", "scene hidden unhide reveal", "Alt+H", Action::Do(Command::ShowAll)),
-        ("Select nothing", "scene deselect", "Esc", Action::Do(Command::Select(Selected::Nothing))),
-        ("Place the rectangular light", "area light handle gizmo", "", Action::Do(Command::PlaceRectangle)),
-        ("Quit", "close", "Ctrl+Q", Action::Do(Command::Quit)),
-    ];
-    let command = |(title, words, key, action): (&str, &str, &str, Action)| {
-        let entry = Entry::new("Command", title.to_owned(), action);
-        Entry { words: words.to_owned(), key: key.to_owned(), ..entry }
-    };
-    let preset = |preset: Preset| {
-        let entry = Entry::new("Layout", format!("Layout: {}", preset.title()), Action::Arrange(preset));
-        Entry { words: preset.doc().to_owned(), ..entry }
-    };
-    let panel = |panel: Panel| {
-        let entry = Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
-        Entry { words: panel.words().to_owned(), ..entry }
-    };
-    let page = |page: Page| {
-        let (name, doc) = page.words();
-        let entry = Entry::new("Panel", format!("Panel: Inspector, {name}"), Action::Do(Command::OpenInspector(page)));
-        Entry { words: format!("polar plot curves {doc}"), ..entry }
-    };
-    let presets = Preset::ALL.into_iter().map(preset);
-    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(Page::ALL.map(page));
-    commands.into_iter().map(command).chain(presets).chain(panels).collect()
-}
-
 /// A mode with its keys.
-fn of_mode(index: usize, mode: &Mode) -> Entry {
+fn of_mode(index: usize, mode: &Mode, shown: Option<&str>) -> Entry {
     let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
     let keys: Vec<String> =
         mode.key.map(|key| key.to_ascii_uppercase()).into_iter().chain(digit).map(String::from).collect();
+    let slug = mode.slug.clone();
+    let show = change(format!("mode {slug}"), move |settings| settings.mode.clone_from(&slug));
     Entry {
         words: format!("{} {} {}", mode.slug, mode.group, mode.words),
         key: keys.join(" "),
         is_minor: mode.pass.is_some(),
-        ..Entry::new("Mode", mode.name.clone(), Action::Mode(mode.slug.clone()))
+        is_in_force: shown == Some(mode.slug.as_str()),
+        ..Entry::new("Mode", mode.name.clone(), show)
     }
 }
 
@@ -271,22 +262,24 @@ pub(super) fn switch(
     label: &str,
     name: &str,
     is_on: bool,
-    action: impl Fn(bool) -> Action,
+    command: impl Fn(bool) -> Command,
 ) -> Entry {
     let turns = if is_on { "off" } else { "on" };
-    Entry { words: name.to_owned(), ..Entry::new(group, format!("{label}: turn {turns}"), action(!is_on)) }
+    Entry::new(group, format!("{label}: turn {turns}"), command(!is_on)).words(name)
 }
 
-/// An entry for each choice of a constant or parameter.
+/// An entry for each choice of a constant or parameter, which has the value `now`.
 fn choices<'a>(
     group: &'static str,
     label: &'a str,
     name: &'a str,
     choices: &'a [(String, i64)],
+    now: Option<f64>,
 ) -> impl Iterator<Item = Entry> + 'a {
-    choices.iter().map(move |(choice, _)| {
-        let action = Action::Value(name.to_owned(), ShaderValue::Name(choice.clone()));
-        Entry { words: name.to_owned(), ..Entry::new(group, format!("{label}: {choice}"), action) }
+    choices.iter().map(move |(choice, value)| {
+        let command = set_shader(name, &ShaderValue::Name(choice.clone()));
+        let entry = Entry::new(group, format!("{label}: {choice}"), command).words(name);
+        Entry { is_in_force: now == Some(*value as f64), ..entry }
     })
 }
 
@@ -296,14 +289,14 @@ fn constants(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings)
         let group = if is_switch(shaders, name) { "Pass" } else { "Parameter" };
         let now = settings.shader.get(name).and_then(|value| number(value, &constant.choices)).unwrap_or(default);
         if constant.scalar == Scalar::Bool {
-            let action = |on| Action::Value(name.clone(), ShaderValue::Bool(on));
-            entries.push(switch(group, label, name, now != 0.0, action));
+            let command = |on| set_shader(name, &ShaderValue::Bool(on));
+            entries.push(switch(group, label, name, now != 0.0, command));
         } else if let Some(scale) = of_constant(constant) {
             let target = Target::Shader(name.clone(), constant.scalar != Scalar::Float);
             let (title, doc) = (label.clone(), constant.doc.clone());
             entries.push(Ask { title, group, doc, scale, now, target }.entry());
         }
-        entries.extend(choices(group, label, name, &constant.choices));
+        entries.extend(choices(group, label, name, &constant.choices, Some(now)));
     }
 }
 
@@ -313,28 +306,33 @@ fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings
         let is_of_pass = is_of_pass(shaders, parameter);
         let group = if is_of_pass { "Pass" } else { "Parameter" };
         let set = settings.shader.get(name).and_then(|value| number(value, &parameter.choices));
-        let now = set.or_else(|| parameter.default.first().copied()).unwrap_or_default();
+        let now = set.or_else(|| parameter.default.first().copied());
         if parameter.kind == ParameterType::Bool {
-            let action = |on| Action::Value(name.clone(), ShaderValue::Bool(on));
-            entries.push(switch(group, label, name, now != 0.0, action));
+            let command = |on| set_shader(name, &ShaderValue::Bool(on));
+            entries.push(switch(group, label, name, now.unwrap_or_default() != 0.0, command));
         } else if let Some(scale) = of_parameter(parameter) {
             let target = Target::Shader(name.clone(), parameter.kind != ParameterType::Float);
-            let (title, doc) = (label.clone(), parameter.doc.clone());
+            let (title, doc, now) = (label.clone(), parameter.doc.clone(), now.unwrap_or_default());
             entries.push(Ask { title, group, doc, scale, now, target }.entry());
         } else if parameter.choices.is_empty() {
             // Colors and vectors have no single number to type.
             let panel = if is_of_pass { Panel::Passes } else { Panel::Parameters };
-            entries.push(Entry { words: name.clone(), ..Entry::new(group, label.clone(), Action::Open(panel)) });
+            entries.push(Entry::new(group, label.clone(), OPEN_PANEL.with(panel)).words(name.clone()));
         }
-        entries.extend(choices(group, label, name, &parameter.choices));
+        entries.extend(choices(group, label, name, &parameter.choices, now));
     }
 }
 
 fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
     let internal = &shaders.graph.internal;
     for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.desc.when.is_none()) {
-        let action = |on| Action::Pass(pass.name().to_owned(), on);
-        let entry = switch("Pass", &pass.desc.label, pass.name(), pass.is_wanted(&settings.passes), action);
+        let command = |on| {
+            let name = pass.name().to_owned();
+            change(name.clone(), move |settings| {
+                settings.passes.insert(name.clone(), on);
+            })
+        };
+        let entry = switch("Pass", &pass.desc.label, pass.name(), pass.is_wanted(&settings.passes), command);
         entries.push(Entry { is_minor: internal.contains(pass.name()), ..entry });
     }
 }

@@ -1,24 +1,25 @@
 //! The command palette (Ctrl+P): finds modes, panels, files, switches, choices, numbers and commands by words of their names. The
 //! value of a number is typed behind its name (`exposure 1.5`) or in a second step.
 
-mod act;
 mod ask;
-mod entries;
+pub(super) mod entries;
 mod row;
 mod search;
 mod settings;
 
-use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
-use serde::Serialize;
+use std::sync::Arc;
 
-use super::commands::Commands;
+use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
+
+use super::command::registry::REGISTRY;
+use super::command::settings::change;
+use super::command::spec::Command;
+use super::source_line::watch;
 use super::widgets::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
-use crate::app::engine::Engine;
-use crate::app::execute::execute;
 use crate::app::state::State;
-use crate::message::did_you_mean;
+use crate::scene::Model;
+use crate::settings::Settings;
 use crate::shader::Expression;
-use act::act;
 use ask::Ask;
 use entries::{Action, Entry, entries};
 use search::{Found, find};
@@ -41,6 +42,38 @@ pub(super) struct Palette {
     asks: Option<(Ask, String)>,
     /// Whether it has been shown. The click that opens it does not close it.
     is_shown: bool,
+    entries: Vec<Entry>,
+    /// The state that the entries describe.
+    listed: Option<Revision>,
+}
+
+/// Everything on which the entries depend, but for files that are opened meanwhile.
+struct Revision {
+    settings: Arc<Settings>,
+    model: Option<Arc<Model>>,
+    generation: Option<u64>,
+    shown: u64,
+    restored: Option<u64>,
+    is_comparing: bool,
+}
+
+impl Revision {
+    fn is(&self, other: &Self) -> bool {
+        let model = |revision: &Self| revision.model.as_ref().map(Arc::as_ptr);
+        let rest = |revision: &Self| (revision.generation, revision.shown, revision.restored, revision.is_comparing);
+        Arc::ptr_eq(&self.settings, &other.settings) && model(self) == model(other) && rest(self) == rest(other)
+    }
+
+    fn of(state: &State) -> Self {
+        Self {
+            settings: state.session.shared_settings(),
+            model: state.session.model().cloned(),
+            generation: state.session.shaders.as_ref().map(|shaders| shaders.generation),
+            shown: state.shown_generation(),
+            restored: state.edits.restored.as_ref().map(|restored| restored.number),
+            is_comparing: state.compare.is_on(),
+        }
+    }
 }
 
 impl Palette {
@@ -57,69 +90,30 @@ impl Palette {
     }
 }
 
-/// An entry, as the command `entries` tells it.
-#[derive(Serialize)]
-pub(super) struct Listed {
-    group: &'static str,
-    entry: String,
-    /// Whether it is the choice in force.
-    now: bool,
-}
-
-/// Everything that the palette can do at the moment.
-pub(super) fn listed(state: &State) -> Vec<Listed> {
-    let listed = |entry: Entry| Listed { group: entry.group, entry: entry.title, now: entry.is_in_force };
-    entries(state).into_iter().map(listed).collect()
-}
-
-/// Does what the entry with this title does. `value` is for an entry that sets a number.
-///
-/// # Errors
-/// A message: no entry has the title, or the value does not fit.
-pub(super) fn run(state: &mut State, engine: &mut Engine, title: &str, value: Option<f64>) -> Result<(), String> {
-    let entries = entries(state);
-    let Some(entry) = entries.iter().find(|entry| entry.title.eq_ignore_ascii_case(title)) else {
-        let hint = did_you_mean(title, entries.iter().map(|entry| entry.title.as_str()));
-        return Err(format!("the palette has no entry `{title}`.{hint} `entries` lists them all"));
-    };
-    let action = match (&entry.action, value) {
-        (Action::Number(ask), Some(value)) => {
-            let value = ask.scale.parse(&value.to_string()).map_err(|why| format!("`{}`: {why}", entry.title))?;
-            Action::Number(Box::new(ask.with(value)))
-        }
-        (Action::Number(ask), None) => {
-            return Err(format!("`{}` needs a `value`: {}", entry.title, ask.scale.range_text()));
-        }
-        (_, Some(_)) => return Err(format!("`{}` takes no value", entry.title)),
-        (action, None) => action.clone(),
-    };
-    let mut commands = Vec::new();
-    act(action, &mut state.session.settings, &mut commands);
-    commands.into_iter().for_each(|command| execute(state, engine, command));
-    Ok(())
-}
-
-/// Shows the open palette over `area`, and does what the user chooses.
+/// Shows the open palette over `area`, and gives the command that the user chooses.
 pub(super) fn show(
     egui: &egui::Context,
     state: &State,
     palette: &mut Palette,
     area: egui::Rect,
-    commands: &mut Commands,
+    commands: &mut Vec<Command>,
 ) {
     if !palette.is_open {
         return;
     }
-    let mut entries = entries(state);
-    let chosen = window(egui, palette, &mut entries, area);
-    palette.is_open &= chosen.is_none();
-    if let Some(action) = chosen {
-        act(action, &mut commands.settings, &mut commands.list);
+    let revision = Revision::of(state);
+    if !palette.listed.as_ref().is_some_and(|listed| listed.is(&revision)) {
+        (palette.listed, palette.entries) = (Some(revision), entries(state, REGISTRY));
     }
+    let chosen = window(egui, palette, area);
+    if chosen.is_some() {
+        *palette = Palette::default();
+    }
+    commands.extend(chosen);
 }
 
-/// Shows the search and the list, or asks for a number. Returns the chosen action.
-fn window(egui: &egui::Context, palette: &mut Palette, entries: &mut Vec<Entry>, area: egui::Rect) -> Option<Action> {
+/// Shows the search and the list, or asks for a number. Returns the chosen command.
+fn window(egui: &egui::Context, palette: &mut Palette, area: egui::Rect) -> Option<Command> {
     if egui.input(|input| input.key_pressed(Key::Escape)) {
         // Back from a number to the list.
         palette.is_open = palette.asks.take().is_some();
@@ -138,7 +132,7 @@ fn window(egui: &egui::Context, palette: &mut Palette, entries: &mut Vec<Entry>,
             ui.set_width(width);
             match &mut palette.asks {
                 Some((ask, text)) => number(ui, ask, text),
-                None => list(ui, palette, entries, rows.clamp(3, ROWS)),
+                None => list(ui, palette, rows.clamp(3, ROWS)),
             }
         };
         frame.show(ui, content).inner
@@ -161,8 +155,8 @@ fn field(ui: &mut Ui, text: &mut String, hint: &str) -> egui::Response {
     ui.add(field.background_color(EDGE.color()).hint_text(hint))
 }
 
-/// Shows the search and the list. Returns the chosen action.
-fn list(ui: &mut Ui, palette: &mut Palette, entries: &mut Vec<Entry>, rows: usize) -> Option<Action> {
+/// Shows the search and the list. Returns the chosen command.
+fn list(ui: &mut Ui, palette: &mut Palette, rows: usize) -> Option<Command> {
     // Before the field takes the arrows.
     let step = ui.input_mut(|input| {
         let down = input.count_and_consume_key(egui::Modifiers::NONE, Key::ArrowDown);
@@ -173,8 +167,8 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &mut Vec<Entry>, rows: usiz
     }
     let query = palette.query.clone();
     // The text and the Enter behind it may come in one frame, so the entry is made from the text as it is now.
-    entries.splice(0..0, expression(&query));
-    let found = find(entries, &query);
+    let expression = expression(&query);
+    let found = find(expression.iter().chain(&palette.entries), &query);
     palette.row = palette.row.saturating_add_signed(step).min(found.len().saturating_sub(1));
     if found.is_empty() {
         ui.label(RichText::new("No match").color(QUIET));
@@ -194,14 +188,27 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &mut Vec<Entry>, rows: usiz
     if ui.input(|input| input.key_pressed(Key::Enter)) {
         chosen = chosen.or_else(|| found.get(palette.row));
     }
-    choose(palette, chosen?)
+    let Found { entry, typed, .. } = chosen?;
+    match &entry.action {
+        Action::Run(command) => Some(command.clone()),
+        Action::Number(ask) => {
+            let typed = typed.unwrap_or_default();
+            let value = ask.scale.parse(typed);
+            if value.is_err() {
+                palette.asks = Some((*ask.clone(), typed.to_owned()));
+            }
+            value.ok().map(|value| ask.command(value))
+        }
+    }
 }
 
 /// The entry that watches the expression which the query names.
 fn expression(query: &str) -> Option<Entry> {
     let expression = Expression::parse(query, 0).ok()?;
-    let entry = Entry::new("Expression", format!("Watch {}", query.trim()), Action::Watch(expression.to_string()));
-    Some(Entry { words: query.to_owned(), ..entry })
+    let at = expression.to_string();
+    let command = change(format!("watch {at}"), move |settings| watch(settings, at.clone()));
+    let entry = Entry::new("Expression", format!("Watch {}", query.trim()), command);
+    Some(entry.words(query))
 }
 
 /// The text at the right of a title: the key, or the number that the query sets.
@@ -215,19 +222,8 @@ fn note(found: &Found<'_>) -> String {
     }
 }
 
-/// The action of a chosen entry, unless that asks for a number first.
-fn choose(palette: &mut Palette, found: &Found<'_>) -> Option<Action> {
-    let Action::Number(ask) = &found.entry.action else { return Some(found.entry.action.clone()) };
-    let typed = found.typed.unwrap_or_default();
-    let Ok(value) = ask.scale.parse(typed) else {
-        palette.asks = Some((*ask.clone(), typed.to_owned()));
-        return None;
-    };
-    Some(Action::Number(Box::new(ask.with(value))))
-}
-
-/// Asks for a number. Returns the action that sets it.
-fn number(ui: &mut Ui, ask: &Ask, text: &mut String) -> Option<Action> {
+/// Asks for a number. Returns the command that sets it.
+fn number(ui: &mut Ui, ask: &Ask, text: &mut String) -> Option<Command> {
     ui.label(RichText::new(&ask.title).strong());
     field(ui, text, &ask.scale.text(ask.now));
     let value = ask.scale.parse(text);
@@ -240,5 +236,5 @@ fn number(ui: &mut Ui, ask: &Ask, text: &mut String) -> Option<Action> {
         ui.label(RichText::new(&ask.doc).small().color(QUIET));
     }
     let value = value.ok().filter(|_| ui.input(|input| input.key_pressed(Key::Enter)))?;
-    Some(Action::Number(Box::new(ask.with(value))))
+    Some(ask.command(value))
 }

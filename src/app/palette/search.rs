@@ -38,7 +38,7 @@ type Place = (bool, bool, bool, Class, bool);
 
 /// The entries that have all words of the query, the best first. Those that `is_minor` come last, with the entries of one pass
 /// together, unless the query is their whole name.
-pub(super) fn find<'a>(entries: &'a [Entry], query: &'a str) -> Vec<Found<'a>> {
+pub(super) fn find<'a>(entries: impl IntoIterator<Item = &'a Entry>, query: &'a str) -> Vec<Found<'a>> {
     let whole = query.trim();
     let mut found: Vec<(Place, Found<'a>)> = Vec::new();
     let place = |has_value, class, entry: &Entry| {
@@ -161,13 +161,15 @@ fn tokens(text: &str) -> impl Iterator<Item = Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::super::ask::Ask;
-    use super::super::entries::commands;
+    use super::super::entries::{of_command, of_layout};
     use super::*;
+    use crate::app::command::layout::KEYS;
+    use crate::app::command::registry::REGISTRY;
     use crate::app::numbers::Number;
     use crate::settings::{Settings, setting};
 
     fn entry(title: &str, is_minor: bool) -> Entry {
-        Entry { is_minor, ..Entry::new("Test", title.to_owned(), Action::ShowKeys) }
+        Entry { is_minor, ..Entry::new("Test", title, KEYS.with(())) }
     }
 
     fn titles(entries: &[Entry], query: &str) -> Vec<String> {
@@ -176,14 +178,14 @@ mod tests {
 
     #[test]
     fn words_are_found_in_any_order_and_titles_first() {
-        let commands = commands();
+        let commands: Vec<Entry> =
+            REGISTRY.iter().filter_map(|command| of_command(*command)).chain(of_layout()).collect();
         assert_eq!(titles(&commands, "panel output"), ["Panel: Output"]);
         assert_eq!(titles(&commands, "OUT panel")[0], "Panel: Output", "a title comes before further words");
         assert_eq!(titles(&commands, "undo")[0], "Undo");
         assert_eq!(titles(&commands, "f12"), ["Screenshot"]);
         assert_eq!(titles(&commands, "camera")[0], "Panel: Camera", "a title comes before a word of another entry");
-        let named =
-            [entry("Inspector of something", false), Entry::new("Panel", "Panel: Inspector".into(), Action::ShowKeys)];
+        let named = [entry("Inspector of something", false), Entry::new("Panel", "Panel: Inspector", KEYS.with(()))];
         assert_eq!(titles(&named, "inspector")[0], "Panel: Inspector");
         assert!(titles(&commands, "no such words").is_empty());
         assert_eq!(titles(&commands, "").len(), commands.len());

@@ -2,7 +2,8 @@
 
 use egui::{Button, Label, Response, RichText, Ui};
 
-use crate::app::command::{Command, Side};
+use crate::app::command::camera::{FRAME, KEEP_CAMERA, LOOK_THROUGH, RECALL_CAMERA, Side, VIEW_FROM};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::numbers::Scale;
@@ -44,12 +45,12 @@ pub(super) fn show(
     bookmarks(ui, settings, commands);
     let settings = &mut settings.camera;
     if ui.button("Frame the model").on_hover_text("Show the whole model (R or Home)").clicked() {
-        commands.push(Command::FrameModel);
+        commands.push(FRAME.with(()));
     }
     for (index, camera) in model.cameras.iter().enumerate() {
         let name = if camera.name.is_empty() { "Unnamed camera" } else { &camera.name };
         if ui.add(Button::new(name).truncate()).on_hover_text("Look through this camera").clicked() {
-            commands.push(Command::LookThrough(index));
+            commands.push(LOOK_THROUGH.with(index));
         }
     }
     if let (Some(eye), Some(target)) = (settings.eye, settings.target) {
@@ -119,10 +120,10 @@ fn sides(ui: &mut Ui, commands: &mut Vec<Command>) {
     heading(ui, "View from");
     ui.horizontal_wrapped(|ui| {
         for side in Side::ALL {
-            let (name, key) = side.words();
+            let (name, key) = (side.name(), side.key());
             let hint = format!("View from the {name} ({key})");
             if named(ui.button(capitalized(name)), &hint).on_hover_text(&hint).clicked() {
-                commands.push(Command::ViewFrom(side));
+                commands.push(VIEW_FROM.with(side));
             }
         }
     });
@@ -150,7 +151,7 @@ fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) 
             };
             if button.on_hover_text(hint).clicked() {
                 let keeps = !is_kept || ui.input(|input| input.modifiers.shift);
-                commands.push(if keeps { Command::KeepCamera(number) } else { Command::RecallCamera(number) });
+                commands.push(if keeps { KEEP_CAMERA.with(number) } else { RECALL_CAMERA.with(number) });
             }
         }
     });

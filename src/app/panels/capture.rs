@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Align, Button, Checkbox, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::capture::{
+    CANCEL, CANCEL_ONE, CAPTURE, Capture, SHEET, Sheet, TIMELINE, TURNTABLE, Timeline, TurntableFields,
+};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
@@ -13,7 +16,6 @@ use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{Row, elided, heading};
 use crate::app::widgets::theme::QUIET;
 use crate::capture::Turn;
-use crate::control::{Capture, Request, Sheet, Timeline, Turntable};
 use crate::picture::numbered_as;
 
 /// Largest width and height that the panel offers, pixels. The device may allow less, and says so then.
@@ -75,23 +77,14 @@ pub(super) fn show(
     commands: &mut Vec<Command>,
 ) {
     progress(ui, captures, &state.folder, commands);
-    let mut ask = |request: Request| commands.push(Command::Ask(Box::new(request)));
     heading(ui, "Picture");
-    if let Some(capture) = picture(ui, state, shown) {
-        ask(Request::Capture(capture));
-    }
+    commands.extend(picture(ui, state, shown).map(|fields| CAPTURE.with(fields)));
     heading(ui, "Sheet of modes");
-    if let Some(sheet) = sheet(ui, state) {
-        ask(Request::Sheet(sheet));
-    }
+    commands.extend(sheet(ui, state).map(|fields| SHEET.with(fields)));
     heading(ui, "Animation");
     animation(ui, state);
-    if let Some(turntable) = turntable(ui, state) {
-        ask(Request::Turntable(turntable));
-    }
-    if let Some(timeline) = timeline(ui, state, versions) {
-        ask(Request::Timeline(timeline));
-    }
+    commands.extend(turntable(ui, state).map(|fields| TURNTABLE.with(fields)));
+    commands.extend(timeline(ui, state, versions).map(|fields| TIMELINE.with(fields)));
 }
 
 /// Shows the rows of a picture. Returns the picture that the user asks for.
@@ -124,8 +117,8 @@ fn sheet(ui: &mut Ui, state: &mut CaptureState) -> Option<Sheet> {
         some.union(ui.selectable_value(&mut state.all_modes, true, "All"))
     });
     button(ui, "Write sheet", "Write specula-sheet-N.png").then(|| {
-        let modes = Some(if state.all_modes { "all" } else { "modes" }.into());
-        Sheet { file: numbered_as("specula-sheet", "png"), modes, ..Sheet::default() }
+        let modes = if state.all_modes { "all" } else { "modes" };
+        Sheet::of(numbered_as("specula-sheet", "png"), modes)
     })
 }
 
@@ -161,9 +154,9 @@ fn animation(ui: &mut Ui, state: &mut CaptureState) {
 }
 
 /// Shows the button of a turntable. Returns the turntable that the user asks for.
-fn turntable(ui: &mut Ui, state: &CaptureState) -> Option<Turntable> {
+fn turntable(ui: &mut Ui, state: &CaptureState) -> Option<TurntableFields> {
     let about = "Write a full turn as specula-turntable-N, at the size chosen above";
-    button(ui, "Write turntable", about).then(|| Turntable {
+    button(ui, "Write turntable", about).then(|| TurntableFields {
         file: animation_file("specula-turntable", state.animation),
         frames: Some(state.frames),
         fps: Some(state.fps),
@@ -204,12 +197,12 @@ fn progress(ui: &mut Ui, captures: &Captures, folder: &str, commands: &mut Vec<C
             ui.add(bar).on_hover_text("Pictures drawn so far");
             let about = "Stop after the picture in progress. Numbered frames that were already written stay";
             if ui.button("Cancel").on_hover_text(about).clicked() {
-                commands.push(Command::CancelCapture(running.number));
+                commands.push(CANCEL_ONE.with(running.number));
             }
         });
     }
     if captures.iter().count() > 1 && button(ui, "Cancel all", "Stop all captures in progress") {
-        commands.push(Command::CancelCaptures);
+        commands.push(CANCEL.with(()));
     }
 }
 

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::shaders::{DRAFT, WRITE_EDITS};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
@@ -216,7 +217,7 @@ fn numbers(ui: &mut Ui, state: &State, shown: &mut SourceLine, commands: &mut Ve
             for (literal, value) in &mut shown.numbers {
                 *value = if literal.is_whole { value.round() } else { *value };
             }
-            commands.push(Command::Draft(shown.edits()));
+            commands.push(DRAFT.with(shown.edits()));
         }
     }
     let Some(draft) = draft else { return };
@@ -228,10 +229,10 @@ fn numbers(ui: &mut Ui, state: &State, shown: &mut SourceLine, commands: &mut Ve
         let changes: Vec<String> = draft.edits.iter().map(|edit| format!("{} -> {}", edit.old(), edit.new)).collect();
         let hint = format!("Write to the file: {}", changes.join(", "));
         if write.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
-            commands.push(Command::WriteEdits(draft.edits.clone()));
+            commands.push(WRITE_EDITS.with(draft.edits.clone()));
         }
         if ui.button("Cancel").on_hover_text("Go back to the numbers in the file").clicked() {
-            commands.push(Command::Draft(Vec::new()));
+            commands.push(DRAFT.with(Vec::new()));
             for (literal, value) in &mut shown.numbers {
                 *value = literal.value;
             }

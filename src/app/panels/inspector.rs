@@ -9,7 +9,9 @@ mod values;
 
 use egui::{Checkbox, Color32, Id, LayerId, Order, Rect, RichText, Stroke, Ui, pos2, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::layout::OPEN_INSPECTOR;
+use crate::app::command::scene::{FOLLOW_MOUSE, UNPIN};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
@@ -58,7 +60,7 @@ fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands
         for page in Page::ALL {
             let (name, doc) = page.words();
             if ui.selectable_label(own.page == page, name).on_hover_text(doc).clicked() {
-                commands.push(Command::OpenInspector(page));
+                commands.push(OPEN_INSPECTOR.with(page));
             }
         }
         light(ui, &mut settings.lights.chosen, reading.lights.len());
@@ -97,7 +99,7 @@ fn header(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode], commands
             None => drop(ui.label(RichText::new("no pixel").color(QUIET))),
         }
         if own.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
-            commands.push(Command::Unpin);
+            commands.push(UNPIN.with(()));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             copy(ui, own, modes);
@@ -105,7 +107,7 @@ fn header(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode], commands
             let follow = check_box::show(ui, Checkbox::new(&mut follows, "Follow mouse"));
             let hint = "While no pixel is pinned, read the pixel under the mouse when the mouse stops";
             if follow.on_hover_text(hint).changed() {
-                commands.push(Command::FollowMouse(follows));
+                commands.push(FOLLOW_MOUSE.with(follows));
             }
         });
     });

@@ -2,43 +2,38 @@
 
 use egui::{Key, Label, RichText, Ui, Window, vec2};
 
+use crate::app::command::registry::REGISTRY;
+use crate::app::command::spec::Group;
+use crate::app::input::keyboard::OTHER_KEYS;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, QUIET, hide_hover_texts};
 
-/// Keys and what they do, in short; assets/manual/window.md says more.
-const KEYS: &[(&str, &str)] = &[
-    ("1 … 9, 0", "the first ten modes"),
-    ("[  ]", "previous mode, next mode"),
-    ("letters", "the mode with this letter in the list; press it again to go back"),
-    ("Esc", "close this list, unpin the pixel, select nothing, or show one mode alone; otherwise the final picture"),
+/// What the mouse does.
+const MOUSE: [(&str, &str); 9] = [
     ("drag", "orbit"),
     ("Ctrl+drag, Shift+middle drag", "pan"),
-    ("Shift+drag, Alt+drag, middle drag", "turn the environment"),
     ("wheel", "zoom"),
+    ("Shift+drag, Alt+drag, middle drag", "turn the environment"),
     ("right button + W A S D Q E", "look around and fly"),
     ("click", "read this pixel in the Inspector, and select what is there"),
-    ("Ctrl+H, Alt+H", "hide the selection; draw everything again"),
-    ("/", "draw only the selection; press again to draw everything"),
-    ("Ctrl+drag on a light", "change the distance of the light; a plain drag turns it around the model"),
     ("double click", "look at this point and orbit around it"),
-    ("hold Space", "show the picture before the last edit, or the other picture of a comparison"),
-    ("Ctrl+K", "keep this picture and compare with it; press again to stop"),
-    ("R, Home", "frame the model"),
-    ("Numpad 1, 3, 7", "view from the front, the right or the top; with Ctrl, from the opposite side"),
-    ("Ctrl+Shift+1 … 9", "save this camera under a number"),
-    ("Ctrl+1 … 9", "return to the camera with this number"),
     ("Ctrl+click on a mode", "show it beside the others; a click in the picture keeps one of them"),
-    ("L", "start or stop the orbiting lights"),
-    ("H", "hide or show the panels"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),
-    ("double click on a name", "reset the setting; the menu of the name copies its option"),
-    ("Ctrl+O", "open a model, environment or shader"),
-    ("Ctrl+P", "find a mode, setting, panel or command"),
-    ("F1, ?", "show this list"),
-    ("F5", "compile everything again"),
-    ("F12", "save a screenshot as specula-1.png and so on"),
-    ("Ctrl+Q", "quit"),
+    ("Ctrl+drag on a light", "change the distance of the light; a plain drag turns it around the model"),
 ];
+
+/// A row of the list: keys, and what they do.
+type KeyRow = (String, &'static str);
+
+/// The rows of all lists: the mouse, the shortcuts of commands by their group, and other keys. The manual has them, too
+/// (assets/manual/window.md).
+fn rows() -> Vec<(Group, KeyRow)> {
+    let all = REGISTRY.iter().map(|command| command.about()).filter(|about| !about.keys_doc.is_empty());
+    let mut rows: Vec<_> = all.map(|about| (about.group, (about.keys(), about.keys_doc))).collect();
+    rows.extend(OTHER_KEYS.map(|(keys, doc)| (Group::Picture, (keys.to_owned(), doc))));
+    rows.extend(MOUSE.map(|(keys, doc)| (Group::Mouse, (keys.to_owned(), doc))));
+    rows.sort_by_key(|(group, _)| *group);
+    rows
+}
 
 /// Width of the list in points, and of the column with the keys.
 const WIDTH: f32 = 540.0;
@@ -84,15 +79,16 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
             if found.is_empty() {
                 Words::new(&list.filter).no_match(ui, "key");
             }
-            found.into_iter().for_each(|(keys, meaning)| row(ui, keys, meaning));
+            found.iter().for_each(|(keys, meaning)| row(ui, keys, meaning));
         });
     });
 }
 
 /// The rows that have all words of the filter.
-fn found(filter: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
+fn found(filter: &str) -> impl Iterator<Item = KeyRow> {
     let words = Words::new(filter);
-    KEYS.iter().copied().filter(move |(keys, meaning)| words.are_in(&format!("{keys} {meaning}")))
+    let rows = rows().into_iter().map(|(_, row)| row);
+    rows.filter(move |(keys, meaning)| words.are_in(&format!("{keys} {meaning}")))
 }
 
 fn row(ui: &mut Ui, keys: &str, meaning: &str) {
@@ -113,9 +109,30 @@ mod tests {
     #[test]
     fn the_filter_finds_keys_and_meanings() {
         let keys = |filter| found(filter).map(|(keys, _)| keys).collect::<Vec<_>>();
-        assert_eq!(keys("ctrl undo"), ["Ctrl+Z, Ctrl+Shift+Z"]);
-        assert_eq!(keys("PAN"), ["Ctrl+drag, Shift+middle drag", "H", "Ctrl+P"]);
-        assert_eq!(keys("").len(), KEYS.len());
+        assert_eq!(keys("ctrl undo"), ["Ctrl+Z"]);
+        assert_eq!(keys("PAN"), ["Ctrl+drag, Shift+middle drag", "Ctrl+P", "H"]);
+        assert_eq!(keys("").len(), rows().len());
         assert!(keys("no such key").is_empty());
+    }
+
+    #[test]
+    fn the_manual_has_the_same_keys() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual/window.md");
+        let manual = std::fs::read_to_string(file).unwrap();
+        let table = |group| {
+            let title = match group {
+                Group::Mouse => "| mouse | |",
+                Group::Picture => "| modes and picture | |",
+                Group::Camera => "| camera | |",
+                Group::Program => "| program | |",
+            };
+            let rows = rows().into_iter().filter(|(of, _)| *of == group);
+            let rows = rows.map(|(_, (keys, doc))| format!("| {keys} | {doc} |\n"));
+            format!("{title}\n|---|---|\n{}", rows.collect::<String>())
+        };
+        for group in [Group::Mouse, Group::Picture, Group::Camera, Group::Program] {
+            let table = table(group);
+            assert!(manual.replace('`', "").contains(&table), "assets/manual/window.md lacks this table:\n{table}");
+        }
     }
 }

@@ -6,7 +6,8 @@ mod mark;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::program::LEARN;
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::exercise::{LearnCommand, Learning};
@@ -37,7 +38,7 @@ fn show(ui: &mut Ui, learning: &Learning, diagnostics: &[Diagnostic], commands: 
 fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     let all = exercises();
     let number = learning.exercise.filter(|_| !learning.shows_list).map(|exercise| exercise.number);
-    let mut ask = |command| commands.push(Command::Learn(command));
+    let mut ask = |command| commands.push(LEARN.with(command));
     ui.horizontal(|ui| {
         if let Some(number) = number {
             let text = RichText::new(format!("Exercise {number} of {}", all.len())).small().color(QUIET);
@@ -91,7 +92,7 @@ fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
             let state = if record.solved { "solved" } else { "not solved yet" };
             let hover = format!("{}: {}\n{}, {state}", exercise.number, exercise.title, exercise.idea);
             if response.on_hover_text(hover).on_hover_cursor(egui::CursorIcon::PointingHand).clicked() {
-                commands.push(Command::Learn(LearnCommand::Open(exercise.number)));
+                commands.push(LEARN.with(LearnCommand::Open(exercise.number)));
             }
         }
     });

@@ -2,7 +2,8 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::scene::{PLACE_RECTANGLE, SELECT};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::selection::{LightId, Selected};
@@ -94,8 +95,8 @@ fn titled(ui: &mut Ui, title: &str, light: LightId, commands: &mut Vec<Command>)
             let hint = "Show its handle in the picture, where you can drag it";
             if ui.small_button("Move in view").on_hover_text(hint).clicked() {
                 commands.push(match light {
-                    LightId::Rectangle => Command::PlaceRectangle,
-                    _ => Command::Select(Selected::Light(light)),
+                    LightId::Rectangle => PLACE_RECTANGLE.with(()),
+                    _ => SELECT.with(Selected::Light(light)),
                 });
             }
         });

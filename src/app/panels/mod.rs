@@ -31,7 +31,6 @@ use std::time::Duration;
 
 use egui::{Ui, Vec2};
 
-use super::command::Command;
 use super::commands::Commands;
 use super::context::Context;
 use super::layout::Layout;
@@ -39,6 +38,7 @@ use super::palette::{self, Palette};
 use super::state::arrangement::{Panel, Preset};
 use super::state::workspace::PanelRequest;
 use super::widgets::theme;
+use crate::app::command::spec::Command;
 use panel_ui::PanelUi;
 
 /// A window smaller than this, in points, shows only the picture.
@@ -103,6 +103,11 @@ impl Panels {
         }
     }
 
+    /// Closes the list of keys or the gallery. Returns whether one was open.
+    pub(super) fn close_list(&mut self) -> bool {
+        std::mem::take(&mut self.show_keys) || std::mem::take(&mut self.open_gallery.is_open)
+    }
+
     /// Does what the rest of the window has asked for since the last frame.
     pub(super) fn carry_out(&mut self, request: &PanelRequest) {
         match *request {
@@ -117,7 +122,8 @@ impl Panels {
             PanelRequest::ShowExercise if self.layout.is_in_sight(Panel::Learn) => {}
             PanelRequest::ShowExercise => self.layout.arrange_temporarily(Preset::Learn),
             PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
-            PanelRequest::ShowKeys => self.show_keys = true,
+            PanelRequest::ToggleKeys => self.show_keys ^= true,
+            PanelRequest::TogglePalette => self.palette.toggle(),
             PanelRequest::ShowGallery => self.open_gallery.is_open = true,
             PanelRequest::AskDefaults => self.defaults.ask(None),
             _ => self.docked.iter_mut().for_each(|(_, panel)| panel.on_request(request)),
@@ -154,7 +160,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, comm
     overlay::show(egui, context, &mut panels.overlay, panels.visible, picture.rect, commands);
     keys::show(egui, &mut panels.key_list, &mut panels.show_keys, !panels.palette.is_open());
     open_gallery::show(egui, context.state, &mut panels.open_gallery, &mut commands.list);
-    palette::show(egui, context.state, &mut panels.palette, whole, commands);
+    palette::show(egui, context.state, &mut panels.palette, whole, &mut commands.list);
     parameters::defaults::show(egui, context.state, &mut panels.defaults, &mut commands.list);
     commands.sight.learn = panels.layout.is_in_sight(Panel::Learn);
     commands.sight.has_own_arrangement = panels.layout.has_own();

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::file::{OPEN, Open};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::model::ModelStatus;
@@ -62,14 +63,14 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], co
         choose(ui, "model", shown, |ui| {
             for name in BUILT_IN {
                 if ui.selectable_label(name == model.name, name).clicked() {
-                    commands.push(Command::OpenModel(name.into()));
+                    commands.push(OPEN.with(Open::Model(name.into())));
                 }
             }
             for path in recent {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
                 let button = ui.selectable_label(status.is_open(path), name);
                 if button.on_hover_text(path.display().to_string()).clicked() {
-                    commands.push(Command::OpenModel(path.clone()));
+                    commands.push(OPEN.with(Open::Model(path.clone())));
                 }
             }
         })

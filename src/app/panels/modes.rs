@@ -9,7 +9,8 @@ use egui::{RichText, Ui, vec2};
 
 use crate::app::panels::panel_ui::PanelUi;
 
-use crate::app::command::Command;
+use crate::app::command::modes::{GRID, GridModes};
+use crate::app::command::program::SAY;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::gallery::{Preview, Thumbnails};
@@ -17,7 +18,6 @@ use crate::app::state::grid::Grid;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono};
-use crate::control::Request;
 use crate::shader::annotation::{Mode, listed};
 
 /// Width of the button that switches between gallery and list, points.
@@ -58,10 +58,10 @@ impl PanelUi for Modes {
             return;
         }
         match grid.toggled(&mode.slug, &commands.settings.mode).filter(|_| Grid::can_show(mode)) {
-            Some(modes) => commands.push(Command::Ask(Box::new(Request::Grid(modes)))),
+            Some(modes) => commands.push(GRID.with(GridModes { modes })),
             None => {
                 let text = "At most nine modes fit side by side. Modes of random paths can only be shown alone";
-                commands.push(Command::Say(text.into()));
+                commands.push(SAY.with(text.into()));
             }
         }
     }
@@ -136,7 +136,7 @@ fn side_by_side(ui: &mut Ui, grid: &Grid, commands: &mut Commands) {
     let close = egui::Button::new(RichText::new(text).small()).right_text(icon::X);
     let hint = "Click to show only the selected mode (Esc). Ctrl+click a mode to add or remove it";
     if ui.add(close.min_size(vec2(ui.available_width(), 18.0))).on_hover_text(hint).clicked() {
-        commands.push(Command::Ask(Box::new(Request::Grid(Vec::new()))));
+        commands.push(GRID.with(GridModes::default()));
     }
 }
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use egui::{Align2, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
 use egui::{TextureOptions, pos2, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::file::{CHOOSE, OPEN, Open};
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::dialog::Dialog;
 use crate::app::state::recent::Kind;
@@ -98,10 +99,10 @@ fn contents(ui: &mut Ui, state: &State, own: &mut OpenGallery, height: f32, comm
     ui.horizontal(|ui| {
         if ui.button("File…").on_hover_text("A model, environment, measured BRDF, look or shader (Ctrl+O)").clicked()
         {
-            commands.push(Command::Choose(Dialog::File));
+            commands.push(CHOOSE.with(Dialog::File));
         }
         if ui.button("Shader tree…").on_hover_text("A folder written by `specula new`").clicked() {
-            commands.push(Command::Choose(Dialog::Tree));
+            commands.push(CHOOSE.with(Dialog::Tree));
         }
         ui.label(RichText::new("or drop a file on the window").small().color(QUIET));
     });
@@ -118,9 +119,9 @@ fn contents(ui: &mut Ui, state: &State, own: &mut OpenGallery, height: f32, comm
             is_empty = false;
             heading(ui, "Models");
             if let Some(name) = grid(ui, own, &tiles) {
-                commands.push(Command::OpenModel(name.into()));
+                commands.push(OPEN.with(Open::Model(name.into())));
             }
-            show_recent(ui, &files, |path| commands.push(Command::OpenModel(path)));
+            show_recent(ui, &files, |path| commands.push(OPEN.with(Open::Model(path))));
         }
         let now = state.session.settings.environment.name.clone();
         let environments = environment::BUILT_IN
@@ -130,9 +131,9 @@ fn contents(ui: &mut Ui, state: &State, own: &mut OpenGallery, height: f32, comm
             is_empty = false;
             heading(ui, "Environments");
             if let Some(name) = grid(ui, own, &tiles) {
-                commands.push(Command::OpenEnvironment(PathBuf::from(name)));
+                commands.push(OPEN.with(Open::Environment(PathBuf::from(name))));
             }
-            show_recent(ui, &files, |path| commands.push(Command::OpenEnvironment(path)));
+            show_recent(ui, &files, |path| commands.push(OPEN.with(Open::Environment(path))));
         }
         if is_empty {
             words.no_match(ui, "model or environment");

@@ -4,7 +4,9 @@ pub(super) mod range;
 
 use egui::{RichText, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::layout::PANELS;
+use crate::app::command::program::SAY;
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::workspace::PanelRequest;
@@ -19,7 +21,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let Commands { settings, list, .. } = commands;
     show(ui, settings, &mut shows_now, list);
     if shows_now != shows {
-        list.push(Command::Panels(PanelRequest::ToggleHistogram));
+        list.push(PANELS.with(PanelRequest::ToggleHistogram));
     }
 }
 
@@ -41,7 +43,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, shows_histogram: &mut b
     });
     if ui.button("Copy as look file").on_hover_text("Copy all settings as TOML, for --look").clicked() {
         ui.ctx().copy_text(settings.to_toml());
-        commands.push(Command::Say("Copied all settings as TOML".into()));
+        commands.push(SAY.with("Copied all settings as TOML".into()));
     }
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use egui::{CollapsingHeader, RichText, Ui};
 
 use super::parameters::{is_true, show_constant, show_parameter};
-use crate::app::command::Command;
+use crate::app::command::playback::{PLAYBACK, PlaybackFields};
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::playback::Playback;
@@ -14,7 +14,6 @@ use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own,
 use crate::app::widgets::rows::{Row, check, set_option};
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::QUIET;
-use crate::control::{Playback as Asked, Request};
 use crate::settings::Settings;
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
 
@@ -24,7 +23,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let shaders = &*context.shaders;
     if context.state.is_animated() {
         let asked = clock(ui, &context.state.playback);
-        list.extend(asked.map(|asked| Command::Ask(Box::new(Request::Playback(asked)))));
+        list.extend(asked.map(|asked| PLAYBACK.with(asked)));
     }
     let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());
     let Found { added, switches, shipped, inside } = Found::new(shaders, &words);
@@ -143,23 +142,23 @@ fn show_parameters<'a>(
 }
 
 /// The clock of animated shaders. Returns what the user changes.
-fn clock(ui: &mut Ui, playback: &Playback) -> Option<Asked> {
+fn clock(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields> {
     let mut asked = None;
     ui.horizontal_wrapped(|ui| {
         let label = if playback.paused { "Play" } else { "Pause" };
         if ui.button(label).on_hover_text("Run or stop frame.time_s").clicked() {
-            asked = Some(Asked { paused: Some(!playback.paused), ..Asked::default() });
+            asked = Some(PlaybackFields { paused: Some(!playback.paused), ..PlaybackFields::default() });
         }
         if ui.button("Step").on_hover_text("Advance by 1/60 s").clicked() {
-            asked = Some(Asked { step: true, ..Asked::default() });
+            asked = Some(PlaybackFields { step: true, ..PlaybackFields::default() });
         }
         if ui.button("0").on_hover_text("Restart at 0 s").clicked() {
-            asked = Some(Asked { restart: true, ..Asked::default() });
+            asked = Some(PlaybackFields { restart: true, ..PlaybackFields::default() });
         }
         let mut speed = playback.speed;
         let drag = egui::DragValue::new(&mut speed).range(0.0..=10.0).speed(0.01).suffix("×");
         if ui.add(drag).on_hover_text("Playback speed").changed() {
-            asked = Some(Asked { speed: Some(speed), ..Asked::default() });
+            asked = Some(PlaybackFields { speed: Some(speed), ..PlaybackFields::default() });
         }
         ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
     });

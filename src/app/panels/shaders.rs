@@ -8,7 +8,9 @@ mod stages;
 
 use egui::{Align, Layout, RichText, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::file::EDIT;
+use crate::app::command::shaders::RELOAD;
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::editor::Place;
@@ -89,7 +91,7 @@ fn head(
     let bar = |ui: &mut Ui| {
         // The button first, so that a long text in a narrow column is elided beside it.
         if ui.button("Reload").on_hover_text("Compile everything again (F5)").clicked() {
-            commands.push(Command::Reload);
+            commands.push(RELOAD.with(()));
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
@@ -124,7 +126,7 @@ fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
     };
     let label = ui.add(elided(text.color(ACCENT)).sense(egui::Sense::click()));
     if label.clicked() {
-        commands.push(Command::Edit(Place { file: folder.clone(), line: None, column: None }));
+        commands.push(EDIT.with(Place { file: folder.clone(), line: None, column: None }));
     }
     let hint = format!("{}\nSave a file here and the picture updates. Click to open it in the editor", status.tree);
     label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, TextureHandle, Ui, Vec2, vec2};
 
-use crate::app::command::{Command, CompareWith};
+use crate::app::command::compare::{COMPARE, CompareFields};
+use crate::app::command::shaders::{VERSIONS, VersionsRequest};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
@@ -237,14 +239,15 @@ impl Entry<'_> {
         let Self { state, version, newest, .. } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
         if response.double_clicked() && can_show {
-            commands.extend([Command::Compare(CompareWith::Nothing), Command::ShowVersion(Some(version.number))]);
+            commands
+                .extend([COMPARE.with(CompareFields::nothing()), VERSIONS.with(VersionsRequest::Show(version.number))]);
         } else if response.clicked() && can_show {
-            let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
-            commands.push(Command::Compare(with));
+            let with = if is_chosen { CompareFields::nothing() } else { CompareFields::version(version.number) };
+            commands.push(COMPARE.with(with));
         } else if response.clicked() && state.compare.is_on() {
-            commands.push(Command::Compare(CompareWith::Nothing));
+            commands.push(COMPARE.with(CompareFields::nothing()));
         } else if response.clicked() && self.ends_something() {
-            commands.push(Command::ShowVersion(None));
+            commands.push(VERSIONS.with(VersionsRequest::ShowNewest));
         }
         response.context_menu(|ui| {
             let lines = state.versions.difference(version);
@@ -256,7 +259,7 @@ impl Entry<'_> {
             let show = egui::Button::new("Show alone");
             let hint = "Show this version in the whole window, without a change of your files. Then click on another one to compare the two";
             if ui.add_enabled(can_show, show).on_hover_text(hint).clicked() {
-                commands.push(Command::ShowVersion(Some(version.number)));
+                commands.push(VERSIONS.with(VersionsRequest::Show(version.number)));
                 ui.close();
             }
             let can_write = !state.files_of_version(version.number).is_empty();
@@ -308,7 +311,7 @@ fn ask(ui: &mut Ui, state: &State, number: u64, asked: &mut Option<u64>, command
     ui.add(Label::new(RichText::new(question).color(WARNING)).wrap());
     ui.horizontal(|ui| {
         if ui.add_enabled(!files.is_empty(), egui::Button::new("Write")).clicked() {
-            commands.push(Command::WriteVersion(number));
+            commands.push(VERSIONS.with(VersionsRequest::Write(number)));
             *asked = None;
         }
         if ui.button("Cancel").clicked() {

@@ -2,7 +2,8 @@
 
 use egui::{Button, Checkbox, RichText, Ui, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::file::{CHOOSE, OPEN, Open, RESTORE_ALWAYS, RESTORE_SESSION, SHOW_GALLERY};
+use crate::app::command::spec::Command;
 use crate::app::layout::Layout;
 use crate::app::palette::Palette;
 use crate::app::state::arrangement::{Panel, Preset};
@@ -75,24 +76,24 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
         ui.set_min_width(180.0);
         let hint = "Built-in models and environments, with pictures";
         if ui.button("Gallery…").on_hover_text(hint).clicked() {
-            commands.push(Command::ShowGallery);
+            commands.push(SHOW_GALLERY.with(()));
         }
         if ui.add(Button::new("File…").right_text(RichText::new("Ctrl+O").small().color(QUIET))).clicked() {
-            commands.push(Command::Choose(Dialog::File));
+            commands.push(CHOOSE.with(Dialog::File));
         }
         if ui.button("Shader tree…").clicked() {
-            commands.push(Command::Choose(Dialog::Tree));
+            commands.push(CHOOSE.with(Dialog::Tree));
         }
         ui.separator();
         if let Some(session) = &last_sessions.here
             && ui.button("Last session").on_hover_text(session.words()).clicked()
         {
-            commands.push(Command::RestoreSession);
+            commands.push(RESTORE_SESSION.with(()));
         }
         let mut always = last_sessions.is_always();
         let hint = "When Specula starts in this folder without arguments, continue its last session";
         if check_box::show(ui, Checkbox::new(&mut always, "Restore at start")).on_hover_text(hint).changed() {
-            commands.push(Command::RestoreAlways(always));
+            commands.push(RESTORE_ALWAYS.with(always));
         }
         for (kind, title) in
             [(Kind::Model, "Models"), (Kind::Environment, "Environments"), (Kind::Tree, "Shader trees")]
@@ -107,9 +108,9 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
                 if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
                     let path = path.clone();
                     commands.push(match kind {
-                        Kind::Model => Command::OpenModel(path),
-                        Kind::Environment => Command::OpenEnvironment(path),
-                        Kind::Tree => Command::OpenTree(path),
+                        Kind::Model => OPEN.with(Open::Model(path)),
+                        Kind::Environment => OPEN.with(Open::Environment(path)),
+                        Kind::Tree => OPEN.with(Open::Tree(path)),
                     });
                 }
             }

@@ -87,7 +87,7 @@ pub(super) struct State {
     /// Those who get events.
     pub(super) events: Clients,
     /// Commands that are not done yet.
-    pub(super) waiting: Waiting,
+    pub(super) waiting: Waiting<Self>,
     pub(super) captures: Captures,
     /// The start of the program.
     pub(super) start: Instant,

@@ -1,4 +1,4 @@
-//! Commands from outside that are not done yet, and what each waits for.
+//! Commands that are not done yet, and when each is.
 
 use std::path::PathBuf;
 
@@ -7,32 +7,40 @@ use serde_json::{Value, json};
 use super::captures::Job;
 use crate::control::Reply;
 
-/// Condition that a command waits for.
-pub(in crate::app) enum Until {
-    /// The final picture.
-    Shown,
-    /// The same; the answer tells the camera.
-    Camera,
-    /// The end of a reload, and then the final picture.
+/// When a command is done, and its result, which may depend on the state `S` of the window.
+pub(in crate::app) enum Until<S> {
+    Now(Value),
+    /// With the final picture.
+    Settled(fn(&S) -> Value),
+    /// After the end of a reload, with the final picture.
     Reloaded,
-    /// The end of loading this model, and then the final picture.
+    /// After the end of loading this model, with the final picture.
     Model(PathBuf),
-    /// A look file that is being read.
+    /// Once a look file has been read.
     Look,
-    /// The other picture of a comparison, and a frame that shows both.
-    Compared,
-    /// The files of this version of the shaders.
-    Written(u64),
-    /// The shader files with these edits.
+    /// With the other picture of a comparison and a frame that shows both.
+    Compared(fn(&S) -> Value),
+    /// Once the files of this version of the shaders are written.
+    VersionWritten(u64),
+    /// Once the shader files have these edits.
     EditsWritten(Value),
-    /// The final picture; the answer tells the modes side by side.
-    Grid,
-    /// The final picture, to write it.
+    /// Once the final picture is written.
     Screen(Option<PathBuf>),
-    /// The same for a picture of the window.
+    /// The same for the window with its panels.
     Window(Option<PathBuf>),
-    /// The same for what a thread draws.
+    /// The same for a picture that a thread draws.
     Picture(Job),
+}
+
+impl<S> Until<S> {
+    /// Done, without a result.
+    pub(in crate::app) const DONE: Self = Self::Now(Value::Null);
+    /// With the final picture, without a result.
+    pub(in crate::app) const SHOWN: Self = Self::Settled(|_| Value::Null);
+
+    pub(in crate::app) fn is_capture(&self) -> bool {
+        matches!(self, Self::Screen(_) | Self::Window(_) | Self::Picture(_))
+    }
 }
 
 /// A picture of the screen that is asked for, and where it goes.
@@ -42,11 +50,16 @@ pub(in crate::app) struct Shot {
 }
 
 /// The commands that are not done yet, in their order. Each is answered once.
-#[derive(Default)]
-pub(in crate::app) struct Waiting(Vec<(Reply, Until)>);
+pub(in crate::app) struct Waiting<S>(Vec<(Reply, Until<S>)>);
 
-impl Waiting {
-    pub(in crate::app) fn push(&mut self, reply: Reply, until: Until) {
+impl<S> Default for Waiting<S> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<S> Waiting<S> {
+    pub(in crate::app) fn push(&mut self, reply: Reply, until: Until<S>) {
         self.0.push((reply, until));
     }
 
@@ -55,94 +68,92 @@ impl Waiting {
     }
 
     /// All of them; the caller pushes those again that still wait.
-    pub(in crate::app) fn take(&mut self) -> Vec<(Reply, Until)> {
+    pub(in crate::app) fn take(&mut self) -> Vec<(Reply, Until<S>)> {
         std::mem::take(&mut self.0)
     }
 
     /// Whether a command waits for nothing but another frame. Messages wake the window for all others.
     pub(in crate::app) fn needs_frame(&self) -> bool {
-        let waits_for_frame = |until: &Until| {
-            matches!(until, Until::Shown | Until::Camera | Until::Grid | Until::Screen(_) | Until::Window(_))
-        };
-        self.0.iter().any(|(_, until)| waits_for_frame(until))
+        let needs_frame = |until: &Until<S>| matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_));
+        self.0.iter().any(|(_, until)| needs_frame(until))
+    }
+
+    /// Answers the commands for which `result` has a result.
+    fn answer(&mut self, result: impl Fn(&Until<S>) -> Option<Result<Value, String>>) {
+        for (reply, until) in self.take() {
+            match result(&until) {
+                Some(Ok(result)) => reply.done(result),
+                Some(Err(message)) => reply.error(message),
+                None => self.push(reply, until),
+            }
+        }
+    }
+
+    fn refuse(&mut self, is: impl Fn(&Until<S>) -> bool, message: &str) {
+        self.answer(|until| is(until).then(|| Err(message.to_owned())));
     }
 
     /// Answers the commands that wait for a picture which cannot come.
     pub(in crate::app) fn fail(&mut self, message: &str) {
-        let stays = |until: &Until| {
+        let waits_for_more = |until: &Until<S>| {
             matches!(
                 until,
-                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) | Until::EditsWritten(_)
+                Until::Look | Until::Model(_) | Until::Reloaded | Until::VersionWritten(_) | Until::EditsWritten(_)
             )
         };
-        self.end(|until| !stays(until), message);
+        self.refuse(|until| !waits_for_more(until), message);
     }
 
     /// Answers those who wait for a model that cannot be loaded.
     pub(in crate::app) fn model_failed(&mut self, message: &str) {
-        self.end(|until| matches!(until, Until::Model(_)), message);
+        self.refuse(|until| matches!(until, Until::Model(_)), message);
     }
 
     /// Answers those who wait for a look file, or lets them wait for its model or its frame.
     pub(in crate::app) fn look_read(&mut self, result: Result<Option<PathBuf>, String>) {
+        let is_look = |until: &Until<S>| matches!(until, Until::Look);
         match result {
             Ok(model) => {
-                for (_, until) in &mut self.0 {
-                    if matches!(until, Until::Look) {
-                        *until = model.clone().map_or(Until::Shown, Until::Model);
-                    }
+                for (_, until) in self.0.iter_mut().filter(|(_, until)| is_look(until)) {
+                    *until = model.clone().map_or(Until::SHOWN, Until::Model);
                 }
             }
-            Err(message) => self.end(|until| matches!(until, Until::Look), &message),
+            Err(message) => self.refuse(is_look, &message),
         }
     }
 
     /// Answers those who wait for a comparison that does not come.
     pub(in crate::app) fn comparison_failed(&mut self, message: &str) {
-        self.end(|until| matches!(until, Until::Compared), message);
+        self.refuse(|until| matches!(until, Until::Compared(_)), message);
     }
 
     /// Answers those who wait for the files of a version. `error` is why they were not written.
     pub(in crate::app) fn answer_written(&mut self, number: u64, error: Option<&str>) {
-        for (reply, until) in self.take() {
-            match (until, error) {
-                (Until::Written(of), Some(error)) if of == number => reply.error(error),
-                (Until::Written(of), None) if of == number => reply.done(Value::Null),
-                (until, _) => self.push(reply, until),
-            }
-        }
+        let result = error.map_or(Ok(Value::Null), |error| Err(error.to_owned()));
+        self.answer(|until| matches!(until, Until::VersionWritten(of) if *of == number).then(|| result.clone()));
     }
 
     /// Answers those who wait for edits in the files.
     pub(in crate::app) fn answer_edits(&mut self, result: Result<(), &str>) {
-        for (reply, until) in self.take() {
-            match (until, result) {
-                (Until::EditsWritten(edits), Ok(())) => reply.done(json!({ "edits": edits })),
-                (Until::EditsWritten(_), Err(error)) => reply.error(error),
-                (until, _) => self.push(reply, until),
-            }
-        }
+        self.answer(|until| match until {
+            Until::EditsWritten(edits) => Some(result.map(|()| json!({ "edits": edits })).map_err(str::to_owned)),
+            _ => None,
+        });
     }
 
     /// Answers those who wait for a picture that is to be written.
     pub(in crate::app) fn cancel_captures(&mut self) {
-        self.end(|until| matches!(until, Until::Picture(_) | Until::Screen(_) | Until::Window(_)), "canceled");
+        self.refuse(Until::is_capture, "canceled");
     }
 
     /// Answers all: the device is lost.
     pub(in crate::app) fn end_all(&mut self) {
-        self.end(|_| true, "the graphics device was lost");
-    }
-
-    fn end(&mut self, is: impl Fn(&Until) -> bool, message: &str) {
-        for (reply, until) in self.take() {
-            if is(&until) { reply.error(message) } else { self.push(reply, until) }
-        }
+        self.refuse(|_| true, "the graphics device was lost");
     }
 
     /// Removes the first picture of the screen, or of the window, that is asked for.
     pub(in crate::app) fn take_shot(&mut self, of_window: bool) -> Option<Shot> {
-        let is = |(_, until): &(Reply, Until)| match until {
+        let is = |(_, until): &(Reply, Until<S>)| match until {
             Until::Screen(_) => !of_window,
             Until::Window(_) => of_window,
             _ => false,

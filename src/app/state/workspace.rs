@@ -31,8 +31,10 @@ pub(in crate::app) enum PanelRequest {
     ToggleTheme,
     /// Show or hide the histogram of the picture's values.
     ToggleHistogram,
-    /// Show the list of keys.
-    ShowKeys,
+    /// Show or hide the list of keys.
+    ToggleKeys,
+    /// Open or close the command palette.
+    TogglePalette,
     /// Show what can be opened, with pictures.
     ShowGallery,
     /// Ask whether to write this version to the files.
@@ -94,6 +96,11 @@ impl Workspace {
             PanelRequest::ToggleHistogram => self.shows_histogram ^= true,
             request => self.requests.push(request),
         }
+    }
+
+    /// Asks for a change that the user must see: hidden panels are shown.
+    pub(in crate::app) fn request_in_sight(&mut self, request: PanelRequest) {
+        self.requests.extend([PanelRequest::Unhide, request]);
     }
 
     /// The requests since the last frame, in their order.

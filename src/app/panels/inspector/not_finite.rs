@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, Sense, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::file::EDIT;
+use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::inspection::NotFiniteSearch;
 use crate::app::widgets::rows::elided;
@@ -47,7 +48,7 @@ fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, comm
         match has_files {
             true => {
                 let (line, column) = (Some(*line), Some(*column));
-                commands.push(Command::Edit(Place { file: PathBuf::from(file), line, column }));
+                commands.push(EDIT.with(Place { file: PathBuf::from(file), line, column }));
             }
             false => ui.ctx().copy_text(format!("{file}:{line}:{column}: {code}")),
         }

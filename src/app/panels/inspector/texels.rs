@@ -4,7 +4,9 @@ use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::values::{HEIGHT, SWATCH};
-use crate::app::command::Command;
+use crate::app::command::layout::OPEN_PANEL;
+use crate::app::command::scene::SELECT;
+use crate::app::command::spec::Command;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::widgets::search::Words;
@@ -24,8 +26,8 @@ pub(super) fn show(ui: &mut Ui, texels: &[Texel], words: &Words, commands: &mut 
     ui.label(RichText::new("Textures").small().color(QUIET));
     for texel in found {
         if row(ui, texel).clicked() {
-            commands.push(Command::Select(Selected::Texture(texel.place.source)));
-            commands.push(Command::OpenPanel(Panel::Texture));
+            commands.push(SELECT.with(Selected::Texture(texel.place.source)));
+            commands.push(OPEN_PANEL.with(Panel::Texture));
         }
     }
 }
@@ -93,7 +95,11 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::super::not_finite;
+    use std::path::PathBuf;
+
     use super::*;
+    use crate::app::command::file::EDIT;
+    use crate::app::editor::Place;
     use crate::app::state::inspection::NotFiniteSearch;
     use crate::render::TexelPlace;
     use crate::scene::TextureSource;
@@ -131,11 +137,12 @@ mod tests {
         harness.run();
         harness.get_by_label("base color texel 255   0 128 255").click();
         harness.run();
-        let opened = [Command::Select(Selected::Texture(source)), Command::OpenPanel(Panel::Texture)];
+        let opened = [SELECT.with(Selected::Texture(source)), OPEN_PANEL.with(Panel::Texture)];
         assert_eq!(*harness.state(), opened);
         harness.get_by_label("Inf  brdf/ndf.glsl:20  return a2 / 0.0;").click();
         harness.run();
-        let Some(Command::Edit(place)) = harness.state().last() else { panic!("{:?}", harness.state()) };
-        assert_eq!((place.line, place.column), (Some(20), Some(5)));
+        let file = PathBuf::from("/home/me/shaders/brdf/ndf.glsl");
+        let place = Place { file, line: Some(20), column: Some(5) };
+        assert_eq!(harness.state().last(), Some(&EDIT.with(place)));
     }
 }

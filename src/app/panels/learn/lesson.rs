@@ -3,7 +3,8 @@
 use egui::{Frame, Label, Margin, RichText, Ui};
 
 use super::mark::mark;
-use crate::app::command::Command;
+use crate::app::command::program::LEARN;
+use crate::app::command::spec::Command;
 use crate::app::state::exercise::{LearnCommand, Learning, Measured};
 use crate::app::state::shaders::difference::Kind;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
@@ -18,7 +19,7 @@ pub(super) fn show(
     commands: &mut Vec<Command>,
 ) {
     let record = learning.progress.of(exercise);
-    let mut ask = |command| commands.push(Command::Learn(command));
+    let mut ask = |command| commands.push(LEARN.with(command));
     ui.add_space(4.0);
     ui.label(RichText::new(&exercise.title).strong());
     ui.label(RichText::new(&exercise.idea).color(ACCENT));

@@ -3,7 +3,8 @@
 use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
 
 use super::mark::paint_mark;
-use crate::app::command::Command;
+use crate::app::command::program::LEARN;
+use crate::app::command::spec::Command;
 use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, QUIET, body_font, small_font};
@@ -26,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
     for exercise in exercises() {
         let is_solved = learning.progress.of(exercise).solved;
         if row(ui, exercise, is_solved, next == Some(exercise.number)).clicked() {
-            commands.push(Command::Learn(LearnCommand::Open(exercise.number)));
+            commands.push(LEARN.with(LearnCommand::Open(exercise.number)));
         }
     }
     ui.add_space(8.0);

@@ -8,11 +8,11 @@ use egui::{
 };
 use image::RgbImage;
 
-use crate::app::command::Command;
+use crate::app::command::compare::{COMPARE, CompareFields};
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::compare::Difference;
 use crate::app::widgets::theme::{PICTURE_ACCENT, small_font};
-use crate::control::{Compare, Request};
 
 /// Width of the draggable strip, in points.
 const GRIP: f32 = 16.0;
@@ -46,7 +46,7 @@ pub(super) fn show(
     let response = area.show(egui, |ui| ui.allocate_response(strip.size(), Sense::drag())).inner;
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.drag_stopped()) {
         let wipe = ((at.x - picture.min.x) / picture.width().max(1.0)).clamp(0.0, 1.0);
-        commands.push(Command::Ask(Box::new(Request::Compare(Compare { wipe: Some(wipe), ..Compare::default() }))));
+        commands.push(COMPARE.with(CompareFields::wipe(wipe)));
         // The next press finds the strip where it was in the last frame.
         egui.request_repaint();
     }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use egui::{Align2, Id, Rect, RichText, Ui};
 
 use super::card::{area, card};
-use crate::app::command::Command;
+use crate::app::command::file::EDIT;
+use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::widgets::plural;
 use crate::app::widgets::theme::{ERROR, QUIET, STRONG, TEXT, WARNING};
@@ -119,7 +120,7 @@ fn position(ui: &mut Ui, diagnostic: &Diagnostic, is_file: bool, commands: &mut 
     if response.clicked() {
         let Diagnostic { file, line, column, .. } = diagnostic;
         match is_file {
-            true => commands.push(Command::Edit(Place { file: PathBuf::from(file), line: *line, column: *column })),
+            true => commands.push(EDIT.with(Place { file: PathBuf::from(file), line: *line, column: *column })),
             false => ui.ctx().copy_text(place.clone()),
         }
     }

@@ -4,7 +4,7 @@
 use egui::{Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use crate::app::command::Command;
+use crate::app::command::scene::SELECT;
 use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::state::selection::{LightId, Selected, name_or};
@@ -183,7 +183,7 @@ pub(super) fn show(egui: &egui::Context, state: &State, gizmo: &mut Gizmo, rect:
         }
     }
     if let Some(light) = chosen.filter(|light| *light != selected) {
-        commands.push(Command::Select(Selected::Light(light)));
+        commands.push(SELECT.with(Selected::Light(light)));
     }
 }
 

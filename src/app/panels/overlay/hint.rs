@@ -3,7 +3,9 @@
 use egui::{Align2, Id, Rect, RichText, Ui};
 
 use super::card::{area, card};
-use crate::app::command::Command;
+use crate::app::command::file::{EDIT, NEW_TREE};
+use crate::app::command::program::{DISMISS_HINT, LEARN};
+use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::State;
 use crate::app::state::exercise::LearnCommand;
@@ -34,7 +36,7 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
                     buttons(ui, commands, &mut is_done, |ui| {
                         let hover = "Opens the folder with $SPECULA_EDITOR, $VISUAL, $EDITOR or an installed editor";
                         let is_clicked = ui.button("Open in the editor").on_hover_text(hover).clicked();
-                        is_clicked.then_some(Command::Edit(Place { file: folder, line: None, column: None }))
+                        is_clicked.then_some(EDIT.with(Place { file: folder, line: None, column: None }))
                     });
                 }
                 None => {
@@ -49,14 +51,14 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
                         let standard = ui.button(text).on_hover_text(hover).clicked().then_some(standard);
                         let chosen =
                             ui.button("Choose…").on_hover_text("Writes them to a folder that you choose").clicked();
-                        (standard.is_some() || chosen).then_some(Command::NewTree(standard))
+                        (standard.is_some() || chosen).then_some(NEW_TREE.with(standard))
                     });
                 }
             }
         });
     });
     if is_done {
-        commands.push(Command::DismissHint);
+        commands.push(DISMISS_HINT.with(()));
     }
 }
 
@@ -71,11 +73,11 @@ fn buttons(
     ui.horizontal_wrapped(|ui| {
         let command = first(ui);
         // A tree that has just been written is shown with its path, and the other hint.
-        *is_done |= matches!(command, Some(Command::Edit(_)));
+        *is_done |= command.as_ref().is_some_and(|command| command.is_a(&EDIT));
         commands.extend(command);
         let hover = format!("{} short exercises about shading, which Specula checks", exercises().len());
         if ui.button("Learn…").on_hover_text(hover).clicked() {
-            commands.push(Command::Learn(LearnCommand::List));
+            commands.push(LEARN.with(LearnCommand::List));
             *is_done = true;
         }
         if ui.button("Got it").on_hover_text("Do not show this again").clicked() {

@@ -15,7 +15,9 @@ mod version;
 use egui::{Align2, Id, Rect, RichText, TextStyle};
 
 use super::inspector::marker;
-use crate::app::command::Command;
+use crate::app::command::layout::PANELS;
+use crate::app::command::program::{HIDE_DIAGNOSTICS, HIDE_WARNINGS};
+use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::State;
@@ -63,7 +65,7 @@ pub(super) fn show(
         let (card, hides) = diagnostics::show(egui, &shown, &mut own.files, &mut commands.list);
         free.max.y = card.top();
         if hides {
-            commands.push(Command::HideDiagnostics);
+            commands.push(HIDE_DIAGNOSTICS.with(()));
         }
     } else if with_panels {
         hint::show(egui, state, picture, &mut commands.list);
@@ -120,7 +122,7 @@ fn warnings(egui: &egui::Context, state: &State, picture: Rect, commands: &mut V
         });
     });
     if hide {
-        commands.push(Command::HideWarnings);
+        commands.push(HIDE_WARNINGS.with(()));
     }
 }
 
@@ -166,6 +168,6 @@ fn label(egui: &egui::Context, context: &Context<'_>, own: &mut LegendState, pic
         card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, own, picture.width()));
     });
     if own.shows_histogram != context.state.workspace.shows_histogram {
-        commands.push(Command::Panels(PanelRequest::ToggleHistogram));
+        commands.push(PANELS.with(PanelRequest::ToggleHistogram));
     }
 }

@@ -3,7 +3,8 @@
 use egui::{Align2, Id, Rect, RichText};
 
 use super::card::{area, card};
-use crate::app::command::Command;
+use crate::app::command::file::{REFUSE_SESSION, RESTORE_ALWAYS, RESTORE_SESSION};
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 
@@ -21,15 +22,15 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
             ui.horizontal_wrapped(|ui| {
                 let hint = "Model, shader tree, settings, camera, environment and mode as you left them";
                 if ui.button("Restore").on_hover_text(hint).clicked() {
-                    commands.push(Command::RestoreSession);
+                    commands.push(RESTORE_SESSION.with(()));
                 }
                 let hint =
                     "Restore it now, and at every start without a model or options. The Open menu can change that";
                 if ui.button("Always").on_hover_text(hint).clicked() {
-                    commands.extend([Command::RestoreAlways(true), Command::RestoreSession]);
+                    commands.extend([RESTORE_ALWAYS.with(true), RESTORE_SESSION.with(())]);
                 }
                 if ui.button("Not now").on_hover_text("You can still restore it from the Open menu").clicked() {
-                    commands.push(Command::RefuseSession);
+                    commands.push(REFUSE_SESSION.with(()));
                 }
             });
         });

@@ -3,7 +3,9 @@
 use egui::{Align2, Id, Rect, RichText};
 
 use super::card::{area, card};
-use crate::app::command::Command;
+use crate::app::command::layout::{OPEN_PANEL, PANELS};
+use crate::app::command::shaders::{VERSIONS, VersionsRequest};
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::workspace::PanelRequest;
@@ -19,11 +21,11 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
             ui.label(RichText::new("Your files are as they were; a save ends it").small().color(QUIET));
             ui.horizontal_wrapped(|ui| {
                 if ui.button("Back to the newest").on_hover_text("Show the files again").clicked() {
-                    commands.push(Command::ShowVersion(None));
+                    commands.push(VERSIONS.with(VersionsRequest::ShowNewest));
                 }
                 if ui.button("Write to the files…").on_hover_text("Asks first, in the panel Timeline").clicked() {
-                    commands.push(Command::OpenPanel(Panel::Timeline));
-                    commands.push(Command::Panels(PanelRequest::AskVersion(number)));
+                    commands.push(OPEN_PANEL.with(Panel::Timeline));
+                    commands.push(PANELS.with(PanelRequest::AskVersion(number)));
                 }
             });
         });

@@ -3,7 +3,8 @@
 
 use egui::{Button, Grid, Id, Label, Modal, RichText, ScrollArea, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::shaders::WRITE_EDITS;
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::shaders::edits::NO_FOLDER;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
@@ -98,7 +99,7 @@ pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut Asked,
         ui.horizontal(|ui| {
             let write = ui.add_enabled(can_write, Button::new("Write"));
             if write.on_hover_text("Change these values in the files and nothing else").clicked() {
-                commands.extend(edits.clone().ok().map(Command::WriteEdits));
+                commands.extend(edits.clone().ok().map(|argument| WRITE_EDITS.with(argument)));
                 closes = true;
             }
             closes |= ui.button("Cancel").on_hover_text("Leave the files as they are (Escape)").clicked();

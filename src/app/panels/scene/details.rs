@@ -5,7 +5,9 @@ use egui::{Button, Label, RichText, Ui};
 use super::material;
 use super::title::title;
 use super::tree::kind;
-use crate::app::command::Command;
+use crate::app::command::camera::LOOK_THROUGH;
+use crate::app::command::layout::OPEN_PANEL;
+use crate::app::command::scene::{HIDE, ISOLATE, SELECT};
 use crate::app::commands::Commands;
 use crate::app::panels::lights;
 use crate::app::state::State;
@@ -43,14 +45,14 @@ pub(super) fn show(
             let image = source.image(model);
             title(ui, "Texture", image.map_or("", |image| &image.name));
             if ui.button("Show it").on_hover_text("Open the Texture panel").clicked() {
-                commands.push(Command::OpenPanel(Panel::Texture));
+                commands.push(OPEN_PANEL.with(Panel::Texture));
             }
         }
         Selected::Camera(index) => {
             let Some(camera) = model.cameras.get(index) else { return };
             title(ui, "Camera", &camera.name);
             if ui.button("Look through it").on_hover_text("R frames the model again").clicked() {
-                commands.push(Command::LookThrough(index));
+                commands.push(LOOK_THROUGH.with(index));
             }
         }
         Selected::Light(light) => show_light(ui, &mut commands.settings, model, light),
@@ -109,17 +111,17 @@ fn parts(
     ui.horizontal_wrapped(|ui| {
         let is_isolated = !commands.settings.scene.isolated.is_empty();
         if ui.button("Hide").on_hover_text("Do not draw it (Ctrl+H). Alt+H draws everything again").clicked() {
-            commands.push(Command::HideSelected);
+            commands.push(HIDE.with(()));
         }
         let (name, about) = match is_isolated {
             true => ("Show others", "Draw everything again (/)"),
             false => ("Isolate", "Draw nothing else (/)"),
         };
         if ui.button(name).on_hover_text(about).clicked() {
-            commands.push(Command::IsolateSelected);
+            commands.push(ISOLATE.with(()));
         }
         if ui.button("Deselect").on_hover_text("Select nothing (Esc)").clicked() {
-            commands.push(Command::Select(Selected::Nothing));
+            commands.push(SELECT.with(Selected::Nothing));
         }
     });
     if let Some(index) = material {
@@ -135,7 +137,7 @@ fn parts(
             let name = model.material_key(index);
             let link = ui.add(Button::new(RichText::new(name).color(ACCENT)).frame(false).truncate());
             if link.on_hover_text("Select the material").clicked() {
-                commands.push(Command::Select(Selected::Material(index)));
+                commands.push(SELECT.with(Selected::Material(index)));
             }
         }
     }

@@ -4,7 +4,9 @@ use egui::{Button, RichText, Ui};
 
 use super::title::title;
 use super::tree::textures;
-use crate::app::command::Command;
+use crate::app::command::layout::OPEN_PANEL;
+use crate::app::command::scene::SELECT;
+use crate::app::command::spec::Command;
 use crate::app::numbers::Scale;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
@@ -59,8 +61,8 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, scene: &Scene, index: u
         let text = RichText::new(&slots).color(ACCENT);
         let link = ui.add(Button::new(text).frame(false).truncate());
         if link.on_hover_text(format!("{name}\nClick to see the texture")).clicked() {
-            commands.push(Command::Select(Selected::Texture(source)));
-            commands.push(Command::OpenPanel(Panel::Texture));
+            commands.push(SELECT.with(Selected::Texture(source)));
+            commands.push(OPEN_PANEL.with(Panel::Texture));
         }
     }
 }

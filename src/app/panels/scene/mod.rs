@@ -8,7 +8,9 @@ pub(super) mod tree;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::camera::LOOK_THROUGH;
+use crate::app::command::layout::OPEN_PANEL;
+use crate::app::command::scene::{SELECT, SHOW_ALL};
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
@@ -63,7 +65,7 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
         let is_whole = settings.hidden.is_empty() && settings.isolated.is_empty();
         search::field(ui, &mut own.search, "nodes, materials, textures", if is_whole { 0.0 } else { 66.0 });
         if !is_whole && ui.small_button("Show all").on_hover_text("Draw everything that is hidden (Alt+H)").clicked() {
-            commands.push(Command::ShowAll);
+            commands.push(SHOW_ALL.with(()));
         }
     });
     if own.follows {
@@ -97,12 +99,12 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
             match row::show(ui, row, &shown) {
                 Some(row::Action::Toggle) => toggled = Some(at),
                 Some(row::Action::Select(item)) => {
-                    commands.push(Command::Select(item));
+                    commands.push(SELECT.with(item));
                     if matches!(item, Selected::Texture(_)) {
-                        commands.push(Command::OpenPanel(Panel::Texture));
+                        commands.push(OPEN_PANEL.with(Panel::Texture));
                     }
                 }
-                Some(row::Action::LookThrough(camera)) => commands.push(Command::LookThrough(camera)),
+                Some(row::Action::LookThrough(camera)) => commands.push(LOOK_THROUGH.with(camera)),
                 Some(row::Action::Show(key, is_shown)) => {
                     let settings = &mut commands.settings.scene;
                     settings.hidden.retain(|name| *name != key);

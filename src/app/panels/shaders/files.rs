@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, CursorIcon, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
-use crate::app::command::Command;
+use crate::app::command::file::EDIT;
+use crate::app::command::program::SAY;
+use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::State;
 use crate::app::widgets::search::{self, Words};
@@ -258,8 +260,8 @@ fn open_on_click(response: egui::Response, display: &str, commands: &mut Vec<Com
     let is_on_disk = !display.starts_with("embedded:");
     if response.clicked() {
         match is_on_disk {
-            true => commands.push(Command::Edit(Place { file: PathBuf::from(display), line: None, column: None })),
-            false => commands.push(Command::Say(
+            true => commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None })),
+            false => commands.push(SAY.with(
                 "this file is built in. `specula new DIR` writes the tree to a folder where you can edit it".into(),
             )),
         }

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::file::EDIT;
+use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::State;
 use crate::app::widgets::plural;
@@ -86,7 +87,7 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic, has_files: bool, commands: &mut Vec
         if label.clicked() {
             let Diagnostic { file, line, column, .. } = diagnostic;
             match has_files {
-                true => commands.push(Command::Edit(Place { file: PathBuf::from(file), line: *line, column: *column })),
+                true => commands.push(EDIT.with(Place { file: PathBuf::from(file), line: *line, column: *column })),
                 false => ui.ctx().copy_text(diagnostic.one_line()),
             }
         }

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use egui::{Checkbox, Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::shaders::ASK_DRIVER;
+use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::shaders::stages::{StageRow, StageState};
 use crate::app::widgets::check_box;
@@ -82,7 +83,7 @@ fn ask(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let switch = Checkbox::new(&mut asks, RichText::new("Ask the driver").small());
     let response = ui.add_enabled_ui(tells, |ui| check_box::show(ui, switch)).inner;
     if response.changed() {
-        commands.push(Command::AskDriver(asks));
+        commands.push(ASK_DRIVER.with(asks));
     }
     response.on_hover_text(hint).on_disabled_hover_text(hint);
 }

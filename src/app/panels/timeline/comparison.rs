@@ -2,7 +2,9 @@
 
 use egui::{Label, RichText, TextWrapMode, Ui};
 
-use crate::app::command::{Command, CompareWith};
+use crate::app::command::compare::{COMPARE, CompareFields, TOGGLE_DIFFERENCE};
+use crate::app::command::file::CHOOSE;
+use crate::app::command::spec::Command;
 use crate::app::state::compare::{Compare, Difference};
 use crate::app::state::dialog::Dialog;
 use crate::app::widgets::search;
@@ -31,11 +33,11 @@ pub(in crate::app::panels) fn show(
         if compare.is_on() {
             let stop = named(ui.button("Stop"), "Stop comparing");
             if stop.on_hover_text("Stop comparing, and show the newest picture alone (Ctrl+K)").clicked() {
-                commands.push(Command::Compare(CompareWith::Nothing));
+                commands.push(COMPARE.with(CompareFields::nothing()));
             }
             let hint = "Show the FLIP of each pixel over the picture: black is equal, white is the largest difference";
             if ui.selectable_label(compare.shows_map, "Difference").on_hover_text(hint).clicked() {
-                commands.push(Command::ToggleDifference);
+                commands.push(TOGGLE_DIFFERENCE.with(()));
             }
             for number in numbers(compare.difference.as_ref()) {
                 ui.label(monospace(number)).on_hover_text(FLIP);
@@ -43,18 +45,18 @@ pub(in crate::app::panels) fn show(
         } else {
             let hint = "Keep the current picture with all its settings, and compare later pictures with it (Ctrl+K)";
             if ui.button("Keep this picture").on_hover_text(hint).clicked() {
-                commands.push(Command::Compare(CompareWith::ThisPicture));
+                commands.push(COMPARE.with(CompareFields::picture()));
             }
         }
         ui.menu_button("Compare with…", |ui| {
             let picture = "A PNG, JPEG, HDR or EXR file. The comparison updates when the file changes";
             if ui.button("A picture…").on_hover_text(picture).clicked() {
-                commands.push(Command::Choose(Dialog::Picture));
+                commands.push(CHOOSE.with(Dialog::Picture));
                 ui.close();
             }
             let tree = "The same picture drawn with other shaders. The comparison updates when their files change";
             if ui.button("A shader tree…").on_hover_text(tree).clicked() {
-                commands.push(Command::Choose(Dialog::SecondTree));
+                commands.push(CHOOSE.with(Dialog::SecondTree));
                 ui.close();
             }
         });

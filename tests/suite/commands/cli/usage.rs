@@ -269,7 +269,7 @@ fn help_commands_lists_what_a_window_takes() {
     let directory = tempfile::tempdir().unwrap();
     let help = run(directory.path(), &["help", "commands"]);
     help.expect(0, &[]);
-    for command in specula::control::COMMANDS {
+    for command in specula::app::described() {
         assert!(help.stdout.contains(&format!("\"command\": \"{}\"", command.command)), "{help:#?}");
     }
 }

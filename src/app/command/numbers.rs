@@ -1,23 +1,39 @@
 //! The command `numbers`: other numbers in a line of the shaders, shown without a change of the file, or written to it.
 
+use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::{Next, Until};
-use crate::app::command::Command;
+use super::modes::shaders;
+use super::shaders::write_listed;
+use super::spec::Until;
+use super::spec::{Outcome, Spec};
+use crate::app::actions::edits::draft;
 use crate::app::engine::Engine;
-use crate::app::execute::execute;
 use crate::app::source_line::SourceLine;
 use crate::app::state::State;
-use crate::app::state::shaders::edits::NO_FOLDER;
-use crate::control::Numbers;
 use crate::shader::rewrite::Edit;
 
+/// Fields of `numbers`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Numbers {
+    at: Option<String>,
+    values: Option<Vec<Option<f64>>>,
+    write: bool,
+}
+
+pub(in crate::app) static NUMBERS: Spec<Numbers> = Spec::new("numbers", numbers).takes(
+    r#""at"?: "brdf/ndf.glsl:20", "values"?: [0.5, null, ...], "write"?: true"#,
+    "Lists the numbers of a line of the shaders, or shows the picture with other values in their place (null leaves one), without a \
+     change of the file. write puts them into it; without fields it goes back to the file. Result: line, numbers; generation; edits",
+);
+
 /// Lists the numbers of a line, shows others in their place, writes these, or goes back to the file.
-pub(in crate::app) fn numbers_as(state: &mut State, engine: &mut Engine, request: Numbers) -> Result<Next, String> {
+fn numbers(state: &mut State, engine: &mut Engine, request: Numbers) -> Outcome {
     let Some(at) = &request.at else {
-        return if request.write { write_numbers(state, engine) } else { Ok(show_numbers(state, engine, Vec::new())) };
+        return if request.write { write_shown(state, engine) } else { Ok(show(state, engine, Vec::new())) };
     };
-    let shaders = state.session.shaders.clone().ok_or("the shaders have not been compiled yet")?;
+    let shaders = shaders(state)?;
     // Numbers that are shown already are not those of the file.
     let base = state.edits.draft.as_ref().map(|draft| (draft.path.clone(), draft.base.clone()));
     let line = SourceLine::place(&shaders, at).and_then(|(path, text, line)| {
@@ -27,7 +43,7 @@ pub(in crate::app) fn numbers_as(state: &mut State, engine: &mut Engine, request
     let mut line = line.ok_or_else(|| format!("the shaders have no line {at}; expected FILE:LINE"))?;
     let Some(values) = request.values else {
         let numbers = line.numbers.iter().map(|(literal, value)| json!({ "text": literal.text, "value": value }));
-        return Ok(Next::Done(json!({ "line": line.before.trim(), "numbers": numbers.collect::<Vec<_>>() })));
+        return Ok(Until::Now(json!({ "line": line.before.trim(), "numbers": numbers.collect::<Vec<_>>() })));
     };
     if values.len() > line.numbers.len() {
         let (given, count) = (values.len(), line.numbers.len());
@@ -48,33 +64,22 @@ pub(in crate::app) fn numbers_as(state: &mut State, engine: &mut Engine, request
     }
     let edits = line.edits();
     if request.write && !edits.is_empty() {
-        return write_edits_of(state, engine, edits);
+        return write_listed(state, engine, edits);
     }
-    Ok(show_numbers(state, engine, edits))
+    Ok(show(state, engine, edits))
 }
 
 /// Shows the picture with edits, or with the file.
-fn show_numbers(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) -> Next {
+fn show(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) -> Until {
     if edits.is_empty() && state.edits.draft.as_ref().is_none() {
-        return Next::Done(Value::Null);
+        return Until::Now(Value::Null);
     }
-    execute(state, engine, Command::Draft(edits));
-    Next::Wait(Until::Reloaded)
+    draft(state, engine, edits);
+    Until::Reloaded
 }
 
 /// Writes the numbers that are shown.
-fn write_numbers(state: &mut State, engine: &mut Engine) -> Result<Next, String> {
+fn write_shown(state: &mut State, engine: &mut Engine) -> Outcome {
     let edits = state.edits.draft.as_ref().map(|draft| draft.edits.clone());
-    write_edits_of(state, engine, edits.ok_or("no other numbers are shown")?)
-}
-
-/// Writes edits into the files. The answer lists them.
-pub(in crate::app) fn write_edits_of(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) -> Result<Next, String> {
-    if !state.has_folder() {
-        return Err(NO_FOLDER.into());
-    }
-    let told = edits.iter().map(|edit| json!({ "name": edit.name, "file": edit.path, "line": edit.line }));
-    let told = told.collect();
-    execute(state, engine, Command::WriteEdits(edits));
-    Ok(Next::Wait(Until::EditsWritten(told)))
+    write_listed(state, engine, edits.ok_or("no other numbers are shown")?)
 }

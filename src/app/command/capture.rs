@@ -1,0 +1,189 @@
+//! Commands that write pictures and animations, and read pixels.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use serde_json::Value;
+use winit::keyboard::NamedKey;
+
+use super::shortcut::Shortcut;
+use super::spec::Until;
+use super::spec::{Group, Outcome, Spec};
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::app::state::captures::Job;
+use crate::capture::{Turn, Turntable, check_animation, modes_of};
+use crate::picture;
+
+/// Size of a picture of a sheet, pixels.
+const TILE: [u32; 2] = [320, 180];
+/// Frames of a turn, and frames a second.
+const FRAMES: u32 = 75;
+const FPS: f32 = 25.0;
+/// Versions a second.
+const VERSIONS_PER_S: f32 = 1.5;
+
+/// Fields of `capture`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Capture {
+    pub(in crate::app) file: Option<PathBuf>,
+    pub(in crate::app) size: Option<[u32; 2]>,
+    pub(in crate::app) mode: Option<String>,
+    pub(in crate::app) frames: Option<u32>,
+    pub(in crate::app) ui: bool,
+}
+
+pub(in crate::app) static CAPTURE: Spec<Capture> = Spec::new("capture", capture).takes(
+    r#""file"?: "a.png" | "a.exr", "size"?: [w,h], "mode"?: "d", "frames"?: n, "ui"?: true"#,
+    "Writes the picture as it is on screen, or drawn anew at a size or in a mode; EXR holds raw floats; with ui the whole window. Result: file, width, height",
+);
+
+pub(in crate::app) static SCREENSHOT: Spec<()> =
+    Spec::plain("screenshot", |state, _, ()| state.screenshot = true).label("Screenshot", "capture PNG").shortcuts(
+        Group::Picture,
+        &[Shortcut::named(NamedKey::F12).everywhere()],
+        "save a screenshot as specula-1.png and so on",
+    );
+
+/// Fields of `probe`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Probe {
+    at: [u32; 2],
+    modes: Option<Vec<String>>,
+}
+
+pub(in crate::app) static PROBE: Spec<Probe> = Spec::new("probe", probe)
+    .takes(
+        r#""at": [x,y], "modes"?: ["d", "f"] | ["all", "paths"]"#,
+        "Raw values of a pixel of the picture, in these modes; without them, in all but those of random paths. Result: pixel, modes, \
+         textures (a texel of each), not_finite (the first line with NaN or Inf, if a value is one)",
+    )
+    .required(&["at"]);
+
+/// Fields of `sheet`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Sheet {
+    pub(in crate::app) file: PathBuf,
+    pub(in crate::app) modes: Option<Value>,
+    size: Option<[u32; 2]>,
+    columns: Option<u32>,
+}
+
+impl Sheet {
+    /// A sheet of all modes, or of those with data.
+    pub(in crate::app) fn of(file: PathBuf, modes: &str) -> Self {
+        Self { file, modes: Some(modes.into()), ..Self::default() }
+    }
+}
+
+pub(in crate::app) static SHEET: Spec<Sheet> = Spec::new("sheet", |_, _, fields| sheet(fields))
+    .takes(
+        r#""file": "sheet.png", "modes"?: "modes" | "all" | ["all", "paths"] | ["d", ...], "size"?: [w,h], "columns"?: n"#,
+        "Writes a contact sheet of modes with their names; size is that of one picture",
+    )
+    .required(&["file"]);
+
+/// Fields of `turntable`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct TurntableFields {
+    pub(in crate::app) file: PathBuf,
+    pub(in crate::app) frames: Option<u32>,
+    pub(in crate::app) fps: Option<f32>,
+    pub(in crate::app) size: Option<[u32; 2]>,
+    pub(in crate::app) turn: Option<String>,
+}
+
+pub(in crate::app) static TURNTABLE: Spec<TurntableFields> = Spec::new("turntable", |_, _, fields| turntable(fields))
+    .takes(
+        r#""file": "spin.mp4" | ".gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
+        "Writes a full turn as a video, as an animation, or as numbered PNGs",
+    )
+    .required(&["file"]);
+
+/// Fields of `timeline`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Timeline {
+    pub(in crate::app) file: PathBuf,
+    pub(in crate::app) fps: Option<f32>,
+    pub(in crate::app) size: Option<[u32; 2]>,
+}
+
+pub(in crate::app) static TIMELINE: Spec<Timeline> = Spec::new("timeline", |_, _, fields| timeline(fields))
+    .takes(
+        r#""file": "edits.mp4" | ".gif" | ".webp" | ".png", "fps"?: n, "size"?: [w,h]"#,
+        "Writes the versions of the shaders as a video or an animation",
+    )
+    .required(&["file"]);
+
+pub(in crate::app) static CANCEL: Spec<()> = Spec::plain("cancel", |state, _, ()| state.cancel_captures())
+    .line("Ends the captures, sheets, animations and probes that are under way; each answers with an error");
+
+/// Ends the capture with a number.
+pub(in crate::app) static CANCEL_ONE: Spec<u64> =
+    Spec::act("cancel-one", |state, _, number| state.captures.cancel_one(number));
+
+fn capture(_: &mut State, _: &mut Engine, Capture { file, size, mode, frames, ui }: Capture) -> Outcome {
+    if let Some(file) = &file {
+        picture::check_path(file)?;
+    }
+    let is_exr = file.as_deref().is_some_and(picture::holds_light);
+    if ui {
+        let wrong = size.is_some() || mode.is_some() || frames.is_some() || is_exr;
+        return match wrong {
+            true => Err("a capture with `ui` has the window's size and mode, and is a PNG".to_owned()),
+            false => Ok(Until::Window(file)),
+        };
+    }
+    if size.is_none() && mode.is_none() && frames.is_none() && !is_exr {
+        return Ok(Until::Screen(file));
+    }
+    Ok(Until::Picture(Job::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
+}
+
+fn probe(state: &mut State, _: &mut Engine, Probe { at, modes }: Probe) -> Outcome {
+    let names = modes.unwrap_or_default();
+    // The names are looked up again when the picture is there.
+    if state.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete()) {
+        modes_of(&state.session, &names)?;
+    }
+    Ok(Until::Picture(Job::Probe { at: at.into(), names }))
+}
+
+fn sheet(fields: Sheet) -> Outcome {
+    let names = match fields.modes {
+        None => vec!["modes".to_owned()],
+        Some(Value::String(name)) => vec![name],
+        Some(Value::Array(list)) => {
+            let text = |name: &Value| name.as_str().map(str::to_owned);
+            list.iter().map(text).collect::<Option<_>>().ok_or("`modes` takes names of modes")?
+        }
+        Some(other) => {
+            return Err(format!("`modes` cannot be {other}; it takes \"modes\", \"all\" or names of modes"));
+        }
+    };
+    picture::check_path(&fields.file)?;
+    let size = fields.size.unwrap_or(TILE).into();
+    Ok(Until::Picture(Job::Sheet { file: fields.file, names, size, columns: fields.columns }))
+}
+
+fn turntable(fields: TurntableFields) -> Outcome {
+    let (fps, frames) = (fields.fps.unwrap_or(FPS), fields.frames.unwrap_or(FRAMES));
+    check_animation(&fields.file, fps)?;
+    if !(1..=Turntable::MOST_FRAMES).contains(&frames) {
+        return Err(format!("`frames` is {frames}; it can be 1 to {}", Turntable::MOST_FRAMES));
+    }
+    let turn = fields.turn.as_deref().map_or(Ok(Turn::default()), Turn::named)?;
+    let size = fields.size.map(Into::into);
+    Ok(Until::Picture(Job::Turntable { file: fields.file, frames, fps, size, turn }))
+}
+
+fn timeline(fields: Timeline) -> Outcome {
+    let fps = fields.fps.unwrap_or(VERSIONS_PER_S);
+    check_animation(&fields.file, fps)?;
+    Ok(Until::Picture(Job::Timeline { file: fields.file, fps, size: fields.size.map(Into::into) }))
+}

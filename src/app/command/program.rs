@@ -1,0 +1,31 @@
+//! Commands about the program as a whole.
+
+use super::shortcut::Shortcut;
+use super::spec::{Group, Spec};
+use crate::app::actions::exercises::learn;
+use crate::app::state::exercise::LearnCommand;
+
+/// Runs a command of the exercises.
+pub(in crate::app) static LEARN: Spec<LearnCommand> =
+    Spec::act("learn", |state, engine, command| learn(state, engine, command));
+
+/// Shows a message for a few seconds.
+pub(in crate::app) static SAY: Spec<String> = Spec::act("say", |state, _, text: String| state.say(text));
+
+/// Hides the diagnostics until the next reload.
+pub(in crate::app) static HIDE_DIAGNOSTICS: Spec<()> =
+    Spec::plain("hide-diagnostics", |state, _, ()| state.session.diagnostics.clear());
+
+/// Hides the kept messages and the warnings of the model.
+pub(in crate::app) static HIDE_WARNINGS: Spec<()> = Spec::plain("hide-warnings", |state, _, ()| {
+    state.notices.dismiss();
+    state.model.shows_warnings = false;
+});
+
+/// Never shows the hint of the first start again.
+pub(in crate::app) static DISMISS_HINT: Spec<()> = Spec::plain("dismiss-hint", |state, _, ()| state.hint.dismiss());
+
+pub(in crate::app) static QUIT: Spec<()> = Spec::plain("quit", |state, _, ()| state.quit = true)
+    .line("Closes the window")
+    .label("Quit", "close")
+    .shortcuts(Group::Program, &[Shortcut::key('q').ctrl()], "quit");
