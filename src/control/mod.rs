@@ -17,22 +17,13 @@ use std::io::Read;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
-use serde_json::{Map, Value};
 
 pub use client::{Client, Clients};
 pub(crate) use line::kind;
-pub(crate) use reply::Reply;
+pub(crate) use reply::{Asked, Reply};
 pub use socket::{Socket, remove_sockets, socket_path};
 
 use crate::message::warn;
-
-/// A command, and the client that waits for its answer.
-pub(crate) struct Asked {
-    /// Its name, which may be unknown.
-    pub(crate) command: String,
-    pub(crate) fields: Map<String, Value>,
-    pub(crate) reply: Reply,
-}
 
 /// The programs outside: subscribers of events, and the commands that they send.
 pub struct Control {

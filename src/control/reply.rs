@@ -1,11 +1,19 @@
 //! The answer to a command: exactly one line, whatever becomes of the command.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Client;
 
 /// Receives the result of a command that the window itself issued.
 type Taken = Box<dyn FnOnce(Result<Value, String>) + Send>;
+
+/// A command, and the client that waits for its answer.
+pub(crate) struct Asked {
+    /// Its name, which may be unknown.
+    pub(crate) command: String,
+    pub(crate) fields: Map<String, Value>,
+    pub(crate) reply: Reply,
+}
 
 /// The client that waits for the answer to a command. Dropping it answers that the command was not carried out.
 pub(crate) struct Reply {

@@ -4,10 +4,10 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use winit::keyboard::{ModifiersState, NamedKey};
 
+use super::about::Group;
 use super::settings::adopt;
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{Group, Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::actions::select::look_through;
 use crate::app::control::short;
 use crate::app::engine::Engine;

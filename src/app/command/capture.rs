@@ -6,9 +6,9 @@ use serde::Deserialize;
 use serde_json::Value;
 use winit::keyboard::NamedKey;
 
+use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{Group, Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::captures::Job;

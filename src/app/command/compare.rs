@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{Group, Outcome, Spec};
-use crate::app::actions::compare::compare_with;
+use super::spec::{Outcome, Spec, Until};
 use crate::app::actions::compare::file::open_picture;
-use crate::app::actions::compare::this_picture;
 use crate::app::actions::compare::tree::open_second_tree;
+use crate::app::actions::compare::{compare_with, this_picture};
 use crate::app::control::{path_text, short};
 use crate::app::engine::Engine;
 use crate::app::engine::compared::Compared;

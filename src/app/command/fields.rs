@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::spec::About;
+use super::about::About;
 use crate::control::kind;
 
 /// The fields of a line but for `id` and `command`.

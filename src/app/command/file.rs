@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::about::{About, Group};
 use super::compare::{COMPARE, CompareFields};
 use super::fields::{Fields, needs};
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{About, Command, Group, Outcome, Spec};
-use crate::app::actions::files::edit;
-use crate::app::actions::files::load_model;
-use crate::app::actions::files::open_tree;
+use super::spec::{Command, Outcome, Spec, Until};
+use crate::app::actions::files::{edit, load_model, open_tree};
 use crate::app::actions::sessions::restore_session;
 use crate::app::dialog;
 use crate::app::editor::Place;

@@ -2,8 +2,9 @@
 
 use winit::keyboard::NamedKey;
 
+use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::{Group, Spec};
+use super::spec::Spec;
 use crate::app::state::arrangement::{Panel, Preset};
 use crate::app::state::inspection::Page;
 use crate::app::state::workspace::PanelRequest;

@@ -2,6 +2,7 @@
 //! names, its keys, its arguments, when it is enabled, what it does, and when it is done. Keys, panels, the palette, dropped files, stdin
 //! and the socket carry it out here.
 
+pub(super) mod about;
 mod assignments;
 pub(super) mod camera;
 pub(super) mod capture;

@@ -4,11 +4,11 @@ use serde::Deserialize;
 use serde_json::json;
 use winit::keyboard::NamedKey;
 
+use super::about::Group;
 use super::fields;
 use super::settings::adopt;
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{Group, Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::grid::Grid;

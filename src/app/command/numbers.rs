@@ -5,8 +5,7 @@ use serde_json::{Value, json};
 
 use super::modes::shaders;
 use super::shaders::write_listed;
-use super::spec::Until;
-use super::spec::{Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::actions::edits::draft;
 use crate::app::engine::Engine;
 use crate::app::source_line::SourceLine;

@@ -3,8 +3,7 @@
 use serde::Deserialize;
 use serde_json::json;
 
-use super::spec::Until;
-use super::spec::{Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::control::short;
 use crate::app::engine::Engine;
 use crate::app::state::State;

@@ -1,7 +1,8 @@
 //! Commands about the program as a whole.
 
+use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::{Group, Spec};
+use super::spec::Spec;
 use crate::app::actions::exercises::learn;
 use crate::app::state::exercise::LearnCommand;
 

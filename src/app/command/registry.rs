@@ -4,8 +4,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::spec::Until;
-use super::spec::{Registered, Spec};
+use super::spec::{Registered, Spec, Until};
 use super::{camera, capture, compare, file, layout, modes, numbers, playback, program, scene, settings, shaders};
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -110,8 +109,9 @@ pub struct Described {
 
 /// The commands that a line of the socket or of stdin can name.
 pub fn described() -> impl Iterator<Item = Described> {
-    let described =
-        |about: &'static super::spec::About| Some(Described { command: about.id, takes: about.takes?, doc: about.doc });
+    let described = |about: &'static super::about::About| {
+        Some(Described { command: about.id, takes: about.takes?, doc: about.doc })
+    };
     REGISTRY.iter().filter_map(move |command| described(command.about()))
 }
 

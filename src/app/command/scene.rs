@@ -3,15 +3,11 @@
 use serde::Deserialize;
 use serde_json::json;
 
+use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{Group, Outcome, Spec};
+use super::spec::{Outcome, Spec, Until};
 use crate::app::actions::inspect::inspect;
-use crate::app::actions::select::hide_selected;
-use crate::app::actions::select::isolate_selected;
-use crate::app::actions::select::place_rectangle;
-use crate::app::actions::select::select_at;
-use crate::app::actions::select::show_all;
+use crate::app::actions::select::{hide_selected, isolate_selected, place_rectangle, select_at, show_all};
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::selection::Selected;

@@ -5,11 +5,11 @@ use std::rc::Rc;
 
 use serde_json::{Value as Json, json};
 
+use super::about::{About, Group};
 use super::assignments::assignments;
 use super::fields::{self, Fields};
 use super::shortcut::Shortcut;
-use super::spec::Until;
-use super::spec::{About, Command, Group, Spec};
+use super::spec::{Command, Spec, Until};
 use crate::app::control::short;
 use crate::app::state::State;
 use crate::message::did_you_mean;

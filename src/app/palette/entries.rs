@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-use super::ask::{Ask, Target};
+use super::entry::{Action, Ask, Entry, Target, switch};
 use super::settings::of_settings;
 use crate::app::command::camera::{LOOK_THROUGH, Side, VIEW_FROM};
 use crate::app::command::compare::{COMPARE, CompareFields, TOGGLE_COMPARE, TOGGLE_DIFFERENCE};
@@ -32,50 +30,6 @@ use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Mode, ShaderSet};
-
-/// The action of an entry.
-#[derive(Clone, Debug)]
-pub(super) enum Action {
-    Run(Command),
-    /// Asks for a number, and sets it.
-    Number(Box<Ask>),
-}
-
-/// A row that the palette can show.
-#[derive(Debug, Serialize)]
-pub(in crate::app) struct Entry {
-    pub(super) group: &'static str,
-    #[serde(rename = "entry")]
-    pub(super) title: String,
-    /// More words by which it is found.
-    #[serde(skip)]
-    pub(super) words: String,
-    /// Key that does the same, or the value of a number; may be empty.
-    #[serde(skip)]
-    pub(super) key: String,
-    #[serde(skip)]
-    pub(super) action: Action,
-    /// Whether it comes after entries that match as well: it shows or switches the inside of an effect.
-    #[serde(skip)]
-    pub(super) is_minor: bool,
-    /// Whether it is the choice in force, so that choosing it changes nothing.
-    #[serde(rename = "now")]
-    pub(super) is_in_force: bool,
-}
-
-impl Entry {
-    pub(super) fn new(group: &'static str, title: impl Into<String>, command: Command) -> Self {
-        Self::of(group, title.into(), Action::Run(command))
-    }
-
-    pub(super) fn of(group: &'static str, title: String, action: Action) -> Self {
-        Self { group, title, words: String::new(), key: String::new(), action, is_minor: false, is_in_force: false }
-    }
-
-    pub(super) fn words(self, words: impl Into<String>) -> Self {
-        Self { words: words.into(), ..self }
-    }
-}
 
 /// All entries: the commands with a label, and those that the settings, the shaders, the model and the picture offer.
 pub(in crate::app) fn entries(state: &State, registry: &[&'static dyn Registered]) -> Vec<Entry> {
@@ -254,18 +208,6 @@ fn of_mode(index: usize, mode: &Mode, shown: Option<&str>) -> Entry {
         is_in_force: shown == Some(mode.slug.as_str()),
         ..Entry::new("Mode", mode.name.clone(), show)
     }
-}
-
-/// An entry that switches something on or off.
-pub(super) fn switch(
-    group: &'static str,
-    label: &str,
-    name: &str,
-    is_on: bool,
-    command: impl Fn(bool) -> Command,
-) -> Entry {
-    let turns = if is_on { "off" } else { "on" };
-    Entry::new(group, format!("{label}: turn {turns}"), command(!is_on)).words(name)
 }
 
 /// An entry for each choice of a constant or parameter, which has the value `now`.

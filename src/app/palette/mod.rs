@@ -1,8 +1,8 @@
 //! The command palette (Ctrl+P): finds modes, panels, files, switches, choices, numbers and commands by words of their names. The
 //! value of a number is typed behind its name (`exposure 1.5`) or in a second step.
 
-mod ask;
 pub(super) mod entries;
+mod entry;
 mod row;
 mod search;
 mod settings;
@@ -20,8 +20,8 @@ use crate::app::state::State;
 use crate::scene::Model;
 use crate::settings::Settings;
 use crate::shader::Expression;
-use ask::Ask;
-use entries::{Action, Entry, entries};
+use entries::entries;
+use entry::{Action, Ask, Entry};
 use search::{Found, find};
 
 /// Most rows of the list.

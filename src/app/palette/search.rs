@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::entries::{Action, Entry};
+use super::entry::{Action, Entry};
 
 /// An entry that matches the query.
 #[derive(Debug)]
@@ -160,8 +160,8 @@ fn tokens(text: &str) -> impl Iterator<Item = Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ask::Ask;
     use super::super::entries::{of_command, of_layout};
+    use super::super::entry::Ask;
     use super::*;
     use crate::app::command::layout::KEYS;
     use crate::app::command::registry::REGISTRY;

@@ -1,7 +1,6 @@
 //! Entries for the settings: numbers, choices and switches.
 
-use super::ask::Ask;
-use super::entries::{Entry, switch};
+use super::entry::{Ask, Entry, switch};
 use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA};
 use crate::app::command::settings::change;
 use crate::app::numbers::{Number, group, title};

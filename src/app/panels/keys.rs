@@ -2,8 +2,8 @@
 
 use egui::{Key, Label, RichText, Ui, Window, vec2};
 
+use crate::app::command::about::Group;
 use crate::app::command::registry::REGISTRY;
-use crate::app::command::spec::Group;
 use crate::app::input::keyboard::OTHER_KEYS;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, QUIET, hide_hover_texts};
@@ -28,7 +28,7 @@ type KeyRow = (String, &'static str);
 /// (assets/manual/window.md).
 fn rows() -> Vec<(Group, KeyRow)> {
     let all = REGISTRY.iter().map(|command| command.about()).filter(|about| !about.keys_doc.is_empty());
-    let mut rows: Vec<_> = all.map(|about| (about.group, (about.keys(), about.keys_doc))).collect();
+    let mut rows: Vec<_> = all.map(|about| (about.group, (about.key_names(), about.keys_doc))).collect();
     rows.extend(OTHER_KEYS.map(|(keys, doc)| (Group::Picture, (keys.to_owned(), doc))));
     rows.extend(MOUSE.map(|(keys, doc)| (Group::Mouse, (keys.to_owned(), doc))));
     rows.sort_by_key(|(group, _)| *group);

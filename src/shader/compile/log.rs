@@ -7,7 +7,7 @@ use std::ops::Range;
 use super::hooks::other_parameters;
 use super::include::meant;
 use super::names::Names;
-use super::places::StageFiles;
+use super::places::{StageFiles, is_unended, is_value};
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
 use crate::shader::glsl::{Line, Token, TokenKind, assigns, code, find_word, includes, lines};
@@ -259,19 +259,6 @@ fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: 
 fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
     let before = lines.get(..index)?.iter().rev().find(|line| line.is_code())?;
     is_unended(before).then_some(before.number)
-}
-
-/// Whether a line looks like a statement without `;`.
-pub(super) fn is_unended(line: &Line<'_>) -> bool {
-    let tokens = line.tokens();
-    let opens_block =
-        tokens.first().is_some_and(|first| matches!(first.text, "if" | "for" | "while" | "else" | "switch" | "do"));
-    tokens.last().is_some_and(is_value) && !opens_block
-}
-
-/// Whether a token can end a value.
-fn is_value(token: &Token<'_>) -> bool {
-    matches!(token.kind, TokenKind::Word | TokenKind::Number) || matches!(token.text, ")" | "]")
 }
 
 /// The kind of the token that the parser calls `name`; `None` if it has a name for this token alone.

@@ -3,10 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use super::log::is_unended;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::syntax::{functions, within};
-use crate::shader::glsl::{Code, Line, includes, lines};
+use crate::shader::glsl::{Code, Line, Token, TokenKind, includes, lines};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 
@@ -105,6 +104,19 @@ impl StageFiles<'_> {
 }
 
 // These tests run the compiler.
+/// Whether a line looks like a statement without `;`.
+pub(super) fn is_unended(line: &Line<'_>) -> bool {
+    let tokens = line.tokens();
+    let opens_block =
+        tokens.first().is_some_and(|first| matches!(first.text, "if" | "for" | "while" | "else" | "switch" | "do"));
+    tokens.last().is_some_and(is_value) && !opens_block
+}
+
+/// Whether a token can end a value.
+pub(super) fn is_value(token: &Token<'_>) -> bool {
+    matches!(token.kind, TokenKind::Word | TokenKind::Number) || matches!(token.text, ")" | "]")
+}
+
 #[cfg(test)]
 mod tests {
     use crate::shader::compile::Compiler;

@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use super::channel::{CHANNELS, Channel, channel, channels, samplers};
+use super::channel::{Channel, channel, channels, samplers};
 use super::declared::{Storage, declarations, has_texture, is_built_in};
-use super::initial::initial_values;
+use super::initial::{Edit, initial_values};
 use crate::shader::glsl::{Token, TokenKind, code, find_word, includes, lines, tokens};
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
@@ -54,9 +54,6 @@ const EXTENSIONS: [&str; 4] = ["GL_OES_", "GL_EXT_shader_texture_lod", "GL_EXT_f
 
 /// An object-like macro of toy.glsl that stands for nothing.
 const NOTHING: &str = "toy_nothing";
-
-/// Bytes of a text, and what replaces them.
-pub(super) type Edit = (Range<usize>, String);
 
 /// Whether a text has Shadertoy's form, and no entry point of its own.
 pub(super) fn is_shadertoy(text: &str) -> bool {
@@ -218,12 +215,6 @@ fn replaced_declarations(text: &str, code: &[Token<'_>]) -> Vec<Edit> {
         edits.extend(note.map(|start| (start..start + "//@".len(), "// ".to_owned())));
     }
     edits
-}
-
-/// The number of the channel that a sampler of glslViewer's names stands for: `u_tex0`.
-pub(super) fn channel_of(name: &str) -> Option<usize> {
-    let number = ["u_texture_", "u_texture", "u_tex"].iter().find_map(|prefix| name.strip_prefix(prefix))?;
-    number.parse().ok().filter(|number| *number < CHANNELS)
 }
 
 #[cfg(test)]

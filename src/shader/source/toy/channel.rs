@@ -164,3 +164,9 @@ pub(super) fn channel(line: &str) -> Option<(usize, Channel)> {
     };
     Some((number, channel))
 }
+
+/// The number of the channel that a sampler of glslViewer's names stands for: `u_tex0`.
+pub(super) fn channel_of(name: &str) -> Option<usize> {
+    let number = ["u_texture_", "u_texture", "u_tex"].iter().find_map(|prefix| name.strip_prefix(prefix))?;
+    number.parse().ok().filter(|number| *number < CHANNELS)
+}

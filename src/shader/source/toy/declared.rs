@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::adapt::channel_of;
+use super::channel::channel_of;
 use crate::shader::glsl::syntax::outside_brackets;
 use crate::shader::glsl::{Token, TokenKind, code, tokens};
 

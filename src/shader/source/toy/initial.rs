@@ -1,10 +1,14 @@
 //! Initial values of variables that an author does not set. WebGL starts each variable at 0 where it is declared; the compiled
 //! modules do so only at the start of a function (`spirv/initial.rs`), which is too early in a loop and for a parameter.
 
-use super::adapt::Edit;
+use std::ops::Range;
+
 use super::declared::TYPES;
 use crate::shader::glsl::syntax::{Statement, StatementKind, functions, outside_brackets, within};
 use crate::shader::glsl::{Token, is_name};
+
+/// Bytes of a text, and what replaces them.
+pub(super) type Edit = (Range<usize>, String);
 
 /// Adds a 0 to declarations in loops, and sets output parameters to 0. Arrays and structs are left as they are.
 pub(super) fn initial_values(code: &[Token<'_>]) -> Vec<Edit> {

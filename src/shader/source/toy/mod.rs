@@ -29,8 +29,8 @@ use super::read::{check_text, names_in, read_anywhere, read_bytes, read_file};
 use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{code, includes};
-use adapt::{COMMON, adapted, channel_of, has_key_functions, is_shadertoy, uses};
-use channel::{Channel, Kind, channels};
+use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
+use channel::{Channel, Kind, channel_of, channels};
 use declared::{BEFORE, Variable, assignments, globals, narrowed, outputs, sliders, variables};
 
 /// The folder of the opened files in the tree.
