@@ -76,7 +76,7 @@ impl Layout {
     /// Whether square faces fill an image of this size.
     pub fn fits(&self, width: u32, height: u32) -> bool {
         let (columns, rows) = self.grid;
-        width % columns == 0 && height % rows == 0 && width / columns == height / rows
+        width.is_multiple_of(columns) && height.is_multiple_of(rows) && width / columns == height / rows
     }
 
     /// Width, height and pixels of the equirectangular image, which is at most `widest` pixels wide.

@@ -9,11 +9,14 @@ use crate::scene::model::{AlphaMode, Instance, Model};
 /// Extensions that hold the vertices of a mesh in a compressed form. A file that does not require them may leave out all others.
 const COMPRESSED: [&str; 1] = ["KHR_draco_mesh_compression"];
 
+/// Whether an instance passes a check.
+type Check = fn(&Model, &Instance) -> bool;
+
 /// A sentence that says why nothing of the model can be seen; `None` if something can.
 pub fn reason(root: &json::Root, model: &Model) -> Option<String> {
     // Each check looks at the instances that all checks before it have passed.
     let mut left: Vec<&Instance> = model.instances.iter().collect();
-    let checks: [(&str, fn(&Model, &Instance) -> bool); 3] = [
+    let checks: [(&str, Check); 3] = [
         ("all vertices of a mesh are in one point or line", has_area),
         ("the nodes have a scale of 0", is_spread),
         ("the alpha of all materials is 0, or below their cutoff", has_alpha),

@@ -114,7 +114,7 @@ fn crosses_and_strips_of_cube_faces() {
     let side = 4;
     // Right, left, up, down, front (-Z), back.
     let directions = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::NEG_Z, Vec3::Z];
-    let layouts: [(usize, usize, [(usize, usize); 6], &str); 4] = [
+    let layouts = [
         (4, 3, [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)], "horizontal cross"),
         (3, 4, [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (1, 3)], "vertical cross"),
         (6, 1, [(0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (5, 0)], "from left to right"),
