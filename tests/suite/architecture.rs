@@ -16,7 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["cancel", "cpu_clock", "interface", "message", "regular_file"],
     &["disk_cache", "settings", "state"],
     &["shader", "gpu", "scene"],
-    &["frame", "comparison", "file_kind", "recovery"],
+    &["frame", "comparison", "control", "file_kind", "recovery"],
     &["pipeline", "session"],
     &["render"],
     &["headless", "measure", "picture"],

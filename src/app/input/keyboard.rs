@@ -13,12 +13,6 @@ use crate::app::screen::Screen;
 use crate::app::state::State;
 use crate::scene::CameraController;
 
-/// Keys that are no shortcut of a command, and what they do.
-pub(in crate::app) const OTHER_KEYS: [(&str, &str); 2] = [
-    ("letters", "the mode with this letter in the list, such as b base color or n normals; press it again to go back"),
-    ("hold Space", "show the picture before the last edit, or the other picture of a comparison"),
-];
-
 /// Handles a key. `is_synthetic`: winit made the event up; `taken`: it belongs to the user interface. Returns whether to redraw.
 pub(super) fn on_keyboard(
     state: &mut State,

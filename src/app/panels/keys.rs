@@ -4,7 +4,6 @@ use egui::{Key, Label, RichText, Ui, Window, vec2};
 
 use crate::app::command::about::Group;
 use crate::app::command::registry::REGISTRY;
-use crate::app::input::keyboard::OTHER_KEYS;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, QUIET, hide_hover_texts};
 
@@ -34,6 +33,12 @@ fn rows() -> Vec<(Group, KeyRow)> {
     rows.sort_by_key(|(group, _)| *group);
     rows
 }
+
+/// Keys that are no shortcut of a command, and what they do.
+const OTHER_KEYS: [(&str, &str); 2] = [
+    ("letters", "the mode with this letter in the list, such as b base color or n normals; press it again to go back"),
+    ("hold Space", "show the picture before the last edit, or the other picture of a comparison"),
+];
 
 /// Width of the list in points, and of the column with the keys.
 const WIDTH: f32 = 540.0;
