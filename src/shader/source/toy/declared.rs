@@ -70,7 +70,7 @@ impl Declaration<'_> {
 
     /// Whether the stage declares its variables: those of plain types. Others stay where they are, and are 0.
     pub(super) fn is_moved(&self) -> bool {
-        TYPES.contains(&self.kind) && self.names.iter().all(|name| name.is_plain && !is_built_in(name.text))
+        TYPES.contains(&self.kind) && self.names.iter().all(|name| name.is_plain || is_built_in(name.text))
     }
 
     /// The bytes behind a `//@ui` on the line of the declaration.
@@ -174,7 +174,7 @@ pub(super) fn variables(text: &str) -> Vec<Variable> {
                 value: value.unwrap_or(Value::Zero),
             }
         };
-        declaration.names.iter().map(variable).collect::<Vec<_>>()
+        declaration.names.iter().filter(|name| !is_built_in(name.text)).map(variable).collect::<Vec<_>>()
     };
     moved.flat_map(of_declaration).collect()
 }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn variables_have_known_values_or_sliders() {
-        let text = "uniform float time, speed; uniform vec2 mouse; uniform vec2 u_tex1Resolution;\n\
+        let text = "uniform float time, speed, iTime; uniform vec2 mouse; uniform vec2 u_tex1Resolution;\n\
                     uniform vec3 tint_color; //@ui \"Tint\" color = 1 0 0\nuniform mat4 camera; uniform float weights[3];\n\
                     uniform float gain = 2.0; varying vec2 vUv; varying vec3 normal; uniform vec3 iResolution;\n\
                     uniform sampler2D iChannel0; uniform Block { float x; }; void f(in float time) { int uniform_; }\n";
