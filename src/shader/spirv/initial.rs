@@ -128,7 +128,7 @@ mod tests {
             let own = unset.filter(|i| matches!(module[*i][3], storage::PRIVATE | storage::FUNCTION));
             own.filter_map(|i| module.name(module[i][2])).collect::<Vec<_>>()
         };
-        assert_eq!(unset(&module), ["set"]);
+        assert_eq!(unset(&module), ["set", "c"]);
         let words = module.write();
         assert_eq!(validate(&words), Ok(()));
         let optimized = optimize(words);
