@@ -223,7 +223,7 @@ fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
         let diagnostic = diagnostic.with_help("begin the file with `#version 460`");
         return match version {
             Some(line) => diagnostic.on_line(line.number, Some(line.raw)),
-            None => diagnostic,
+            None => diagnostic.on_line(1, Some(lines.first().map_or("", |line| line.raw))),
         };
     }
     diagnostic

@@ -108,10 +108,13 @@ fn include_errors_mark_the_name() {
 
 #[test]
 fn errors_of_the_whole_stage() {
-    expect("#version 460\nint a;", &[("m.frag: error: Missing entry point: Each stage requires one entry point", "")]);
+    expect(
+        "#version 460\nint a;",
+        &[("m.frag:1: error: Missing entry point: Each stage requires one entry point", "")],
+    );
     expect(
         "void main() {}",
-        &[("m.frag: error: #version: Desktop shaders for Vulkan SPIR-V require version 140 or higher", "")],
+        &[("m.frag:1: error: #version: Desktop shaders for Vulkan SPIR-V require version 140 or higher", "")],
     );
     expect("#version 999\nvoid main() {}", &[("m.frag:1: error: version not supported", "")]);
     let text = "#version 460\nfloat f(float x); void main() { f(1.0); }";

@@ -103,7 +103,6 @@ impl StageFiles<'_> {
     }
 }
 
-// These tests run the compiler.
 /// Whether a line looks like a statement without `;`.
 pub(super) fn is_unended(line: &Line<'_>) -> bool {
     let tokens = line.tokens();
@@ -117,6 +116,7 @@ pub(super) fn is_value(token: &Token<'_>) -> bool {
     matches!(token.kind, TokenKind::Word | TokenKind::Number) || matches!(token.text, ")" | "]")
 }
 
+// These tests run the compiler.
 #[cfg(test)]
 mod tests {
     use crate::shader::compile::Compiler;

@@ -110,7 +110,8 @@ fn a_look_fits_another_model() {
     let told = ["no variant 'Night'", "no camera 'Shot'", "no node and no primitive 'Visor'", "no material 'Rubber'"];
     let parts = [&told[..], &["This part of the look is left out"]].concat();
     render(&["far.png", "--look", "look.toml"]).expect(0, &parts);
-    render(&["framed.png", "--look", "look.toml", "--frame-model"]).expect(0, &parts);
+    render(&["framed.png", "--look", "look.toml", "--frame-model"])
+        .expect(0, &["no variant 'Night'", "no material 'Rubber'"]);
     render(&["plain.png", "--set", "camera.azimuth=0", "--set", "camera.elevation=0", "--tonemap", "agx"])
         .expect(0, &[]);
     let pixels = |name: &str| image::open(directory.path().join(name)).unwrap().into_rgba8();
@@ -139,7 +140,8 @@ fn a_picture_without_the_model_says_why() {
     let tree = Tree::new();
     let here = tree.beside("");
     let render = |more: &[&str]| {
-        let first = ["render", "sphere-grid", "--env", "none", "--size", "48x32", "--out", "a.png"];
+        let first =
+            ["render", "sphere-grid", "--env", "none", "--size", "48x32", "--background", "none", "--out", "a.png"];
         run(&here, &[&first, more].concat())
     };
     let note = "nothing of the model is in the picture";

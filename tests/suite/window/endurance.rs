@@ -90,7 +90,7 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
 fn twenty_environments_keep_nothing() {
     let mut viewer = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
     viewer.ready_and_baked();
-    repeat(&mut viewer, "environments", 10, |viewer, number| {
+    repeat(&mut viewer, "environments", 20, |viewer, number| {
         let name = ["furnace", "studio"][number % 2];
         choose(viewer, &format!("environment {name}"));
         viewer.running.until(name, |event| event["event"] == "bake" && event["environment"] == name);
