@@ -7,8 +7,7 @@ use crate::app::actions::exercises::learn;
 use crate::app::state::exercise::LearnCommand;
 
 /// Runs a command of the exercises.
-pub(in crate::app) static LEARN: Spec<LearnCommand> =
-    Spec::act("learn", |state, engine, command| learn(state, engine, command));
+pub(in crate::app) static LEARN: Spec<LearnCommand> = Spec::act("learn", learn);
 
 /// Shows a message for a few seconds.
 pub(in crate::app) static SAY: Spec<String> = Spec::act("say", |state, _, text: String| state.say(text));

@@ -101,8 +101,7 @@ pub(in crate::app) static WRITE_DEFAULTS: Spec<WriteDefaults> = Spec::new("write
 );
 
 /// Shows the picture with these numbers in the texts, without a change of the files; none goes back to the files.
-pub(in crate::app) static DRAFT: Spec<Vec<Edit>> =
-    Spec::act("draft", |state, engine, edits| draft(state, engine, edits));
+pub(in crate::app) static DRAFT: Spec<Vec<Edit>> = Spec::act("draft", draft);
 
 /// Writes values into the files.
 pub(in crate::app) static WRITE_EDITS: Spec<Vec<Edit>> = Spec::new("write-edits", write_listed);

@@ -176,13 +176,16 @@ impl<A: Clone + Debug> Registered for Spec<A> {
     }
 }
 
+/// Carries out a command.
+type Run = dyn Fn(&mut State, &mut Engine) -> Outcome;
+
 /// A command with its arguments.
 #[derive(Clone)]
 pub(in crate::app) struct Command {
     pub(in crate::app) about: &'static About,
     /// Its name and its arguments, for tests and messages of the developer.
     text: String,
-    run: Rc<dyn Fn(&mut State, &mut Engine) -> Outcome>,
+    run: Rc<Run>,
 }
 
 impl Command {
