@@ -177,7 +177,7 @@ impl<A: Clone + Debug> Registered for Spec<A> {
 }
 
 /// Carries out a command.
-type Run = dyn Fn(&mut State, &mut Engine) -> Outcome;
+type Action = dyn Fn(&mut State, &mut Engine) -> Outcome;
 
 /// A command with its arguments.
 #[derive(Clone)]
@@ -185,7 +185,7 @@ pub(in crate::app) struct Command {
     pub(in crate::app) about: &'static About,
     /// Its name and its arguments, for tests and messages of the developer.
     text: String,
-    run: Rc<Run>,
+    run: Rc<Action>,
 }
 
 impl Command {
