@@ -214,7 +214,7 @@ const LABELS: [(Panel, [&str; 2]); 17] = [
     (Panel::Scene, ["No model yet", "Search nodes, materials, textures"]),
     (Panel::Model, ["Statistics", "Statistics"]),
     (Panel::Texture, ["", "shell base color"]),
-    (Panel::Learn, ["Energy conservation", "Energy conservation"]),
+    (Panel::Learn, ["Square the roughness", "Square the roughness"]),
     (Panel::Shaders, ["Reload", "Generation 3"]),
     (Panel::Timeline, ["Keep this picture", "Keep this picture"]),
     (Panel::Timing, ["Pipelines", "Pipelines"]),
@@ -237,7 +237,7 @@ fn with_a_model() -> State {
     let parameter = Parameter {
         name: "tint".into(),
         label: "Tint".into(),
-        offset: None,
+        offset: Some(0),
         kind: ParameterType::Float,
         range: Some((0.0, 1.0)),
         default: vec![0.5],
@@ -297,7 +297,6 @@ struct Shown {
 const SIZES: [egui::Vec2; 2] = [egui::vec2(190.0, 420.0), egui::vec2(900.0, 240.0)];
 
 #[test]
-#[ignore = "the expected labels of most panels have not been compared with the panels yet"]
 fn every_panel_is_shown_without_a_device_and_changes_nothing_by_itself() {
     let states = [State::new(Settings::of_window(), Source::embedded()), with_a_model()];
     let mut lacking = Vec::new();

@@ -119,7 +119,7 @@ fn errors_of_the_whole_stage() {
     expect("#version 999\nvoid main() {}", &[("m.frag:1: error: version not supported", "")]);
     let text = "#version 460\nfloat f(float x); void main() { f(1.0); }";
     let error = &compile(&[("m.frag", text)]).result.unwrap_err()[0];
-    assert_eq!(error.one_line(), "m.frag: error: No function definition (body) found");
+    assert_eq!(error.one_line(), "m.frag:2:7: error: No function definition (body) found");
     assert_eq!(error.notes, ["f(f1;"]);
 }
 
