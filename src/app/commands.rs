@@ -1,4 +1,4 @@
-//! What panels give back in a frame.
+//! The result of the panels in a frame: commands and changed settings.
 
 use super::command::settings::change;
 use super::command::spec::Command;

@@ -1,4 +1,4 @@
-//! What panels see of the window.
+//! The read-only view of the window that panels get.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::frame::Scene;
 use crate::scene::Model;
 use crate::shader::ShaderSet;
 
-/// What panels see in a frame. They read it, and change things only by [`Commands`](super::commands::Commands).
+/// The state that panels see in a frame. They read it, and change things only by [`Commands`](super::commands::Commands).
 pub(super) struct Context<'a> {
     pub(super) state: &'a State,
     pub(super) readings: Readings<'a>,

@@ -1,4 +1,4 @@
-//! What the engine and the screen tell the panels for a frame.
+//! Values from the engine and the screen that panels show.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::render::{BakeReport, RangeSample};
 use crate::settings::Colormap;
 use crate::shader::Mode;
 
-/// What the engine and the screen know at the start of a frame.
+/// Values that the engine and the screen have at the start of a frame.
 pub(in crate::app) struct Readings<'a> {
     /// The fraction of the current bake that is done, and its next pass.
     pub(in crate::app) baking: Option<&'a (f32, String)>,

@@ -33,7 +33,7 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Cameras, placed in the world.
     pub cameras: Vec<Camera>,
-    /// What the file has beside the scene.
+    /// Contents of the file beside the scene.
     pub contents: Contents,
     /// World bounds of all instances.
     pub bounds: Bounds,
@@ -315,7 +315,7 @@ pub enum Lens {
     },
     /// Parallel rays.
     Orthographic {
-        /// What the picture shows from its lower to its upper edge, meters, above 0.
+        /// Height of the visible area, meters, above 0.
         height: f32,
     },
 }

@@ -1,4 +1,4 @@
-//! What commands and messages do to the state and the engine, by topic.
+//! Functions that carry out commands and messages on the state and the engine, by topic.
 
 pub(super) mod compare;
 pub(super) mod edits;

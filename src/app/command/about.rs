@@ -1,4 +1,4 @@
-//! What is known of a command whatever its arguments are.
+//! The description of a command, which does not depend on its arguments.
 
 use super::shortcut::Shortcut;
 use crate::app::state::State;
@@ -25,7 +25,7 @@ pub(in crate::app) struct About {
     pub(super) keys: &'static str,
     /// Which list of keys they are in.
     pub(in crate::app) group: Group,
-    /// What the shortcuts do, for lists of keys.
+    /// The effect of the shortcuts, for lists of keys.
     pub(in crate::app) keys_doc: &'static str,
     /// Whether a held key repeats the command.
     pub(in crate::app) repeats: bool,

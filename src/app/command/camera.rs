@@ -151,7 +151,7 @@ fn move_camera(state: &mut State, _: &mut Engine, asked: CameraFields) -> Outcom
     camera.eye = asked.eye.or(camera.eye);
     camera.target = asked.target.or(camera.target);
     if let Some(fovy) = asked.fovy {
-        // That of a camera of the file would win.
+        // A camera of the file would override the field of view.
         camera.name.clear();
         camera.fovy = fovy;
     }

@@ -1,4 +1,4 @@
-//! What the window can do. A command is an entry ([`spec::Spec`]) in the file of its family and a line in [`registry::REGISTRY`]: its
+//! The commands of the window. A command is an entry ([`spec::Spec`]) in the file of its family and a line in [`registry::REGISTRY`]: its
 //! names, its keys, its arguments, when it is enabled, what it does, and when it is done. Keys, panels, the palette, dropped files, stdin
 //! and the socket carry it out here.
 

@@ -1,4 +1,4 @@
-//! What draws the other picture of a comparison.
+//! Resources for the other picture of a comparison.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::render::BoundFrame;
 use crate::threads::second_tree::SecondTree;
 use crate::threads::worker::Snapshot;
 
-/// What draws the picture that `state.compare.with` names. A version needs nothing else than its pipelines.
+/// Resources for the picture that `state.compare.with` names. A version needs nothing else than its pipelines.
 #[derive(Default)]
 pub(in crate::app) enum Compared {
     #[default]

@@ -16,7 +16,7 @@ pub(in crate::app) struct LastComplete {
 }
 
 impl LastComplete {
-    /// What it shows.
+    /// The settings that it shows.
     pub(in crate::app) fn description(&self) -> ShownPicture {
         ShownPicture {
             state: self.frame.state.clone(),

@@ -1,4 +1,4 @@
-//! What makes frames and starts work: the device, its resources, the threads and the compiler. It knows neither the screen nor panels, and
+//! Makes frames and starts work. Holds the device, its resources, the threads and the compiler. It knows neither the screen nor panels, and
 //! nothing of what the user has chosen.
 
 pub(super) mod compared;
@@ -27,7 +27,7 @@ pub(super) struct Engine {
     pub(super) tools: ToolsState,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
-    /// What draws the other picture of a comparison. Before the threads: dropping it ends the thread of a second shader tree, for which
+    /// Resources for the other picture of a comparison. Before the threads: dropping it ends the thread of a second shader tree, for which
     /// they wait.
     pub(super) compared: Compared,
     /// The second tree that is being compiled for a comparison.

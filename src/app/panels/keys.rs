@@ -7,7 +7,7 @@ use crate::app::command::registry::REGISTRY;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, QUIET, hide_hover_texts};
 
-/// What the mouse does.
+/// Actions of the mouse.
 const MOUSE: [(&str, &str); 9] = [
     ("drag", "orbit"),
     ("Ctrl+drag, Shift+middle drag", "pan"),

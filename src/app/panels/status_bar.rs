@@ -21,7 +21,7 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
-    /// What has delayed the picture for longer than the status bar waits before it shows a reason.
+    /// The work that has delayed the picture for longer than the status bar waits before it shows a reason.
     pub(super) waits: Option<Waits>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,

@@ -1,4 +1,4 @@
-//! What the window knows, in stores without objects of the user interface, of the window system or of the device. Each store keeps one
+//! The state of the window, in stores without objects of the user interface, of the window system or of the device. Each store keeps one
 //! invariant and has its own tests. Stores know neither the engine nor panels.
 
 pub(super) mod arrangement;

@@ -1,4 +1,4 @@
-//! What the picture on screen shows. The engine has the frame itself.
+//! A description of the picture on screen. The engine has the frame itself.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -42,7 +42,7 @@ impl Picture {
         self.waits = waits.map(|waits| (waits, since.unwrap_or_else(Instant::now)));
     }
 
-    /// What the picture waits for, and for how long.
+    /// The work that the picture waits for, and for how long it has waited.
     pub(in crate::app) fn waits_for(&self) -> Option<(Waits, Duration)> {
         self.waits.map(|(waits, since)| (waits, since.elapsed()))
     }

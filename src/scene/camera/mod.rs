@@ -47,7 +47,7 @@ pub struct CameraView {
     pub parallel: Option<Parallel>,
 }
 
-/// What a parallel projection was made of.
+/// Parameters of a parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parallel {
     /// Height of the picture, meters.

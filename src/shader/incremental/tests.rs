@@ -230,7 +230,7 @@ fn edits_of_users() {
         assert_eq!(text.matches(from).count(), 1, "{file}: {from}");
         let mut edited = texts.clone();
         edited.insert(file.clone(), text.replacen(from, &to.replace("{n}", "1"), 1));
-        // What a window compiles first, and else any stage.
+        // The stages that a window compiles first, and any other stage.
         let first = ["pbr.frag", "debug.frag"].map(TreePath::from);
         let stages = first.iter().chain(bases.keys());
         let (stage, base) =

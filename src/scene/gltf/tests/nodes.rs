@@ -131,7 +131,7 @@ fn an_animation_without_a_target_node_changes_nothing() {
         "channels": [{ "sampler": 0, "target": { "path": "translation" } }, { "sampler": 0, "target": { "path": "pointer" } }],
     }]);
     assert_eq!(builder.model().instances.len(), 1);
-    // What is wrong beside it is told.
+    // Other mistakes of the file are still reported.
     builder.json["meshes"][0]["primitives"][0]["attributes"] = json!(7);
     let error = builder.error();
     assert!(error.contains("does not parse") && !error.contains("`node`"), "{error}");
