@@ -16,7 +16,7 @@ pub(in crate::app) struct LastComplete {
 }
 
 impl LastComplete {
-    /// The settings that it shows.
+    /// A description of the frame without device objects, for the state.
     pub(in crate::app) fn description(&self) -> ShownPicture {
         ShownPicture {
             state: self.frame.state.clone(),
