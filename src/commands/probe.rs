@@ -145,7 +145,8 @@ fn chosen(shaders: &ShaderSet, slugs: &[String], paths: bool) -> Result<Chosen, 
 
 /// The modes of the passes that the picture consists of.
 fn modes_of_passes(modes: Vec<Mode>, state: &FrameState) -> Vec<Mode> {
-    let is_drawn = |name: &String| state.pipelines.passes.iter().any(|pass| pass.desc.draws(name));
+    let is_drawn =
+        |name: &String| state.pipelines.passes.iter().any(|pass| pass.desc.images().any(|(image, _)| image == name));
     modes.into_iter().filter(|mode| mode.pass.as_ref().is_some_and(is_drawn)).collect()
 }
 

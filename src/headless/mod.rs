@@ -199,12 +199,13 @@ impl Headless {
         self.session.revisions.measured += 1;
     }
 
-    /// Warnings about functions that returned invalid values in the last bakes.
+    /// Warnings about the environment's file, and about functions that returned invalid values in the last bakes.
     pub fn bake_warnings(&self) -> Vec<String> {
         let tables = self.resources.tables().map(|tables| tables.wrong.clone()).unwrap_or_default();
         let mut functions: BTreeSet<&str> = tables.into_iter().collect();
         functions.extend(self.resources.environment().wrong());
-        functions.into_iter().map(wrong_values).collect()
+        let of_file = self.bake_report().warnings.iter().cloned();
+        of_file.chain(functions.into_iter().map(wrong_values)).collect()
     }
 
     /// How long the last bake took.

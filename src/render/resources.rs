@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
+use crate::message;
 use crate::scene::{MeasuredBrdf, MeasuredError, TextureSource};
 
 use super::bound_frame::BoundFrame;
@@ -318,6 +319,7 @@ impl Resources {
         }
         if let Some(key) = missing.measured {
             let read = MeasuredBrdf::open(&key.path).map_err(ProvideError::from);
+            read.iter().flat_map(|measured| &measured.warnings).for_each(message::warn);
             let uploaded = read.and_then(|measured| Ok(measured_buffer(&self.gpu, Some(&measured))?));
             self.set_measured(key, uploaded.as_ref().ok().cloned());
             uploaded?;

@@ -23,6 +23,7 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
                     engine.resources.set_environment(key, Some(environment));
                 }
                 Ok(environment) => {
+                    environment.report.warnings.iter().for_each(|warning| state.say(warning.as_str()));
                     warn_of(state, environment.wrong());
                     if !environment::BUILT_IN.contains(&key.name.as_str()) {
                         state.recent.remember(Kind::Environment, Path::new(&key.name));

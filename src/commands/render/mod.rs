@@ -269,7 +269,7 @@ fn note_limit(headless: &Headless) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Warns of functions of the BRDF whose values the tables or the prefilter could not use.
+/// Warns of an environment that is not shown as its file has it, and of functions of the BRDF whose values the tables or the prefilter could not use.
 fn warn_of_bakes(headless: &Headless) {
     for warning in headless.bake_warnings() {
         message::tell(format_args!("warning: {warning}"));

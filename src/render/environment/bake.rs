@@ -245,6 +245,7 @@ impl Bake<'_> {
         let (map, decode_ms) = decoding.wait_unless(self.control.superseded).ok_or(BakeError::Superseded)?;
         let map = map?;
         self.report.decode_ms += decode_ms;
+        self.report.warnings.clone_from(&map.warnings);
         let most = self.gpu.max_image_size();
         if map.width.max(map.height) > most {
             return Err(BakeError::TooLarge(map.width, map.height, most));
@@ -275,7 +276,7 @@ impl Bake<'_> {
         restore_clipped(&mut suns, &map, scale, LARGEST_HALF);
         set_suns(&mut entry[bytes as usize..], &suns);
         entry.extend(f32::to_ne_bytes(scale));
-        if let Some(key) = disk_key {
+        if let Some(key) = disk_key.filter(|_| map.warnings.is_empty()) {
             disk_cache::store(&key, &entry);
         }
         self.storing_ms += ms(time);

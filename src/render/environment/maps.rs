@@ -119,4 +119,7 @@ pub struct BakeReport {
     pub sheen_ms: f64,
     /// From the file to the last pass, excluding the cache write.
     pub total_ms: f64,
+    /// Sentences about the file, such as a number of negative texels. A file that has some is not cached, so that they are told again.
+    #[serde(skip)]
+    pub warnings: Vec<String>,
 }
