@@ -134,7 +134,7 @@ impl CameraView {
     }
 }
 
-/// The view of a model according to the settings: that of the camera that they name, if the model has it, or else [`frame`].
+/// The view of a model according to the settings: that of the camera that they name, if the model has it, or else one that frames the model.
 pub fn view_of(model: &Model, settings: &CameraSettings, aspect: f32) -> CameraView {
     let bounds = &model.bounds;
     let named = model.camera(&settings.name);

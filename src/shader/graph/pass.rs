@@ -62,7 +62,7 @@ pub enum RenderPhase {
     Display,
 }
 
-/// A pass in its place in the [`Graph`].
+/// A pass in its place in the graph.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct GraphPass {
     /// The parsed `//@pass`.

@@ -102,7 +102,7 @@ impl Library {
         out
     }
 
-    /// The paths of a watcher that was given [`Source::root`] and [`Source::files`], as a change of this tree.
+    /// The paths of a watcher that was given the root and the files of the source, as a change of this tree.
     pub fn change_of<'p>(&self, paths: impl IntoIterator<Item = &'p PathBuf>) -> Change {
         Change::Paths(paths.into_iter().flat_map(|path| self.source.changed(path)).collect())
     }

@@ -29,7 +29,7 @@ pub enum SourceError {
     /// A link to a file outside of the tree, which may come from elsewhere.
     #[error("is, or lies behind, a link that leads out of the shader tree; copy the file into the tree")]
     Outside,
-    /// Larger than [`MAX_FILE_BYTES`], or [`MAX_IMAGE_BYTES`] for an image.
+    /// Larger than `MAX_FILE_BYTES`, or `MAX_IMAGE_BYTES` for an image.
     #[error("has {bytes} bytes, more than the {most} that such a file may have")]
     TooBig {
         /// Size found.

@@ -150,7 +150,7 @@ impl Source {
     }
 
     /// The `tree`, in which each file that differs from its text in `good` has that text. [`Source::released`] then returns to the
-    /// files on disk, except those in `quarantined`, by path and [`text_hash`]. `cause` is the reason that diagnostics give.
+    /// files on disk, except those in `quarantined`, by path and hash of the text. `cause` is the reason that diagnostics give.
     pub fn quarantined(
         tree: &Self,
         good: &BTreeMap<TreePath, String>,
