@@ -172,7 +172,7 @@ impl App {
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { state, engine, screen, gpu, window } = open;
+            let Open { mut state, engine, screen, gpu, window } = open;
             remember_session(&state);
             engine.recorder.close();
             end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
@@ -181,6 +181,7 @@ impl App {
             emit(&state.events, &Event::Closed { frames, ui_ms, cpu_ms });
             drop(screen);
             drop(engine);
+            state.waiting.closed();
             drop(window);
             let messages = gpu.validation_messages().len();
             self.result = match result {

@@ -19,8 +19,8 @@ use crate::picture::Look;
 use crate::render::PathTracingKey;
 use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;
-use crate::shader::Diagnostic;
 use crate::shader::not_finite::NotFinite;
+use crate::shader::{Diagnostic, Source};
 
 /// Messages of the threads to the window.
 pub(crate) enum Message {
@@ -39,6 +39,8 @@ pub(crate) enum Message {
     PictureFits(u64, Result<Arc<Still>, String>),
     /// A result of the thread of the second shader tree with this number.
     SecondTree(u64, SecondTreeMessage),
+    /// The tree of the comparison with this number, or why there is none.
+    SecondTreeFound(u64, Result<Source, String>),
     /// The texts of a version of the shaders have been written to its files, or the reason why not.
     VersionWritten(u64, Result<String, String>),
     /// A summary of the edits that were written to the shader files, or the reason why none were.

@@ -23,6 +23,13 @@ pub(crate) enum WorkerMessage {
         /// Number of edits that the reload contains, for [`super::worker::Worker::reloaded`].
         edits: u64,
     },
+    /// The tree at a path, or why there is none.
+    TreeFound {
+        path: PathBuf,
+        tree: Result<Source, String>,
+        /// As in `Reloaded`.
+        edits: u64,
+    },
     /// The stages of the last reload that the frame did not need have been compiled.
     Completed(Box<Reload>),
     /// The result of the last [`super::worker::Worker::build`].

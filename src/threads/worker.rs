@@ -4,6 +4,7 @@ mod job;
 mod thread;
 
 use std::collections::{BTreeSet, VecDeque};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -156,6 +157,12 @@ impl Worker {
     /// Tells the worker that the first frame of a reload is on screen, so that it compiles the remaining stages.
     pub(crate) fn shown(&self) {
         self.send(Job::Shown);
+    }
+
+    /// Looks whether there is a tree at this path, which takes a while in a large folder. The answer is
+    /// [`super::results::WorkerMessage::TreeFound`].
+    pub(crate) fn find_tree(&self, path: PathBuf) {
+        self.send(Job::FindTree(path));
     }
 
     /// Opens another shader tree.

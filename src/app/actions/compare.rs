@@ -49,9 +49,7 @@ pub(in crate::app) fn on_compared(state: &mut State, number: u64, compared: Resu
 pub(in crate::app) fn compare_at_start(state: &mut State, engine: &mut Engine, with: Option<OtherPicture>) {
     match with {
         Some(OtherPicture::File(path)) => open_picture(state, engine, &path),
-        Some(OtherPicture::Tree(path)) => {
-            open_second_tree(state, engine, &path).unwrap_or_else(|message| state.say(message));
-        }
+        Some(OtherPicture::Tree(path)) => open_second_tree(state, engine, &path),
         None => {}
     }
 }

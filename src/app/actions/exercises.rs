@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compare::write_files;
-use crate::app::actions::files::{edit, load_model, open_tree};
+use crate::app::actions::files::{edit, find_tree, load_model};
 use crate::app::editor::Place;
 use crate::app::engine::Engine;
 use crate::app::state::State;
@@ -78,7 +78,7 @@ pub(in crate::app) fn on_prepared(
     }
     state.session.settings = settings;
     state.select(Selected::Nothing);
-    open_tree(state, engine, &folder).unwrap_or_else(|message| state.say(message));
+    find_tree(state, engine, &folder);
     let model = PathBuf::from(&exercise.model);
     let is_default = exercise.model == crate::scene::BUILT_IN[0] && state.model.requested.is_none();
     if state.model.requested.as_ref() != Some(&model) && !is_default {
@@ -156,7 +156,7 @@ fn write_exercise(state: &mut State, engine: &mut Engine, files: Vec<(TreePath, 
         let shown = |path: &TreePath| shaders.as_ref()?.texts.get(path).cloned();
         let write = |(path, text): (TreePath, String)| (shown(&path), folder.join(path.as_str()), Arc::from(text));
         let writes: Vec<_> = files.into_iter().map(write).collect();
-        Some(Message::Say(write_files(&writes).map_or_else(|message| message, |()| done.to_owned())))
+        Some(Message::Say(write_files(&folder, &writes).map_or_else(|message| message, |()| done.to_owned())))
     });
 }
 

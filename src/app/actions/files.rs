@@ -4,6 +4,7 @@ use crate::app::actions::compare::forget_all_references;
 use crate::app::actions::watch::watch_tree;
 use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
+use crate::app::source_line::stop;
 use crate::app::state::State;
 use crate::scene::LoadOptions;
 use crate::shader::{Change, Source};
@@ -33,22 +34,42 @@ pub(in crate::app) fn reload(state: &mut State, engine: &mut Engine) {
     engine.threads.worker.change(Change::All, Instant::now());
 }
 
-/// Shows the shaders of another tree, once they compile.
-///
-/// # Errors
-/// A message: there is no tree, for example because a look names one that is gone. The present tree stays with its versions.
-pub(in crate::app) fn open_tree(state: &mut State, engine: &mut Engine, path: &Path) -> Result<(), String> {
-    let source = Source::find(path)?;
+/// Shows the shaders of the tree at a path, once it is found to be one. If it is none, for example because a look names one that is
+/// gone, the present tree stays with its versions.
+pub(in crate::app) fn find_tree(state: &mut State, engine: &mut Engine, path: &Path) {
+    state.shader.compiling = true;
+    engine.threads.worker.find_tree(path.to_owned());
+}
+
+/// Shows the shaders of the tree that was found, once they compile. `edits`: of [`crate::threads::worker::Worker::reloaded`].
+pub(in crate::app) fn on_tree_found(
+    state: &mut State,
+    engine: &mut Engine,
+    path: &Path,
+    tree: Result<Source, String>,
+    edits: u64,
+) {
+    let stops = std::mem::take(&mut state.edits.stops_watching);
+    let source = match tree {
+        Ok(source) => source,
+        Err(message) => {
+            state.waiting.tree_found(path, Err(&message));
+            return state.say(message);
+        }
+    };
+    state.waiting.tree_found(path, Ok(()));
+    if stops {
+        stop(&mut state.session.settings);
+    }
     state.source = source.clone();
     state.picture.settled = None;
     // Versions of another tree must never be written into this one.
     forget_all_references(state, engine);
     state.edits.forget_draft();
     watch_tree(state, engine, &source);
-    state.shader.compiling = true;
     engine.threads.worker.open_tree(source);
+    engine.threads.worker.reloaded(edits);
     engine.find_exercise(&state.source);
-    Ok(())
 }
 
 /// Opens a file or folder in the user's editor.

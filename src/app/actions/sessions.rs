@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::app::actions::files::{load_model, open_tree};
+use crate::app::actions::files::{find_tree, load_model};
 use crate::app::engine::Engine;
 use crate::app::state::{State, last_session};
 use crate::events::{Event, emit};
@@ -54,7 +54,7 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
 fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model, tree }: SessionState) {
     let now = state.session_state();
     if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
-        open_tree(state, engine, &full_path(&tree)).unwrap_or_else(|message| state.say(message));
+        find_tree(state, engine, &full_path(&tree));
     }
     state.session.settings = Arc::unwrap_or_clone(settings);
     if is_other(model.as_deref(), now.model.as_deref()) {

@@ -120,8 +120,11 @@ pub(in crate::app) static TIMELINE: Spec<Timeline> = Spec::new("timeline", |_, _
     )
     .required(&["file"]);
 
-pub(in crate::app) static CANCEL: Spec<()> = Spec::plain("cancel", |state, _, ()| state.cancel_captures())
-    .line("Ends the captures, sheets, animations and probes that are under way; each answers with an error");
+pub(in crate::app) static CANCEL: Spec<()> = Spec::fallible("cancel", |state, _, ()| {
+    state.cancel_captures();
+    Ok(Until::CapturesEnded)
+})
+.line("Ends the captures, sheets, animations and probes that are under way; each answers with an error");
 
 /// Ends the capture with a number.
 pub(in crate::app) static CANCEL_ONE: Spec<u64> =

@@ -90,7 +90,7 @@ fn compare(state: &mut State, engine: &mut Engine, asked: CompareFields) -> Outc
         open_picture(state, engine, &file);
     }
     if let Some(tree) = tree {
-        open_second_tree(state, engine, &tree)?;
+        open_second_tree(state, engine, &tree);
     }
     state.compare.wipe = wipe.unwrap_or(state.compare.wipe);
     Ok(match state.compare.is_opening() {

@@ -7,7 +7,7 @@ use super::compare::{COMPARE, CompareFields};
 use super::fields::{Fields, needs};
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
-use crate::app::actions::files::{edit, load_model, open_tree};
+use crate::app::actions::files::{edit, find_tree, load_model};
 use crate::app::actions::sessions::restore_session;
 use crate::app::dialog;
 use crate::app::editor::Place;
@@ -123,8 +123,10 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::SHOWN
         }
         Open::Tree(path) => {
-            open_tree(state, engine, &path)?;
-            Until::Reloaded
+            // The expression names a file of the tree before.
+            state.edits.stops_watching = true;
+            find_tree(state, engine, &path);
+            Until::Tree(path)
         }
         Open::Look(path) => {
             engine.threads.wait(move || Some(Message::Look(read_checked_look(&path).map(Box::new))));

@@ -2,7 +2,7 @@
 
 use super::about::Group;
 use super::shortcut::Shortcut;
-use super::spec::Spec;
+use super::spec::{Spec, Until};
 use crate::app::actions::exercises::learn;
 use crate::app::state::exercise::LearnCommand;
 
@@ -25,7 +25,10 @@ pub(in crate::app) static HIDE_WARNINGS: Spec<()> = Spec::plain("hide-warnings",
 /// Never shows the hint of the first start again.
 pub(in crate::app) static DISMISS_HINT: Spec<()> = Spec::plain("dismiss-hint", |state, _, ()| state.hint.dismiss());
 
-pub(in crate::app) static QUIT: Spec<()> = Spec::plain("quit", |state, _, ()| state.quit = true)
-    .line("Closes the window")
-    .label("Quit", "close")
-    .shortcuts(Group::Program, &[Shortcut::key('q').ctrl()], "quit");
+pub(in crate::app) static QUIT: Spec<()> = Spec::fallible("quit", |state, _, ()| {
+    state.quit = true;
+    Ok(Until::Closed)
+})
+.line("Closes the window")
+.label("Quit", "close")
+.shortcuts(Group::Program, &[Shortcut::key('q').ctrl()], "quit");

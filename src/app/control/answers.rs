@@ -1,6 +1,6 @@
 //! Answers commands, at once or when the last frame has done them.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::captures::begin_capture;
 use crate::app::engine::Engine;
@@ -58,6 +58,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                     false => reply.done(json!({ "generation": state.shown_generation() })),
                 }
             }
+            Until::CapturesEnded if state.captures.is_empty() => reply.done(Value::Null),
             Until::Model(path) if !state.model.loading => match state.model.is_file(&path) {
                 true => state.waiting.push(reply, Until::SHOWN),
                 false => reply.error(format!("{} was not loaded", path.display())),

@@ -122,7 +122,6 @@ pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, repl
                 }),
             false => Err(CaptureError::Canceled),
         };
-        sender.send(Message::Captured(number));
         match result {
             Ok(result) => reply.done(result),
             Err(CaptureError::Render(HeadlessError::Shaders(diagnostics))) if !diagnostics.is_empty() => {
@@ -130,5 +129,6 @@ pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, repl
             }
             Err(error) => reply.error(error.to_string()),
         }
+        sender.send(Message::Captured(number));
     });
 }

@@ -7,10 +7,11 @@ pub(super) mod reloads;
 
 use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
-use crate::app::actions::compare::tree::on_second_tree;
+use crate::app::actions::compare::tree::{on_second_tree, on_second_tree_found};
 use crate::app::actions::compare::write::on_version_written;
 use crate::app::actions::edits::on_written;
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
+use crate::app::actions::files::on_tree_found;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
 use crate::app::actions::watch::watch_files;
@@ -51,6 +52,9 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
             remember_tree(state, &reload.outcome);
             on_reload(state, engine, &reload, detect_ms);
         }
+        Message::Worker(WorkerMessage::TreeFound { path, tree, edits }) => {
+            on_tree_found(state, engine, &path, tree, edits);
+        }
         Message::Worker(WorkerMessage::Completed(reload)) => on_completed(state, engine, &reload),
         Message::Loaded(loaded) => on_loaded(state, engine, *loaded),
         Message::Bake(message) => on_bake(state, engine, message),
@@ -84,6 +88,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Compared(number, compared) => on_compared(state, number, compared),
         Message::PictureRead(number, read) => on_picture_read(state, engine, number, read),
         Message::PictureFits(number, still) => on_picture_fits(state, engine, number, still),
+        Message::SecondTreeFound(number, found) => on_second_tree_found(state, engine, number, found),
         Message::SecondTree(number, message) => on_second_tree(state, engine, number, message),
         Message::VersionWritten(number, written) => on_version_written(state, engine, number, &written),
         Message::Chosen(answer) => {

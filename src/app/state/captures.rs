@@ -76,6 +76,10 @@ impl Captures {
         self.running.iter()
     }
 
+    pub(in crate::app) fn is_empty(&self) -> bool {
+        self.running.is_empty()
+    }
+
     /// Ends the capture with this number.
     pub(in crate::app) fn cancel_one(&self, number: u64) {
         self.running.iter().filter(|running| running.number == number).for_each(Running::cancel);

@@ -1,6 +1,6 @@
 //! Commands that are not done yet, and when each is.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
@@ -14,6 +14,8 @@ pub(in crate::app) enum Until<S> {
     Settled(fn(&S) -> Value),
     /// After the end of a reload, with the final picture.
     Reloaded,
+    /// As [`Until::Reloaded`], once there is found to be a tree at this path.
+    Tree(PathBuf),
     /// After the end of loading this model, with the final picture.
     Model(PathBuf),
     /// Once a look file has been read.
@@ -30,6 +32,10 @@ pub(in crate::app) enum Until<S> {
     Window(Option<PathBuf>),
     /// The same for a picture that a thread draws.
     Picture(Job),
+    /// Once no thread draws a picture any more.
+    CapturesEnded,
+    /// Once the window has closed, with all threads that use the device.
+    Closed,
 }
 
 impl<S> Until<S> {
@@ -98,10 +104,28 @@ impl<S> Waiting<S> {
         let waits_for_more = |until: &Until<S>| {
             matches!(
                 until,
-                Until::Look | Until::Model(_) | Until::Reloaded | Until::VersionWritten(_) | Until::EditsWritten(_)
+                Until::Look
+                    | Until::Model(_)
+                    | Until::Reloaded
+                    | Until::Tree(_)
+                    | Until::VersionWritten(_)
+                    | Until::EditsWritten(_)
+                    | Until::CapturesEnded
+                    | Until::Closed
             )
         };
         self.refuse(|until| !waits_for_more(until), message);
+    }
+
+    /// Answers those who wait for a tree that is none, or lets them wait for its picture.
+    pub(in crate::app) fn tree_found(&mut self, path: &Path, result: Result<(), &str>) {
+        let is_it = |until: &Until<S>| matches!(until, Until::Tree(of) if of == path);
+        match result {
+            Ok(()) => {
+                self.0.iter_mut().filter(|(_, until)| is_it(until)).for_each(|(_, until)| *until = Until::Reloaded);
+            }
+            Err(message) => self.refuse(is_it, message),
+        }
     }
 
     /// Answers those who wait for a model that cannot be loaded.
@@ -144,6 +168,11 @@ impl<S> Waiting<S> {
     /// Answers those who wait for a picture that is to be written.
     pub(in crate::app) fn cancel_captures(&mut self) {
         self.refuse(Until::is_capture, "canceled");
+    }
+
+    /// Answers those who wait for the end of the window.
+    pub(in crate::app) fn closed(&mut self) {
+        self.answer(|until| matches!(until, Until::Closed).then_some(Ok(Value::Null)));
     }
 
     /// Answers all: the device is lost.

@@ -1,6 +1,7 @@
 //! The jobs of the worker.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -51,6 +52,8 @@ pub(super) type Build = (Arc<PipelineSet>, Arc<PipelineRequest>);
 
 pub(super) enum Job {
     Edit(Edit),
+    /// Looks whether there is a tree at this path.
+    FindTree(PathBuf),
     OpenTree(Source),
     /// Reads the same tree from another source, which changes these files.
     Read(Source, BTreeSet<TreePath>),
@@ -68,6 +71,6 @@ pub(super) enum Job {
 impl Job {
     /// Whether the job makes a running reload stale.
     pub(super) fn is_edit(&self) -> bool {
-        matches!(self, Self::Edit(_) | Self::OpenTree(_) | Self::Read(..))
+        matches!(self, Self::Edit(_) | Self::FindTree(_) | Self::OpenTree(_) | Self::Read(..))
     }
 }

@@ -19,7 +19,7 @@ use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
 use crate::shader::annotation::neighbors;
-use crate::shader::{Change, ShaderSet, TreePath, text_hash};
+use crate::shader::{Change, ShaderSet, Source, TreePath, text_hash};
 use crate::threads::message::{Message, MessageSender, TaskKind};
 use crate::threads::results::WorkerMessage;
 
@@ -102,6 +102,16 @@ impl Thread {
                 match job {
                     Job::Shown => self.is_shown = true,
                     Job::Edit(new) => edit = Some(join(edit, new)),
+                    Job::FindTree(path) => {
+                        let tree = Source::find(&path);
+                        if tree.is_err() {
+                            // Goes on with what the job has interrupted.
+                            let again = Edit::new(Change::Paths(BTreeSet::new()), Instant::now());
+                            edit = Some(join(edit, again));
+                        }
+                        let message = WorkerMessage::TreeFound { path, tree, edits: self.edits_taken };
+                        self.sender.send(Message::Worker(message));
+                    }
                     Job::OpenTree(source) => {
                         self.reloader.open(source);
                         edit = Some(Edit::new(Change::All, Instant::now()));

@@ -100,13 +100,26 @@ fn a_capture_of_many_frames_is_limited_and_ends_when_it_is_canceled() {
         .running
         .say(&json!({ "command": "capture", "frames": 10_000, "size": [640, 480], "id": "long" }).to_string());
     viewer.running.until("the capture to begin", |event| event["event"] == "progress" && event["id"] == "long");
-    viewer.running.done(json!({ "command": "cancel" }));
+    // The work has ended when the answer comes.
+    let mut has_ended = false;
+    viewer.running.say(&json!({ "command": "cancel", "id": "cancel" }).to_string());
+    let answer = viewer.running.until("the answer", |event| {
+        has_ended |= event["id"] == "long" && event["event"] == "error";
+        event["id"] == "cancel"
+    });
+    assert!(has_ended && answer["event"] == "done", "{answer}");
     // The next capture waits for the one before.
     viewer.running.done(json!({ "command": "capture", "frames": 2, "size": [32, 32], "file": "small.png" }));
     viewer
         .running
         .say(&json!({ "command": "capture", "frames": 10_000, "size": [640, 480], "id": "last" }).to_string());
     viewer.running.until("the capture to begin", |event| event["event"] == "progress" && event["id"] == "last");
-    viewer.running.done(json!({ "command": "quit" }));
+    let mut has_ended = false;
+    viewer.running.say(&json!({ "command": "quit", "id": "quit" }).to_string());
+    let answer = viewer.running.until("the answer", |event| {
+        has_ended |= event["id"] == "last" && event["event"] == "error";
+        event["id"] == "quit"
+    });
+    assert!(has_ended && answer["event"] == "done", "{answer}");
     assert!(viewer.running.end().success());
 }

@@ -12,24 +12,42 @@ use crate::app::state::compare::{Opening, Tree, With};
 use crate::message::print_error;
 use crate::pipeline::PipelineSet;
 use crate::shader::{Diagnostic, Severity, Source};
-use crate::threads::SecondTreeMessage;
 use crate::threads::second_tree::SecondTree;
 use crate::threads::worker::Snapshot;
+use crate::threads::{Message, SecondTreeMessage};
 
-/// Compiles a tree on a thread, and then compares with it.
-///
-/// # Errors
-/// The path is no shader tree, or the tree cannot be watched.
-pub(in crate::app) fn open_second_tree(state: &mut State, engine: &mut Engine, path: &Path) -> Result<(), String> {
-    let source = Source::find(path)?;
+/// Compiles the tree at a path on a thread, once it is found to be one, and then compares with it.
+pub(in crate::app) fn open_second_tree(state: &mut State, engine: &mut Engine, path: &Path) {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let (number, snapshot) = (state.compare.next_number(), snapshot(state, engine));
-    let (layouts, compiler) = (engine.resources.layouts().clone(), engine.compiler.clone());
-    let tree = SecondTree::open(&mut engine.threads, number, source, (&layouts, &compiler), snapshot)?;
+    let number = state.compare.next_number();
     state.waiting.comparison_failed(REPLACED);
-    state.compare.opening = Some(Opening::Tree(Tree { name, has_errors: false }));
-    engine.opening_tree = Some(Box::new(TreePicture { tree, set: None, like: None, asked: None }));
-    Ok(())
+    state.compare.opening = Some(Opening::Tree(Tree { number, name, has_errors: false }));
+    engine.opening_tree = None;
+    let path = path.to_owned();
+    engine.threads.wait(move || Some(Message::SecondTreeFound(number, Source::find(&path))));
+}
+
+/// Begins to compile the tree that was found, unless the user has gone on to something else.
+pub(in crate::app) fn on_second_tree_found(
+    state: &mut State,
+    engine: &mut Engine,
+    number: u64,
+    found: Result<Source, String>,
+) {
+    if !matches!(&state.compare.opening, Some(Opening::Tree(tree)) if tree.number == number) {
+        return;
+    }
+    let snapshot = snapshot(state, engine);
+    let (layouts, compiler) = (engine.resources.layouts().clone(), engine.compiler.clone());
+    let open = |source| SecondTree::open(&mut engine.threads, number, source, (&layouts, &compiler), snapshot);
+    match found.and_then(open) {
+        Ok(tree) => engine.opening_tree = Some(Box::new(TreePicture { tree, set: None, like: None, asked: None })),
+        Err(message) => {
+            state.compare.opening = None;
+            state.waiting.comparison_failed(&message);
+            state.say(message);
+        }
+    }
 }
 
 /// The current settings, model and targets.

@@ -9,7 +9,7 @@ use crate::app::actions::restored::show_newest;
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::picture;
-use crate::shader::TreePath;
+use crate::shader::{SourceError, TreePath, leads_out};
 use crate::threads::Message;
 
 /// Writes the texts of a version over the files that differ from it, on a thread of its own. A text on disk that was never shown, such
@@ -25,7 +25,7 @@ pub(in crate::app) fn write_version(state: &mut State, engine: &mut Engine, numb
         let files: Vec<_> = files.into_iter().map(|(path, text)| (shown(&path), path, text)).collect();
         let names: Vec<&str> = files.iter().filter_map(|(_, path, _)| path.file_name()?.to_str()).collect();
         let done = format!("Wrote version {number} of {}", names.join(", "));
-        Some(Message::VersionWritten(number, write_files(&files).map(|()| done)))
+        Some(Message::VersionWritten(number, write_files(&root, &files).map(|()| done)))
     });
 }
 
@@ -47,11 +47,14 @@ pub(in crate::app) fn on_version_written(
 /// A file to write: the text that is shown, its path, and the new text.
 pub(in crate::app) type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
 
-/// Writes files whole, all or none as far as reading them tells. A file keeps its byte order mark.
-pub(in crate::app) fn write_files(files: &[Write]) -> Result<(), String> {
+/// Writes files below `root` whole, all or none as far as reading them tells. A file keeps its byte order mark.
+pub(in crate::app) fn write_files(root: &Path, files: &[Write]) -> Result<(), String> {
     let mark: &[u8] = b"\xef\xbb\xbf";
     let mut writes = Vec::new();
     for (shown, path, text) in files {
+        if path.strip_prefix(root).is_ok_and(|path| path.to_str().is_none_or(|path| leads_out(root, path))) {
+            return Err(format!("cannot write {}: {}. Nothing was written", path.display(), SourceError::Outside));
+        }
         let error = |error: std::io::Error| format!("cannot write {}: {error}. Nothing was written", path.display());
         let old = match std::fs::read(path) {
             Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => Vec::new(),
@@ -93,12 +96,25 @@ mod tests {
         let texts: [Arc<str>; 2] = ["shown".into(), "new".into()];
         for never_shown in ["first", "second", "third"] {
             std::fs::write(&path, never_shown).unwrap();
-            write_files(&[(Some(texts[0].clone()), path.clone(), texts[1].clone())]).unwrap();
+            write_files(folder.path(), &[(Some(texts[0].clone()), path.clone(), texts[1].clone())]).unwrap();
         }
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
         assert_eq!(
             ["ndf.glsl", "ndf.glsl.bak", "ndf.glsl.1.bak", "ndf.glsl.2.bak"].map(read),
             ["new", "first", "second", "third"]
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_out_of_the_tree_is_not_written() {
+        let (tree, outside) = (tempfile::tempdir().unwrap(), tempfile::NamedTempFile::new().unwrap());
+        std::fs::write(outside.path(), "mine").unwrap();
+        std::os::unix::fs::symlink(outside.path(), tree.path().join("a.glsl")).unwrap();
+        let write = (None, tree.path().join("a.glsl"), "new".into());
+        let error = write_files(tree.path(), &[write]).unwrap_err();
+        assert!(error.contains("a link that leads out of the shader tree"), "{error}");
+        assert_eq!(std::fs::read(outside.path()).unwrap(), b"mine");
+        assert_eq!(std::fs::read_dir(tree.path()).unwrap().count(), 1, "a copy of the text was made");
     }
 }

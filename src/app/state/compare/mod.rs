@@ -60,6 +60,8 @@ pub(in crate::app) enum With {
 
 /// Another shader tree.
 pub(in crate::app) struct Tree {
+    /// Number of the request.
+    pub(in crate::app) number: u64,
     pub(in crate::app) name: String,
     /// Whether its files have errors.
     pub(in crate::app) has_errors: bool,

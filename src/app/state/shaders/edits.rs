@@ -16,6 +16,8 @@ pub(in crate::app) const NO_FOLDER: &str = "These shaders are not in a folder on
 pub(in crate::app) struct Edits {
     /// The expression that the worker knows.
     pub(in crate::app) watched: ExpressionSettings,
+    /// Whether nothing is watched any more once the tree that the user opens is found.
+    pub(in crate::app) stops_watching: bool,
     /// Numbers of a line that are dragged.
     pub(in crate::app) draft: Option<Draft>,
     /// The older version that is shown in place of the newest.
