@@ -10,7 +10,6 @@ use super::results::BakeMessage;
 use crate::cancel::Running;
 use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, fault, return_freed_memory};
-use crate::message;
 use crate::pipeline::PipelineSet;
 use crate::render::{
     BakeControl, GpuEnvironment, PathTracing, PathTracingKey, PathTracingRequest, Resources, Tables, measured_buffer,
@@ -116,7 +115,8 @@ impl Baker {
             let path = key.path.clone();
             let read = Running::start(move || MeasuredBrdf::open(&path));
             let Some(read) = read.wait_unless(&|| newest.load(Ordering::SeqCst) != number) else { return };
-            read.iter().flat_map(|measured| &measured.warnings).for_each(message::warn);
+            let warnings = read.iter().flat_map(|measured| &measured.warnings);
+            warnings.for_each(|warning| sender.send(Message::Say(format!("warning: {warning}"))));
             let result = read.map_err(|error| error.to_string());
             let result =
                 result.and_then(|measured| measured_buffer(&gpu, Some(&measured)).map_err(|error| error.to_string()));
