@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::settings::Settings;
-use crate::shader::expression::{MODE, place_of, variables};
+use crate::settings::{ExpressionSettings, Settings};
+use crate::shader::expression::{MODE, Variable, members, place_of, variables};
 use crate::shader::rewrite::{Edit, Literal, literals, spelled_like};
 use crate::shader::{ShaderSet, TreePath};
 
@@ -14,8 +14,8 @@ pub(super) struct SourceLine {
     pub(super) line: u32,
     /// The file.
     pub(super) text: Arc<str>,
-    /// Name and type of each variable that the line can use.
-    pub(super) variables: Vec<(String, String)>,
+    /// The variables that the line can use, if an expression of the file can be watched.
+    pub(super) variables: Option<Vec<Variable>>,
     /// The line before any of its numbers was dragged.
     pub(super) before: String,
     /// The numbers, and the values that replace them.
@@ -23,11 +23,12 @@ pub(super) struct SourceLine {
 }
 
 impl SourceLine {
-    /// A line of a file; `None` if the file ends before it.
-    pub(super) fn new(path: &TreePath, line: u32, text: &Arc<str>) -> Option<Self> {
+    /// A line of a file of these shaders; `None` if the file ends before it.
+    pub(super) fn new(shaders: &ShaderSet, path: &TreePath, line: u32, text: &Arc<str>) -> Option<Self> {
         let before = text.lines().nth((line as usize).checked_sub(1)?)?.to_owned();
         let numbers = literals(text, line).into_iter().map(|literal| (literal.clone(), literal.value)).collect();
-        let variables = variables(text, line);
+        let structs = || members(shaders.texts.values().map(|text| &**text));
+        let variables = shaders.can_watch(path).then(|| variables(text, line, &structs()));
         Some(Self { path: path.clone(), line, text: text.clone(), variables, before, numbers })
     }
 
@@ -56,9 +57,20 @@ impl SourceLine {
     }
 }
 
-/// Shows the value of an expression over the model.
+/// Shows the value of an expression: of the last evaluation, if it is another than before.
 pub(super) fn watch(settings: &mut Settings, at: String) {
-    (settings.expression.at, settings.mode) = (at, MODE.to_owned());
+    if settings.expression.at != at {
+        settings.expression = ExpressionSettings { at, ..ExpressionSettings::default() };
+    }
+    MODE.clone_into(&mut settings.mode);
+}
+
+/// Shows no expression any more.
+pub(super) fn stop(settings: &mut Settings) {
+    settings.expression = ExpressionSettings::default();
+    if settings.mode == MODE {
+        settings.mode = Settings::default().mode;
+    }
 }
 
 #[cfg(test)]
@@ -66,10 +78,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn another_expression_begins_with_its_last_evaluation() {
+        let mut settings = Settings::default();
+        watch(&mut settings, "a.glsl:1:x".to_owned());
+        settings.expression.evaluation = 3;
+        watch(&mut settings, "a.glsl:1:x".to_owned());
+        assert_eq!(settings.expression.evaluation, 3, "the same expression");
+        watch(&mut settings, "a.glsl:1:y".to_owned());
+        assert_eq!((settings.expression.evaluation, settings.mode.as_str()), (0, MODE));
+    }
+
+    #[test]
     fn dragged_numbers_become_edits() {
         let text: Arc<str> = "float f(float x) {\n    return 0.5 * x + 2.0;\n}\n".into();
-        let mut shown = SourceLine::new(&"a.glsl".into(), 2, &text).unwrap();
-        assert_eq!(shown.variables, [("x".to_owned(), "float".to_owned())]);
+        let mut shown = SourceLine::new(&ShaderSet::default(), &"a.glsl".into(), 2, &text).unwrap();
+        assert_eq!(shown.variables, None, "no stage includes the file");
         assert!(shown.edits().is_empty());
         shown.numbers[1].1 = 3.25;
         let edits = shown.edits();

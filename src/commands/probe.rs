@@ -70,6 +70,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     settings.view.msaa = 1;
     if slugs.is_empty() && !settings.expression.at.is_empty() {
         slugs.push(expression::MODE.to_owned());
+        expression::MODE.clone_into(&mut settings.mode);
     }
     slugs.iter().for_each(|slug| warn_unmeasured(slug, &settings));
     let source = args.common.source()?;
@@ -209,15 +210,18 @@ fn light(light: &Light) -> Value {
 }
 
 fn print_table((x, y): (u32, u32), values: &[(&Mode, PixelValue)], state: &FrameState) {
-    let camera = &state.camera;
     out!("pixel      {x} {y}");
-    out!(
-        "camera     eye {}  target {}  fovy {:.2}",
-        row(&camera.eye.to_array()),
-        row(&camera.target.to_array()),
-        camera.fovy_rad.to_degrees()
-    );
-    for light in &state.lights {
+    let draws_model = state.pipelines.draws_model;
+    if draws_model {
+        let camera = &state.camera;
+        out!(
+            "camera     eye {}  target {}  fovy {:.2}",
+            row(&camera.eye.to_array()),
+            row(&camera.target.to_array()),
+            camera.fovy_rad.to_degrees()
+        );
+    }
+    for light in state.lights.iter().filter(|_| draws_model) {
         let place = match light.kind {
             LIGHT_DIRECTIONAL => format!("direction {}", row(&light.direction_ws)),
             LIGHT_POINT => format!("position {}", row(&position(light))),
@@ -225,7 +229,7 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, PixelValue)], state: &Frame
         };
         out!("light      {:11} {place}  intensity {}", kind(light), row(&light.intensity));
     }
-    if values.is_empty() {
+    if values.is_empty() && draws_model {
         out!("\nthe model does not cover this pixel");
     }
     let width = values.iter().map(|(mode, _)| mode.slug.len()).max().unwrap_or(0);

@@ -62,6 +62,9 @@ pub struct PipelineRequest {
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
+    /// `TONEMAP_*` of the settings, if that pass shows a watched expression: the picture that a pass after the tone map reads, and the
+    /// tone map whose variables are shown, are those of the final picture.
+    pub watched_tonemap: Option<u32>,
     /// The pass that draws the wireframe over the picture; `None` if it is not shown.
     pub wireframe: Option<Arc<GraphPass>>,
     /// The stage of that pass, which may not be compiled yet; empty if no wireframe is shown.
@@ -171,6 +174,10 @@ impl PipelineRequest {
             draws_model,
             wireframe: wireframe(settings, shaders),
             wireframe_stage: wireframe_stage(settings, shaders).unwrap_or_default(),
+            watched_tonemap: shown_pass
+                .as_deref()
+                .and_then(|name| graph.pass(name)?.desc.watches.as_ref())
+                .map(|_| settings.view.tonemap as u32),
             shown_pass,
             modes: Vec::new(),
         }
@@ -198,10 +205,23 @@ impl PipelineRequest {
         self.passes.iter().all(|pass| pass.desc.is_built_in() || pass.desc.background)
     }
 
-    /// Whether a pass after the tone map is shown, so that the pixels are LDR output.
+    /// Whether the pixels are LDR output: a pass after the tone map is shown, or covers the picture.
     pub(crate) fn shows_display(&self) -> bool {
-        let is_shown = |pass: &&Arc<GraphPass>| self.shown_pass.as_deref().is_some_and(|name| pass.is_called(name));
-        self.passes.iter().find(is_shown).is_some_and(|pass| pass.phase == RenderPhase::Display)
+        match self.shown() {
+            Some(pass) => pass.phase == RenderPhase::Display && pass.desc.watches.is_none(),
+            None => !self.draws_model && self.passes.iter().any(|pass| pass.phase == RenderPhase::Display),
+        }
+    }
+
+    /// Whether an expression of a pass after the tone map is shown: values that follow the displayed picture.
+    pub(crate) fn watches_display(&self) -> bool {
+        self.shown().is_some_and(|pass| pass.phase == RenderPhase::Display && pass.desc.watches.is_some())
+    }
+
+    /// The pass whose image is shown.
+    pub(crate) fn shown(&self) -> Option<&Arc<GraphPass>> {
+        let name = self.shown_pass.as_deref()?;
+        self.passes.iter().find(|pass| pass.is_called(name))
     }
 
     fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {

@@ -22,7 +22,7 @@ use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, beyond_me
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Compiler, Diagnostic, Severity, ShaderSet, Source};
+use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
 pub use draw::Step;
 pub use error::HeadlessError;
@@ -330,14 +330,15 @@ impl Headless {
             return Err(HeadlessError::Shaders(diagnostics));
         }
         let mut state = self.frame_state()?;
-        if state.pipelines.needs_pending(&state.shaders) {
+        let watches = self.session.settings.mode == expression::MODE;
+        // A pass that shows an expression has no mode before it is compiled.
+        let is_unseen = watches && state.shaders.pending.contains(expression::STAGE);
+        if is_unseen || state.pipelines.needs_pending(&state.shaders) {
             self.finish_or_fail()?;
             state = self.frame_state()?;
-            // A watched expression that does not compile stays pending.
-            if state.pipelines.needs_pending(&state.shaders) {
-                let errors = self.session.diagnostics.iter().filter(|found| found.severity == Severity::Error);
-                return Err(HeadlessError::Shaders(errors.cloned().collect()));
-            }
+        }
+        if let Some(error) = state.shaders.expression_error().filter(|_| watches) {
+            return Err(HeadlessError::Shaders(vec![error.clone()]));
         }
         if let Some(error) = beyond_memory(&state.pipelines, state.size, state.pass_memory) {
             return Err(HeadlessError::Shaders(vec![error]));

@@ -23,5 +23,8 @@ pub use paths::{PathTracing, PathTracingError, PathTracingKey, PathTracingReques
 pub use resources::{Missing, ProvideError, Resources};
 pub use scene::{GpuModel, UploadError};
 pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};
-pub use view::{Capture, Output, PixelAt, PixelModes, RangeSample, Readback, Redraw, Thumbnails, View, beyond_memory};
+pub use view::{
+    Capture, NotFinitePixels, Output, PixelAt, PixelModes, RangeSample, Readback, Redraw, Thumbnails, View,
+    beyond_memory,
+};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -26,7 +26,7 @@ pub mod watch;
 pub use annotation::{Constant, DrawAs, Encode, Mode, Numbers, PATHS_STAGE, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
-pub use expression::Expression;
+pub use expression::{Expression, Watching};
 pub use graph::{Graph, GraphPass};
 pub use includes::IncludeGraph;
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};

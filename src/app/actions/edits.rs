@@ -68,8 +68,8 @@ pub(in crate::app) fn follow_edits(state: &mut State, engine: &mut Engine, shade
     follow_restored(state, engine, shaders);
     let expression = &mut state.session.settings.expression;
     let watched = Expression::parse(&expression.at, expression.evaluation).ok();
-    if let Some((of_set, line)) = shaders.watched.as_ref().filter(|(of_set, _)| Some(of_set) == watched.as_ref()) {
-        expression.at = Expression { line: *line, ..of_set.clone() }.to_string();
+    if let Some(of_set) = shaders.watched.as_ref().filter(|of_set| Some(&of_set.expression) == watched.as_ref()) {
+        expression.at = Expression { line: of_set.line, ..of_set.expression.clone() }.to_string();
         state.edits.watched.clone_from(expression);
     }
     let settings = &mut state.session.settings.shader;

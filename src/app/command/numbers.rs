@@ -37,7 +37,7 @@ fn numbers(state: &mut State, engine: &mut Engine, request: Numbers) -> Outcome 
     let base = state.edits.draft.as_ref().map(|draft| (draft.path.clone(), draft.base.clone()));
     let line = SourceLine::place(&shaders, at).and_then(|(path, text, line)| {
         let text = base.as_ref().filter(|(of, _)| of == path).map_or(text, |(_, base)| base);
-        SourceLine::new(path, line, text)
+        SourceLine::new(&shaders, path, line, text)
     });
     let mut line = line.ok_or_else(|| format!("the shaders have no line {at}; expected FILE:LINE"))?;
     let Some(values) = request.values else {

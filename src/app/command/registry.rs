@@ -49,6 +49,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &scene::PICK,
     &scene::CLICK,
     &scene::SELECT,
+    &scene::INSPECT_PIXEL,
     &scene::UNPIN,
     &scene::FOLLOW_MOUSE,
     &shaders::ASK_EXPRESSION,

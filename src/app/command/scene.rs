@@ -10,7 +10,10 @@ use crate::app::actions::inspect::inspect;
 use crate::app::actions::select::{hide_selected, isolate_selected, place_rectangle, select_at, show_all};
 use crate::app::engine::Engine;
 use crate::app::state::State;
+use crate::app::state::arrangement::Panel;
+use crate::app::state::inspection::Page;
 use crate::app::state::selection::Selected;
+use crate::app::state::workspace::PanelRequest;
 use crate::settings::LightSettings;
 
 /// Fields of `pick`.
@@ -29,6 +32,12 @@ pub(in crate::app) static PICK: Spec<Pick> = Spec::new("pick", pick).takes(
 
 /// A click on a pixel; a second one takes the first one back.
 pub(in crate::app) static CLICK: Spec<[u32; 2]> = Spec::act("click", |state, _, at| click(state, at));
+
+/// Pins a pixel and opens the inspector, which finds the line that makes NaN there.
+pub(in crate::app) static INSPECT_PIXEL: Spec<[u32; 2]> = Spec::act("inspect-pixel", |state, _, at| {
+    (state.inspection.pin, state.inspection.page) = (Some(at), Page::Values);
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::Inspector));
+});
 
 /// Forgets the pixel that the inspector reads.
 pub(in crate::app) static UNPIN: Spec<()> = Spec::plain("unpin", |state, _, ()| state.inspection.unpin());

@@ -177,7 +177,12 @@ fn follow_settings(state: &mut State, engine: &mut Engine, frame_state: &FrameSt
 fn request_missing(state: &mut State, engine: &mut Engine, missing: Missing, frame_state: &FrameState) -> bool {
     let Some(set) = engine.resources.pipelines() else { return false };
     let is_empty = missing.is_empty();
-    state.picture.wait_for(Waits::of(&missing));
+    let baked = engine.resources.baked_environment();
+    let of_edit = match (&missing.environment, baked) {
+        (Some(wanted), Some((baked, _))) => baked.is_edit_of(wanted),
+        (environment, _) => environment.is_none() && engine.resources.tables().is_some(),
+    };
+    state.picture.wait_for(Waits::of(&missing, of_edit));
     if missing.pipelines {
         engine.threads.worker.build(set, &frame_state.pipelines);
     }

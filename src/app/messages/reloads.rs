@@ -8,7 +8,7 @@ use crate::app::state::recent::Kind;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::state::{EndlessLoop, FirstFrame, State};
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
-use crate::message::print_error;
+use crate::message::{self, print_error};
 use crate::pipeline::{Outcome, Reload, endless_loop};
 use crate::settings::GROUND;
 use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
@@ -53,6 +53,7 @@ pub(in crate::app) fn on_completed(state: &mut State, engine: &mut Engine, reloa
         }
         Outcome::Ready(set) => {
             state.set_diagnostics(set.shaders.warnings.clone());
+            tell_expression(state, &set.shaders);
             state.session.shaders = Some(set.shaders.clone());
             engine.resources.set_pipelines(set);
             follow_edits(state, engine, &set.shaders);
@@ -61,6 +62,7 @@ pub(in crate::app) fn on_completed(state: &mut State, engine: &mut Engine, reloa
             if !state.names_checked || state.session.mode().is_none() {
                 check_names(state);
             }
+            tell_repaired(state);
         }
     }
     let event = CompletedEvent::new(reload, generation);
@@ -69,6 +71,7 @@ pub(in crate::app) fn on_completed(state: &mut State, engine: &mut Engine, reloa
 }
 
 fn show_errors(state: &mut State, diagnostics: &[Diagnostic]) {
+    state.shader.is_broken = true;
     for diagnostic in diagnostics {
         print_error(diagnostic.full());
         emit(&state.events, &Event::Diagnostic(diagnostic));
@@ -88,6 +91,7 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             check_again(state, engine);
             state.endless_loop = None;
             state.session.diagnostics.clear();
+            tell_repaired(state);
             report(state, ReloadEvent::new(reload, generation, detect_ms, 0.0));
         }
         Outcome::Failed(diagnostics) => {
@@ -108,12 +112,32 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             engine.threads.worker.built();
             let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
+            tell_expression(state, &set.shaders);
             state.session.shaders = Some(set.shaders.clone());
             engine.resources.set_pipelines(set);
             follow_edits(state, engine, &set.shaders);
             check_names(state);
+            if set.shaders.is_complete() {
+                tell_repaired(state);
+            }
         }
     }
+}
+
+/// Tells the terminal, which shows the errors still, that all shaders compile again.
+fn tell_repaired(state: &mut State) {
+    if !state.has_errors() && std::mem::take(&mut state.shader.is_broken) {
+        message::tell("the shaders compile again");
+    }
+}
+
+/// Tells why the watched expression cannot be shown, once for each reason.
+fn tell_expression(state: &mut State, shaders: &ShaderSet) {
+    let before = state.session.shaders.as_ref().and_then(|shaders| shaders.expression_error());
+    let Some(error) = shaders.expression_error().filter(|error| before != Some(*error)) else { return };
+    print_error(error.full());
+    emit(&state.events, &Event::Diagnostic(error));
+    state.waiting.fail(&error.one_line());
 }
 
 /// Shows the diagnostic of a loop that did not end, unless a newer picture has taken its place.
@@ -152,7 +176,9 @@ pub(in crate::app) fn check_names(state: &mut State) {
     }
     let mut problems = state.session.problems(is_complete && !state.names_checked);
     state.names_checked |= is_complete;
-    if is_complete && state.session.mode().is_none() {
+    let settings = &state.session.settings;
+    let is_expression = settings.mode == expression::MODE && !settings.expression.at.is_empty();
+    if is_complete && !is_expression && state.session.mode().is_none() {
         let mode = &state.session.settings.mode;
         problems
             .push(format!("there is no mode '{mode}', so the final picture is shown; `specula modes` lists all modes"));

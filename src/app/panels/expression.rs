@@ -11,7 +11,7 @@ use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
-use crate::app::source_line::{SourceLine, watch};
+use crate::app::source_line::{SourceLine, stop, watch};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::state::shaders::edits::NO_FOLDER;
@@ -21,8 +21,11 @@ use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, small_mono};
 use crate::settings::Settings;
 use crate::shader::Expression;
-use crate::shader::expression::MODE;
+use crate::shader::expression::{MODE, Variable};
 use crate::shader::rewrite::Edit;
+
+/// Height of a menu of members, points.
+const MENU: f32 = 320.0;
 
 /// Most edited lines that the panel offers.
 const MOST_LINES: usize = 8;
@@ -67,7 +70,11 @@ fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Co
         own.error = None;
     }
     field(ui, settings, own);
-    if let Some(error) = &own.error {
+    let unparsed = own.error.as_deref();
+    // The error of an expression that is no longer watched is not told.
+    let shaders = state.session.shaders.as_ref().filter(|_| own.field == settings.expression.at);
+    let compiled = shaders.and_then(|shaders| shaders.expression_error()).map(|error| error.message.as_str());
+    if let Some(error) = unparsed.or(compiled) {
         ui.add(Label::new(RichText::new(error).small().color(ERROR)).wrap());
     }
     find_line(state, own);
@@ -97,24 +104,22 @@ fn field(ui: &mut Ui, settings: &mut Settings, own: &mut ExpressionState) {
             "FILE:LINE and a variable or an expression of the shaders. Enter shows its value over the model, as a mode. \
              `return` is the value that the line returns",
         );
-        let is_shown = is_on && settings.mode == MODE && own.field == settings.expression.at;
-        let (name, hint) = match is_shown {
-            true => ("Stop", "Go back to the picture"),
-            false => ("Watch", "Show the value over the model (Enter)"),
+        let is_empty = own.field.trim().is_empty();
+        let ends = is_on && (is_empty || (settings.mode == MODE && own.field == settings.expression.at));
+        let (name, hint) = match ends {
+            true => ("Stop", "Watch it no longer, and go back to the picture"),
+            false => ("Watch", "Show the value over the picture (Enter)"),
         };
         let clicked = ui.add_sized(vec2(52.0, 20.0), Button::new(name)).on_hover_text(hint).clicked();
-        if clicked && is_shown {
-            settings.expression.at.clear();
-            if settings.mode == MODE {
-                settings.mode = Settings::default().mode;
-            }
+        if ends && (clicked || (entered && is_empty)) {
+            stop(settings);
         } else if clicked || entered {
             match Expression::parse(&own.field, 0) {
                 Ok(expression) => {
                     own.error = None;
                     watch(settings, expression.to_string());
                 }
-                Err(message) => own.error = (!own.field.is_empty()).then_some(message),
+                Err(message) => own.error = (!is_empty).then_some(message),
             }
         }
     });
@@ -134,7 +139,7 @@ fn find_line(state: &State, own: &mut ExpressionState) {
             && (is_dragged || Arc::ptr_eq(&shown.text, text) || shown.text == *text)
     });
     if !is_same {
-        own.shown = SourceLine::new(path, line, text);
+        own.shown = SourceLine::new(shaders, path, line, text);
     }
 }
 
@@ -161,18 +166,46 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut E
     let watched = Expression::parse(&settings.expression.at, 0).ok();
     let watched =
         watched.filter(|watched| watched.line == shown.line && settings.mode == MODE).map(|watched| watched.text);
-    let returns = shown.before.trim_start().starts_with("return").then(|| ("return".to_owned(), "value".to_owned()));
+    let Some(variables) = &shown.variables else {
+        let text = "Values of this file cannot be shown: no fragment stage of the model or of a pass that covers its image includes it.";
+        ui.label(RichText::new(text).small().color(QUIET));
+        return;
+    };
+    let returns = shown.before.trim_start().starts_with("return");
+    let mut chosen: Option<&str> = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        for (name, kind) in returns.iter().chain(&shown.variables) {
-            let text = small_mono(name);
-            let button = ui.selectable_label(watched.as_ref() == Some(name), text);
-            if button.on_hover_text(format!("{kind} {name}: click to see its value over the model")).clicked() {
-                own.error = None;
-                watch(settings, format!("{}:{}:{name}", shown.path, shown.line));
+        if returns {
+            let button =
+                ui.selectable_label(watched.as_deref() == Some("return"), RichText::new("returned value").small());
+            if button.on_hover_text("The value that the line returns: click to see it over the picture").clicked() {
+                chosen = Some("return");
+            }
+        }
+        let struct_of = |variable: &Variable| variable.name.split_once('.').map(|(of, _)| of.to_owned());
+        for variables in variables.chunk_by(|a, b| struct_of(a).is_some() && struct_of(a) == struct_of(b)) {
+            let mut offer = |ui: &mut Ui| {
+                for Variable { name, kind } in variables {
+                    let button = ui.selectable_label(watched.as_ref() == Some(name), small_mono(name));
+                    let hint = format!("{kind} {name}: click to see its value over the picture");
+                    if button.on_hover_text(hint).clicked() {
+                        chosen = Some(name);
+                    }
+                }
+            };
+            match variables.first().and_then(struct_of) {
+                None => offer(ui),
+                Some(of) => {
+                    let list = |ui: &mut Ui| egui::ScrollArea::vertical().max_height(MENU).show(ui, &mut offer);
+                    ui.menu_button(small_mono(format!("{of}.")), list).response.on_hover_text("Its members");
+                }
             }
         }
     });
+    if let Some(name) = chosen {
+        own.error = None;
+        watch(settings, format!("{}:{}:{name}", shown.path, shown.line));
+    }
     ui.add_enabled_ui(watched.is_some(), |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Evaluation").small());
@@ -184,7 +217,8 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut E
             let parse = |text: &str| if text.trim() == "last" { Some(0.0) } else { text.trim().parse().ok() };
             let drag = DragValue::new(value).range(0..=100_000).speed(0.05).custom_formatter(text).custom_parser(parse);
             let hint = "Which evaluation of the line is shown where it runs more than once in a pixel: in a loop, or for each \
-                light. `lights.chosen` selects one light";
+                light. Only evaluations that reach the line count, so the second is not that of light 2 where light 1 is left out \
+                before; `lights.chosen` selects one light";
             ui.add(drag).on_hover_text(hint).on_disabled_hover_text(hint);
         });
     });
@@ -289,9 +323,59 @@ fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
 
 #[cfg(test)]
 mod tests {
+    use egui::accesskit::Role;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
     use crate::app::state::shaders::difference::difference;
-    use crate::shader::TreePath;
+    use crate::shader::{Diagnostic, ShaderSet, Source, TreePath, Watching};
+
+    /// The panel over a window that watches an expression which does not compile.
+    fn panel() -> Harness<'static, (State, ExpressionState)> {
+        let mut state = State::new(Settings::of_window(), Source::embedded());
+        watch(&mut state.session.settings, "a.glsl:1:x".to_owned());
+        let error = Some(Diagnostic::error("a.glsl", "cannot watch `x` here: 'x' : undeclared identifier"));
+        let expression = Expression::parse("a.glsl:1:x", 0).unwrap();
+        let watched = Some(Watching { expression, line: 1, error });
+        state.session.shaders = Some(Arc::new(ShaderSet { watched, ..ShaderSet::default() }));
+        let show_panel = |ui: &mut Ui, (state, own): &mut (State, ExpressionState)| {
+            let mut commands = Commands::new(&state.session.settings);
+            show(ui, state, own, &mut commands);
+            state.session.settings = commands.settings;
+        };
+        let mut harness = Harness::new_ui_state(show_panel, (state, ExpressionState::default()));
+        harness.run();
+        harness
+    }
+
+    #[test]
+    fn an_expression_that_does_not_compile_is_told_here_alone_until_it_is_stopped() {
+        let mut harness = panel();
+        harness.get_by_label_contains("cannot watch `x` here");
+        assert!(!harness.state().0.has_errors(), "it counts as an error of the tree");
+        assert!(harness.state().0.shown_expression_error().is_some());
+        harness.state_mut().0.session.settings.mode = "final".to_owned();
+        assert!(harness.state().0.shown_expression_error().is_none(), "the error is over another mode");
+        watch(&mut harness.state_mut().0.session.settings, "a.glsl:1:x".to_owned());
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Stop").click();
+        harness.run();
+        let settings = &harness.state().0.session.settings;
+        assert_eq!((settings.expression.at.as_str(), settings.mode.as_str()), ("", "final"));
+        assert!(harness.query_by_label_contains("cannot watch").is_none());
+    }
+
+    #[test]
+    fn an_emptied_field_stops_too() {
+        let mut harness = panel();
+        harness.state_mut().0.session.settings.mode = "final".to_owned();
+        harness.state_mut().1.field.clear();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, "Stop").click();
+        harness.run();
+        assert_eq!(harness.state().0.session.settings.expression.at, "");
+    }
 
     #[test]
     fn the_lines_of_an_edit_are_offered() {

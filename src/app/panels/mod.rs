@@ -1,6 +1,7 @@
 //! Bars, panels and messages around and over the picture. Each panel has a file of its own and receives only
 //! what it shows and sets. `crate::app::layout` arranges them.
 
+mod baking;
 mod camera;
 mod capture;
 mod environment;
@@ -26,8 +27,6 @@ pub(super) mod texture;
 pub(super) mod timeline;
 mod timing;
 mod top_bar;
-
-use std::time::Duration;
 
 use egui::{Ui, Vec2};
 
@@ -167,29 +166,21 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, comm
     picture
 }
 
-/// The status bar says what the picture waits for after this long.
-const LONG: Duration = Duration::from_millis(250);
-
 /// The bars above and below the tiles.
 fn bars(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut Vec<Command>) {
     let state = context.state;
     let Panels { layout, palette, show_keys, .. } = panels;
     top_bar::show(ui, (layout, palette, show_keys), (&state.recent, &state.last_sessions), commands);
-    let waits = state.picture.waits_for().filter(|(_, time)| match LONG.checked_sub(*time) {
-        Some(left) => {
-            ui.ctx().request_repaint_after(left);
-            false
-        }
-        None => true,
-    });
     let status = status_bar::Status {
         shader: &state.shader,
-        waits: waits.map(|(waits, _)| waits),
+        waits: baking::long_wait(ui.ctx(), context),
+        not_finite: state.shown_not_finite(),
+        progress: context.readings.baking.map(|(done, _)| *done),
         generation: context.shaders.generation,
         diagnostics: &state.session.diagnostics,
         frame_ms: state.timing.frame_ms(),
         stage: state.stages.main(),
         device: &state.device,
     };
-    status_bar::show(ui, &status);
+    status_bar::show(ui, &status, commands);
 }

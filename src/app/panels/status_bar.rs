@@ -1,8 +1,12 @@
 //! The bar below the picture: the state of the shaders, the last reload, and the time of a frame.
 
+use std::time::Duration;
+
 use egui::{Align, Layout, RichText, Ui};
 
-use super::shaders;
+use super::{baking, shaders};
+use crate::app::command::scene::INSPECT_PIXEL;
+use crate::app::command::spec::Command;
 use crate::app::state::shaders::log::lines;
 use crate::app::state::shaders::stages::StageRow;
 use crate::app::state::shaders::status::ShaderStatus;
@@ -10,6 +14,7 @@ use crate::app::state::waits::Waits;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
+use crate::render::NotFinitePixels;
 use crate::shader::{Diagnostic, Severity};
 
 /// Height in points.
@@ -21,8 +26,12 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
-    /// The work that has delayed the picture for longer than the status bar waits before it shows a reason.
-    pub(super) waits: Option<Waits>,
+    /// The work that has delayed the picture for long, and since when.
+    pub(super) waits: Option<(Waits, Duration)>,
+    /// The fraction of the bake that is done.
+    pub(super) progress: Option<f32>,
+    /// The pixels of the picture with NaN or infinity.
+    pub(super) not_finite: Option<NotFinitePixels>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
@@ -33,7 +42,7 @@ pub(super) struct Status<'a> {
     pub(super) device: &'a str,
 }
 
-pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
+pub(super) fn show(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new().fill(BAR.color()).inner_margin(egui::Margin::symmetric(8, 2));
     let bar = egui::Panel::bottom("status").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
@@ -46,26 +55,33 @@ pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
                     status.device
                 ));
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| state(ui, status));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| state(ui, status, commands));
         });
     });
 }
 
-fn state(ui: &mut Ui, status: &Status<'_>) {
+fn state(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
     let count = |severity: Severity| status.diagnostics.iter().filter(|d| d.severity == severity).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-    let (color, text) = match (status.shader.compiling, errors, warnings) {
+    let (color, text) = match (status.shader.compiling, errors, warnings, status.waits) {
         (true, ..) => (WARNING, "compiling".to_owned()),
-        (_, 0, _) if status.waits == Some(Waits::Pipelines) => (WARNING, "building pipelines".to_owned()),
-        (_, 0, _) if status.waits == Some(Waits::Light) => (WARNING, "baking light".to_owned()),
-        (_, 0, _) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
-        (_, 0, 0) => (GOOD, "watching".to_owned()),
-        (_, 0, warnings) => (WARNING, plural(warnings, "warning")),
-        (_, errors, _) => (ERROR, plural(errors, "error")),
+        (_, 0, _, Some((Waits::Pipelines, _))) => (WARNING, "building pipelines".to_owned()),
+        (_, 0, _, Some((Waits::Light { of_edit }, time))) => (WARNING, baking::text(of_edit, time, status.progress)),
+        (_, 0, ..) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
+        (_, 0, 0, _) => (GOOD, "watching".to_owned()),
+        (_, 0, warnings, _) => (WARNING, plural(warnings, "warning")),
+        (_, errors, ..) => (ERROR, plural(errors, "error")),
     };
     dot(ui, color);
     let color = if errors > 0 { ERROR } else { TEXT };
     ui.label(RichText::new(text).small().color(color)).on_hover_text(&status.shader.tree);
+    if let Some(NotFinitePixels { count, at: (x, y), .. }) = status.not_finite {
+        let text = RichText::new(format!("NaN in {}", plural(count, "pixel"))).small().color(ERROR);
+        let hint = format!("NaN or infinity, as at {x}, {y}. Click to find the line that makes it");
+        if ui.add(egui::Button::new(text).small()).on_hover_text(hint).clicked() {
+            commands.push(INSPECT_PIXEL.with([x, y]));
+        }
+    }
     if let Some(row) = status.stage.filter(|_| ui.available_width() > ROOM_FOR_STAGE) {
         ui.scope(|ui| stage(ui, row));
         ui.add_space(8.0);

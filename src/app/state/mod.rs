@@ -33,9 +33,10 @@ use crate::events::{Event, ReloadEvent, SelectedEvent, emit};
 use crate::frame::{FrameState, Scene};
 use crate::message;
 use crate::recovery::SessionState;
+use crate::render::NotFinitePixels;
 use crate::session::Session;
 use crate::settings::{LightSource, Settings};
-use crate::shader::expression::is_about_expression;
+use crate::shader::expression;
 use crate::shader::rewrite::{Edit, defaults};
 use crate::shader::{Diagnostic, Severity, Source};
 use captures::Captures;
@@ -272,6 +273,12 @@ impl State {
         self.versions.before(self.shown_generation()).map(|version| version.number)
     }
 
+    /// The pixels with NaN or infinity of the picture on screen.
+    pub(in crate::app) fn shown_not_finite(&self) -> Option<NotFinitePixels> {
+        let (generation, pixels) = self.picture.not_finite?;
+        (generation == self.shown_generation() && pixels.count > 0).then_some(pixels)
+    }
+
     /// Whether the tree is a folder on disk, so that its files can be written.
     pub(in crate::app) fn has_folder(&self) -> bool {
         self.source.root().is_some()
@@ -363,9 +370,14 @@ impl State {
         self.errors().next().is_some()
     }
 
-    /// The errors of the shaders. A watched expression that does not compile does not count.
+    /// The errors of the shaders.
     pub(in crate::app) fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
-        let is_error = |found: &&Diagnostic| found.severity == Severity::Error && !is_about_expression(found);
-        self.session.diagnostics.iter().filter(is_error)
+        self.session.diagnostics.iter().filter(|found| found.severity == Severity::Error)
+    }
+
+    /// Why the watched expression cannot be shown, while its mode is selected.
+    pub(in crate::app) fn shown_expression_error(&self) -> Option<&Diagnostic> {
+        let shaders = self.session.shaders.as_ref().filter(|_| self.session.settings.mode == expression::MODE)?;
+        shaders.expression_error()
     }
 }

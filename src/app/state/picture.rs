@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::waits::Waits;
 use crate::frame::{Clock, FrameState};
+use crate::render::NotFinitePixels;
 use crate::settings::Settings;
 
 /// The contents of a complete frame.
@@ -31,6 +32,8 @@ pub(in crate::app) struct Picture {
     pub(in crate::app) shows_settings: bool,
     /// The shader generation that was last shown with all of its stages and light.
     pub(in crate::app) settled: Option<u64>,
+    /// The pixels with NaN or infinity in the last picture that has come to rest, and the generation of its shaders.
+    pub(in crate::app) not_finite: Option<(u64, NotFinitePixels)>,
     /// The work that the picture waits for, and since when; `None` when it has everything.
     waits: Option<(Waits, Instant)>,
 }

@@ -11,7 +11,7 @@ use crate::interface::{
     self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES, SPEC_MODE,
     SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
 };
-use crate::shader::annotation::pass::{MODEL, PassTarget};
+use crate::shader::annotation::pass::{MODEL, PassTarget, TONEMAP};
 use crate::shader::graph::RenderPhase;
 use crate::shader::{DrawAs, GraphPass};
 
@@ -114,10 +114,20 @@ impl PipelineRequest {
     }
 
     fn tonemap_key_of(&self, encode: u32) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Tonemap)?;
         // Modes that are drawn at once have displays of their own.
         let maps_values = u32::from(self.maps_values || !self.modes.is_empty());
-        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode), (SPEC_MAPS_VALUES, maps_values)];
+        self.tonemap_key_with([(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode), (SPEC_MAPS_VALUES, maps_values)])
+    }
+
+    /// The tone map that makes the displayed picture which a watched pass reads.
+    pub(crate) fn watched_tonemap_key(&self) -> Option<PipelineKey> {
+        self.watched_tonemap
+            .filter(|_| self.watches_display())
+            .and_then(|tonemap| self.tonemap_key_with(picture(tonemap)))
+    }
+
+    fn tonemap_key_with(&self, own: [(u32, u32); 3]) -> Option<PipelineKey> {
+        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Tonemap)?;
         let specialization = own.iter().chain(&self.constants).copied().collect();
         Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
     }
@@ -166,7 +176,9 @@ impl PipelineRequest {
             _ if pass.phase == RenderPhase::Display => Swapchain::FORMAT,
             _ => self.picture_format(),
         };
-        vec![self.triangle_key(pass, Raster::Solid, format, self.pass_constants())]
+        let of_tonemap = self.watched_tonemap.filter(|_| pass.desc.watches.as_deref() == Some(TONEMAP)).map(picture);
+        let constants = of_tonemap.into_iter().flatten().chain(self.pass_constants()).collect();
+        vec![self.triangle_key(pass, Raster::Solid, format, constants)]
     }
 
     /// The specialization of declared passes that cover an image or compute, and of the background.
@@ -196,6 +208,12 @@ impl PipelineRequest {
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let others = self.passes.iter().filter(|pass| pass.phase != RenderPhase::Model);
-        self.model_keys().chain(self.tonemap_keys()).chain(others.flat_map(|pass| self.pass_keys(pass)))
+        let tonemaps = self.tonemap_keys().chain(self.watched_tonemap_key());
+        self.model_keys().chain(tonemaps).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
+}
+
+/// The constants of the tone map of the final picture.
+fn picture(tonemap: u32) -> [(u32, u32); 3] {
+    [(SPEC_TONEMAP, tonemap), (SPEC_ENCODE, interface::ENCODE_COLOR), (SPEC_MAPS_VALUES, 0)]
 }

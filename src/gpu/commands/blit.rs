@@ -50,7 +50,14 @@ impl Encoder {
     pub fn pick(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
         self.keep(from);
         self.keep(to);
-        self.blit_with((from, 0), (to, 0), 0, vk::Filter::NEAREST);
+        self.blit_with((from, 0), (to, 0), 0, vk::Filter::NEAREST, false);
+    }
+
+    /// [`Encoder::pick`] with the rows in the opposite order.
+    pub fn pick_flipped(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        self.blit_with((from, 0), (to, 0), 0, vk::Filter::NEAREST, true);
     }
 
     /// Sets all texels of an image in [`Use::CopyTo`] to 0.
@@ -106,7 +113,7 @@ impl Encoder {
 
     fn blit(&mut self, from: (&Image, u32), to: (&Image, u32), to_layer: u32) {
         let blends = self.gpu.blends_texels(from.0.desc().format);
-        self.blit_with(from, to, to_layer, if blends { vk::Filter::LINEAR } else { vk::Filter::NEAREST });
+        self.blit_with(from, to, to_layer, if blends { vk::Filter::LINEAR } else { vk::Filter::NEAREST }, false);
     }
 
     fn blit_with(
@@ -115,6 +122,7 @@ impl Encoder {
         (to, to_level): (&Image, u32),
         to_layer: u32,
         filter: vk::Filter,
+        flips_rows: bool,
     ) {
         let side = |pixels: u32, level: u32| (pixels >> level).max(1) as i32;
         let corner = |image: &Image, level: u32| vk::Offset3D {
@@ -126,9 +134,13 @@ impl Encoder {
             let color = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR);
             color.mip_level(level).base_array_layer(layer).layer_count(1)
         };
+        let (mut first, mut last) = (vk::Offset3D::default(), corner(from, from_level));
+        if flips_rows {
+            std::mem::swap(&mut first.y, &mut last.y);
+        }
         let region = [vk::ImageBlit::default()
             .src_subresource(layers(from_level, 0))
-            .src_offsets([vk::Offset3D::default(), corner(from, from_level)])
+            .src_offsets([first, last])
             .dst_subresource(layers(to_level, to_layer))
             .dst_offsets([vk::Offset3D::default(), corner(to, to_level)])];
         let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);

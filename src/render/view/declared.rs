@@ -36,6 +36,7 @@ mod sets;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::capture::PixelReadback;
 use super::model_draws::{ModelDraws, instances};
 use crate::frame::PipelineKey;
 use crate::gpu::{
@@ -45,7 +46,7 @@ use crate::gpu::{
 use crate::interface::SET_TASK;
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::Dispatch;
+use crate::shader::annotation::pass::{Dispatch, PassFormat, PassTarget};
 use crate::shader::graph::{Input, RenderPhase, TextureKind};
 pub(super) use blocks::Blocks;
 use cache_key::PassCacheKey;
@@ -128,11 +129,49 @@ impl DeclaredPasses {
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
         let shown = shown_image(context.frame).filter(|(_, pass)| pass.phase != RenderPhase::Display);
         // The tone map reads an image of the frame's size.
-        if let Some((name, _)) = shown
+        if let Some((name, pass)) = shown
             && let (Some(from), Some(to)) = (self.images.current(name), self.images.shown())
         {
-            scale(encoder, from, to);
+            show(encoder, from, to, pass);
             self.picture = Some(to.clone());
+        }
+        Ok(())
+    }
+
+    /// The values of a watched expression that follow the displayed picture, once they are drawn.
+    pub(super) fn values_on_display(&self, frame: &BoundFrame) -> Option<&Arc<Image>> {
+        self.images.shown().filter(|_| frame.state.pipelines.watches_display())
+    }
+
+    /// Records the copies of a pixel of the frame in the images of its passes that have four floats.
+    pub(super) fn record_pixels(
+        &self,
+        encoder: &mut Encoder,
+        frame: &BoundFrame,
+        at: Option<(u32, u32)>,
+        pixels: &mut Vec<(String, PixelReadback)>,
+        picture: u64,
+    ) -> Result<(), GpuError> {
+        let Some((x, y)) = at else {
+            pixels.clear();
+            return Ok(());
+        };
+        let (width, height) = frame.state.size;
+        let passes = frame.state.pipelines.passes.iter().filter(|pass| pass.desc.to == PassTarget::Image);
+        let images = passes.flat_map(|pass| pass.desc.images().map(move |(name, format)| (pass, name, format)));
+        let read = images.filter(|(.., format)| matches!(format, PassFormat::Rgba16f | PassFormat::Rgba32f));
+        let read: Vec<_> = read.filter_map(|(pass, name, _)| Some((pass, name, self.images.current(name)?))).collect();
+        pixels.retain(|(name, _)| read.iter().any(|(_, read, _)| read == name));
+        for (pass, name, image) in read {
+            let of = image.desc();
+            let row = y * of.height / height;
+            let row = if pass.desc.rows_up { of.height.saturating_sub(row + 1) } else { row };
+            if pixels.iter().all(|(known, _)| known != name) {
+                pixels.push((name.to_owned(), PixelReadback::new(&self.gpu)?));
+            }
+            if let Some((_, pixel)) = pixels.iter_mut().find(|(known, _)| known == name) {
+                pixel.record(encoder, image, Some((x * of.width / width, row)), picture);
+            }
         }
         Ok(())
     }
@@ -143,13 +182,15 @@ impl DeclaredPasses {
     }
 
     /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
-    /// [`Use::Sampled`]: the previous one unless the frame was `redrawn`.
+    /// [`Use::Sampled`]: the previous one unless the frame was `redrawn`. If an expression of one of these passes is watched, `map_values`
+    /// draws that image from [`DeclaredPasses::values_on_display`].
     pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
         context: &PassContext<'_>,
         redrawn: bool,
         tone_map: impl FnOnce(&mut Encoder, &Arc<Image>),
+        map_values: impl FnOnce(&mut Encoder, &Arc<Image>),
     ) -> Result<Option<Arc<Image>>, GpuError> {
         if let Some(last) = self.display.clone().filter(|_| !redrawn) {
             return Ok(Some(last));
@@ -160,12 +201,19 @@ impl DeclaredPasses {
         encoder.transition(&first, Use::Color, Use::Sampled);
         let mut last = self.run(encoder, context, &first, RenderPhase::Display)?;
         let shown = shown_image(context.frame).filter(|(_, pass)| pass.phase == RenderPhase::Display);
-        if let Some((name, _)) = shown
+        if let Some((name, pass)) = shown
             && let Some(from) = self.images.current(name)
-            && let Some(to) = self.images.other_picture(RenderPhase::Display, &last)
         {
-            scale(encoder, from, to);
-            last = to.clone();
+            if let Some(values) = self.values_on_display(context.frame) {
+                show(encoder, from, values, pass);
+                last = first;
+                encoder.transition(&last, Use::Undefined, Use::Color);
+                encoder.pass("tone map", |encoder| map_values(encoder, &last));
+                encoder.transition(&last, Use::Color, Use::Sampled);
+            } else if let Some(to) = self.images.other_picture(RenderPhase::Display, &last) {
+                show(encoder, from, to, pass);
+                last = to.clone();
+            }
         }
         self.display = Some(last.clone());
         Ok(Some(last))
@@ -287,7 +335,9 @@ impl DeclaredPasses {
                 model.draw_pass(encoder);
             }
             None => {
-                encoder.begin_rendering(&attachments);
+                // Where a watched stage discards its fragment there is no value.
+                let clear = pass.desc.watches.as_ref().map(|_| [0.0; 4]);
+                encoder.begin_rendering(&Attachments { clear, ..attachments });
                 if let Some(pipeline) = keys.first().and_then(|key| context.frame.pipelines.get(key)) {
                     encoder.bind_set(&self.layouts, context.frame_set);
                     sets.bind(encoder, pipeline);
@@ -374,10 +424,15 @@ fn shown_image(frame: &BoundFrame) -> Option<(&str, &Arc<GraphPass>)> {
 }
 
 /// Scales an image to the size of another. Leaves both in [`Use::Sampled`].
-fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
+fn show(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>, pass: &GraphPass) {
     encoder.transition(from, Use::Sampled, Use::CopyFrom);
     encoder.transition(to, Use::Undefined, Use::CopyTo);
-    encoder.scale(from, to);
+    match pass.desc.rows_up {
+        true => encoder.pick_flipped(from, to),
+        // Flags in alpha have no mean.
+        false if pass.desc.watches.is_some() => encoder.pick(from, to),
+        false => encoder.scale(from, to),
+    }
     encoder.transition(from, Use::CopyFrom, Use::Sampled);
     encoder.transition(to, Use::CopyTo, Use::Sampled);
 }

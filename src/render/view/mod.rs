@@ -21,6 +21,7 @@ mod model_draws;
 mod passes;
 mod pixel_modes;
 mod range_sample;
+mod scan;
 mod targets;
 mod thumbnails;
 mod uniforms;
@@ -36,11 +37,13 @@ pub use declared::beyond_memory;
 pub use passes::Output;
 pub use pixel_modes::PixelModes;
 pub use range_sample::RangeSample;
+pub use scan::NotFinitePixels;
 use targets::{TargetDesc, Targets};
 pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use range_sample::RangeSampleReadback;
+use scan::Scan;
 
 use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
 
@@ -69,6 +72,9 @@ struct InFlight {
     uniforms: Uniforms,
     blocks: Blocks,
     pixel: PixelReadback,
+    /// The pixel in the images of passes, by their names.
+    pass_pixels: Vec<(String, PixelReadback)>,
+    scan: Option<Scan>,
     range_sample: RangeSampleReadback,
 }
 
@@ -89,6 +95,10 @@ pub struct View {
     sample_index: u32,
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
+    /// The pixel whose values in the images of passes each frame reports.
+    pub probe_passes: Option<(u32, u32)>,
+    /// Whether the next frame looks for NaN and infinity in its picture.
+    pub scans: bool,
     /// Whether to sample each frame's values even if no range is automatic.
     pub samples_range: bool,
     /// The newest samples.
@@ -124,7 +134,8 @@ impl View {
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, frames_in_flight: usize) -> Result<Self, GpuError> {
         let in_flight = || -> Result<_, GpuError> {
             let (uniforms, pixel) = (Uniforms::new(gpu)?, PixelReadback::new(gpu)?);
-            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel, range_sample: RangeSampleReadback::default() })
+            let (blocks, pass_pixels, scan, range_sample) = Default::default();
+            Ok(InFlight { uniforms, blocks, pixel, pass_pixels, scan, range_sample })
         };
         let (nearest, shared) = (Sampler::new(gpu, &SamplerDesc::NEAREST)?, SharedImages::new(gpu)?);
         Ok(Self {
@@ -139,6 +150,8 @@ impl View {
             picture: 0,
             sample_index: 0,
             probe: None,
+            probe_passes: None,
+            scans: false,
             samples_range: false,
             range_sample: None,
             range_sampled: 0,
@@ -244,16 +257,23 @@ impl View {
         let drawn_picture = self.declared.picture().unwrap_or(targets.picture());
         let picture = self.override_image.as_ref().unwrap_or(drawn_picture).clone();
         let is_on_display = frame.state.pipelines.shows_display();
+        let values = self.declared.values_on_display(frame).cloned();
         let in_light = self.probe.filter(|_| !is_on_display);
         in_flight.pixel.record(encoder, &picture, in_light, self.picture);
-        if samples_range {
+        self.declared.record_pixels(encoder, frame, self.probe_passes, &mut in_flight.pass_pixels, self.picture)?;
+        if std::mem::take(&mut self.scans) {
+            in_flight.scan = Some(Scan::record(&self.gpu, encoder, &picture, self.picture)?);
+        }
+        if samples_range && values.is_none() {
             in_flight.range_sample.record(&self.gpu, encoder, &picture, self.picture)?;
             self.range_sampled = self.picture;
         }
 
         // The HDR target to the display: exposure, tone map, sRGB.
         let images = FrameImages { picture: Some(&picture), ..FrameImages::default() };
-        let sets = self.declared.sets_of(&context, &images, frame.state.pipelines.tonemap_key().into_iter())?;
+        let request = &frame.state.pipelines;
+        let of_picture = request.watched_tonemap_key().or_else(|| request.tonemap_key());
+        let sets = self.declared.sets_of(&context, &images, of_picture.clone().into_iter())?;
         if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &sets, output.image, rect));
@@ -261,8 +281,22 @@ impl View {
         }
 
         // The LDR output, through the declared passes after the tone map.
-        let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
-        let display = self.declared.on_display(encoder, &context, redrawn || limits_changed, tone_map)?;
+        let images = FrameImages { picture: values.as_ref(), ..FrameImages::default() };
+        let of_values = request.tonemap_key().filter(|_| values.is_some());
+        let value_sets = self.declared.sets_of(&context, &images, of_values.into_iter())?;
+        let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| {
+            passes.tone_map_with(encoder, of_picture.as_ref(), &sets, display, rect);
+        };
+        let map_values =
+            |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &value_sets, display, rect);
+        let display = self.declared.on_display(encoder, &context, redrawn || limits_changed, tone_map, map_values)?;
+        if let Some(values) = &values {
+            in_flight.pixel.record(encoder, values, self.probe, self.picture);
+            if samples_range {
+                in_flight.range_sample.record(&self.gpu, encoder, values, self.picture)?;
+                self.range_sampled = self.picture;
+            }
+        }
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(display) = display {
@@ -316,6 +350,7 @@ impl View {
     pub fn forget(&mut self) {
         (self.drawn, self.cameras) = (None, None);
         self.range_sampled = 0;
+        self.in_flight.iter_mut().for_each(|in_flight| in_flight.scan = None);
         self.declared.forget();
     }
 
@@ -351,6 +386,17 @@ impl View {
         self.in_flight.get(slot).and_then(|in_flight| in_flight.pixel.read())
     }
 
+    /// The values of [`View::probe_passes`] in the last frame of slot `slot`, by the names of the images. SYNC: after that frame's fence.
+    pub fn pass_pixels(&self, slot: usize) -> Vec<(String, PixelAt)> {
+        let pixels = self.in_flight.get(slot).into_iter().flat_map(|in_flight| &in_flight.pass_pixels);
+        pixels.filter_map(|(name, pixel)| Some((name.clone(), pixel.read()?))).collect()
+    }
+
+    /// The pixels with NaN or infinity in the frame of slot `slot`, if it looked for them. SYNC: after that frame's fence.
+    pub fn take_scan(&mut self, slot: usize) -> Option<NotFinitePixels> {
+        self.in_flight.get_mut(slot)?.scan.take().map(Scan::finish)
+    }
+
     /// Records the readback of the image in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
     /// `Readback::finish` once the frame has finished.
     ///
@@ -359,7 +405,8 @@ impl View {
     pub fn read_back(&self, encoder: &mut Encoder, output: &Arc<Image>) -> Result<Option<Readback>, GpuError> {
         let Some(targets) = &self.targets else { return Ok(None) };
         encoder.transition(output, Use::Color, Use::CopyFrom);
-        let picture = self.declared.picture().unwrap_or(targets.picture());
+        let values = self.drawn.as_ref().and_then(|(frame, _)| self.declared.values_on_display(frame));
+        let picture = values.or(self.declared.picture()).unwrap_or(targets.picture());
         encoder.transition(picture, Use::Sampled, Use::CopyFrom);
         let readback = Readback::record(&self.gpu, encoder, output, picture)?;
         encoder.transition(picture, Use::CopyFrom, Use::Sampled);

@@ -194,6 +194,12 @@ pub struct PassDesc {
     pub background: bool,
     /// The pass that it replaces in the debug modes that name its stage.
     pub instead: Option<String>,
+    /// The pass whose stage it copies to show an expression; it is drawn just before it. No tree writes this.
+    #[serde(skip)]
+    pub watches: Option<String>,
+    /// Whether the first row of its image is the lowest one, as in OpenGL.
+    #[serde(skip)]
+    pub rows_up: bool,
     /// The faces of the model that it leaves out; `None`: as the material says.
     pub cull: Option<Cull>,
     /// Whether its colors, premultiplied by alpha, are blended with the picture.
@@ -264,6 +270,8 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
         quads: false,
         background: false,
         instead: None,
+        watches: None,
+        rows_up: false,
         cull: None,
         blend: false,
         when: None,
@@ -279,6 +287,8 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
             "off" => desc.on = false,
             "blend" => desc.blend = true,
             "instead" => desc.instead = Some(cursor.value(key)?.1),
+            "watches" => desc.watches = Some(cursor.value(key)?.1),
+            "rows" => desc.rows_up = cursor.one_of(key, &[("up", true), ("down", false)])?,
             "cull" => {
                 let all = [("none", Cull::None), ("front", Cull::Front), ("back", Cull::Back)];
                 desc.cull = Some(cursor.one_of(key, &all)?);

@@ -1,29 +1,36 @@
 //! Watches an expression of the shaders: shows its value over the model as a debug mode, without a change of the source.
 //!
-//! The library compiles one more stage, [`STAGE`], while an expression is watched. Its text is that of the stage that draws the
-//! picture, with another `main` around it; and in the file with the expression, a call of `watch_value` stands on the line of
-//! the statement. Only this stage sees these texts ([`Overlay`]): the picture's own stage is not compiled again.
+//! The library compiles one more stage, [`STAGE`], while an expression is watched. Its text is that of the first stage that includes
+//! the file of the expression (`host.rs`: the picture's, or that of a pass), with another `main` around it; and in that file, a call
+//! of `watch_value` stands on the line of the statement. Only this stage sees these texts ([`Overlay`]): the stages of the tree are
+//! not compiled again.
 //!
 //! Every line of the stage's text stays in its place: `main` becomes `watched_main`, the first include is a library
 //! with `watch_value` for each type, and a new `main` calls the old one and writes the value that was kept. `place.rs`
 //! inserts `watch_value(EXPR);` on the line of the statement, which `syntax.rs` finds without a preprocessor.
-//! `library/watched.rs` follows the line over edits by the unchanged lines above and below it. An expression that does
-//! not compile leaves the stage pending, and the window keeps the last frame of this mode. The stage is not part of
-//! `debug.frag`, because a wrong expression must not disable a hundred modes. A loop without end in this stage has no
-//! line in its message.
+//! `library/watched.rs` follows the line over edits by the unchanged lines above and below it. The copy of the model's stage draws
+//! the model; that of another pass draws an image of its own, just before that pass (`//@pass ... watches=NAME`), which the mode
+//! shows. While an expression does not compile there is no such mode, and the final picture is shown in its place: the error belongs
+//! to the expression ([`Watching`]) and is no error of the tree. The stage is not part of `debug.frag`, because a wrong expression
+//! must not disable a hundred modes. A loop without end in this stage has no line in its message.
 
 mod follow;
+mod host;
 mod overlay;
 pub(in crate::shader) mod place;
 mod scope;
+mod stage;
 
 use std::fmt;
 
+use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{assigns, code};
 
 pub use follow::follow;
-pub use overlay::{MODE, Overlay, STAGE, components_of, is_about_expression, is_virtual};
-pub use scope::variables;
+pub use host::{can_show, hosts};
+pub use overlay::{Overlay, is_virtual};
+pub use scope::{Structs, Variable, members, variables};
+pub use stage::{MODE, MODE_ID, STAGE, components_of};
 
 /// An expression and the place where it is watched.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +45,17 @@ pub struct Expression {
     pub text: String,
     /// Which evaluation counts in a fragment, from 1; 0 is the last.
     pub evaluation: u32,
+}
+
+/// The watched expression of a set of shaders.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watching {
+    /// The expression as the user gave it.
+    pub expression: Expression,
+    /// Its line now, after edits above it.
+    pub line: u32,
+    /// Why it has no mode.
+    pub error: Option<Diagnostic>,
 }
 
 impl fmt::Display for Expression {

@@ -251,8 +251,9 @@ impl Graph {
         }
         // The surface's images are there for passes that the user may write.
         let is_offer = |pass: &GraphPass| pass.desc.to == PassTarget::Image && embedded::has(&pass.desc.stage);
-        let is_internal =
-            |pass: &&Arc<GraphPass>| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
+        let is_internal = |pass: &&Arc<GraphPass>| {
+            pass.name() == MODEL || pass.desc.watches.is_some() || needed.contains(pass.name()) || is_offer(pass)
+        };
         self.passes.iter().filter(is_internal).map(|pass| pass.name().to_owned()).collect()
     }
 

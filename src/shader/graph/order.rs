@@ -44,9 +44,24 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
             order.emit(at, &mut Vec::new()).map_err(|error| vec![*error])?;
         }
     }
-    let done = order.done;
+    let done = put_beside_host(order.done, &passes, &index);
     let mut passes: Vec<Option<GraphPass>> = passes.into_iter().map(Some).collect();
     Ok(done.into_iter().filter_map(|at| passes[at].take()).collect())
+}
+
+/// Puts the pass that shows an expression just before the pass whose stage it copies, so that both read the same picture.
+fn put_beside_host(mut order: Vec<usize>, passes: &[GraphPass], index: &BTreeMap<String, usize>) -> Vec<usize> {
+    let place = |order: &[usize], pass: usize| order.iter().position(|at| *at == pass);
+    let watch = passes.iter().position(|pass| pass.desc.watches.is_some());
+    let host = watch.and_then(|watch| index.get(passes[watch].desc.watches.as_deref()?));
+    if let (Some(watch), Some(host)) = (watch, host)
+        && passes[watch].phase == passes[*host].phase
+    {
+        order.retain(|at| *at != watch);
+        let at = place(&order, *host).unwrap_or(order.len());
+        order.insert(at, watch);
+    }
+    order
 }
 
 /// The names of a pass and of its images.
@@ -64,6 +79,9 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
             };
             let reads = images(&passes[at].inputs).any(follows);
             let after = passes[at].desc.after.as_deref().is_some_and(follows);
+            let reads_picture = || passes[at].inputs.values().any(|input| *input == Input::Picture);
+            let beside = passes[at].desc.watches.as_deref().filter(|host| *host != TONEMAP && reads_picture());
+            let after = after || beside.is_some_and(follows);
             if (reads || after) && passes[at].phase == RenderPhase::Light {
                 passes[at].phase = RenderPhase::Display;
                 changed = true;

@@ -112,7 +112,7 @@ impl GraphPass {
 
     /// Whether the user can switch it on and off.
     pub fn has_switch(&self) -> bool {
-        self.desc.name == MODEL || !self.desc.is_built_in()
+        self.desc.watches.is_none() && (self.desc.name == MODEL || !self.desc.is_built_in())
     }
 
     /// Whether it draws the model to the picture besides the model's own pass.

@@ -7,8 +7,8 @@ use super::passes::modes_of;
 use super::slot::StageSlot;
 use super::watched::is_watched;
 use super::{Library, Report, ShaderSet, Stage, Update};
-use crate::interface::StageRole;
-use crate::shader::annotation::{self, Annotations};
+use crate::interface::{MODE_FINAL, StageRole};
+use crate::shader::annotation::{self, Annotations, Mode};
 use crate::shader::compile::StageKind;
 use crate::shader::compile::include::files_of;
 use crate::shader::contract::access::{Run, check_access};
@@ -45,8 +45,7 @@ impl Library {
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
         // has compiled, since its parameters are its own.
-        // A watched expression that does not compile is left out in any case.
-        let may_lack = |slot: &StageSlot| is_partial || is_watched(&slot.path);
+        let may_lack = |slot: &StageSlot| is_partial && !is_broken_watch(slot);
         let is_unseen = |slot: &&StageSlot| may_lack(slot) && slot.good.is_none() && !slot.is_good();
         let mut replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
         replacing.insert(TreePath::from(expression::STAGE));
@@ -66,11 +65,10 @@ impl Library {
                     warnings.extend(built.warnings.iter().cloned());
                     modules.insert(&slot.path, &built.stage);
                 }
+                // The error is that of the expression.
+                Some(Err(_)) if is_watched(&slot.path) => {}
                 Some(Err(broken)) if !may_lack(slot) => errors.extend(broken.diagnostics.iter().cloned()),
-                current @ (Some(Err(_)) | None) => {
-                    if let Some(Err(broken)) = current.as_ref().filter(|_| is_watched(&slot.path)) {
-                        warnings.extend(broken.diagnostics.iter().cloned());
-                    }
+                Some(Err(_)) | None => {
                     let good = slot.good.iter();
                     files.extend(good.clone().flat_map(|built| &built.stage.dependencies));
                     warnings.extend(good.flat_map(|built| &built.warnings).cloned());
@@ -91,14 +89,17 @@ impl Library {
             let missing = self.missing_passes(snapshot);
             if missing.is_empty() { errors } else { missing }
         })?;
+        if self.source.is_toy() {
+            // No model is drawn whose values they could show.
+            let is_of_toy = |mode: &Mode| mode.id == MODE_FINAL || mode.slug == expression::MODE;
+            annotations.modes.retain(is_of_toy);
+        }
         // A pass that has never compiled has a name, which other stages may read already.
         let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);
         let unseen = unseen.filter(|slot| !replacing.contains(&slot.path));
         annotations.passes.extend(unseen.flat_map(|slot| annotation::passes_of(snapshot, &slot.path)));
         let watched = known.iter().find(|(path, _)| is_watched(path)).map(|(_, stage)| &stage.spirv);
-        let watched = watched.and_then(|spirv| expression::components_of(spirv));
-        let modes = annotations.modes.iter_mut().filter(|mode| mode.stage == expression::STAGE);
-        modes.zip(watched).for_each(|(mode, components)| mode.components = components);
+        let components = watched.and_then(|spirv| expression::components_of(spirv));
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
             let live = Box::new(|| stage.live_pass_bindings());
@@ -116,6 +117,9 @@ impl Library {
             return Err(errors);
         }
         annotations.modes.extend(modes_of(&graph, snapshot));
+        annotations.modes.sort_by_key(|mode| mode.id);
+        let of_expression = annotations.modes.iter_mut().filter(|mode| mode.slug == expression::MODE);
+        of_expression.zip(components).for_each(|(mode, components)| mode.components = components);
         // The parameters of a pass that is still to be compiled are unknown.
         if !is_partial {
             warnings.extend(graph.passes.iter().flat_map(|pass| silent_members(pass, &annotations, &declared)));
@@ -140,6 +144,7 @@ impl Library {
         for slot in &mut self.slots {
             match &slot.current {
                 Some(Ok(built)) => slot.good = Some(built.clone()),
+                Some(Err(_)) if is_watched(&slot.path) => slot.good = None,
                 Some(Err(_)) | None => {
                     pending.insert(slot.path.to_string());
                 }
@@ -149,22 +154,28 @@ impl Library {
             }
         }
         let Linked { annotations: Annotations { modes, constants, parameters, .. }, graph, warnings } = linked;
+        let watched = self.watching();
+        let error = watched.as_ref().and_then(|watched| watched.error.as_ref());
         if let Some(set) = &self.set {
             let same_stages = stages.len() == set.stages.len()
                 && stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
             let same_texts = (&modes, &constants, &parameters, &graph, &warnings)
                 == (&set.modes, &set.constants, &set.parameters, &set.graph, &set.warnings);
-            if same_stages && same_texts && pending == set.pending {
+            if same_stages && same_texts && pending == set.pending && error == set.expression_error() {
                 return Update::Unchanged { cleared };
             }
         }
-        let watched = self.watched();
         let set =
             ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, watched };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
+}
+
+/// Whether the stage is that of an expression that does not compile: nothing is left of it.
+fn is_broken_watch(slot: &StageSlot) -> bool {
+    is_watched(&slot.path) && matches!(slot.current, Some(Err(_)))
 }
 
 /// The stages among `compiled`, each with what it is run for. A stage of several passes appears once for each role.

@@ -94,6 +94,12 @@ impl Library {
         self.slots.iter().map(|slot| &slot.path)
     }
 
+    /// The first error of one of these stages.
+    pub fn error_of(&self, stages: &BTreeSet<String>) -> Option<&Diagnostic> {
+        let slots = self.slots.iter().filter(|slot| stages.contains(slot.path.as_str()));
+        slots.filter_map(|slot| slot.current.as_ref()?.as_ref().err()).find_map(|broken| broken.diagnostics.first())
+    }
+
     /// Every path whose change can affect the result, including paths where an include was not found.
     pub fn dependencies(&self) -> BTreeSet<TreePath> {
         let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);

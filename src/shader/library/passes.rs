@@ -8,12 +8,13 @@ use super::slot::StageSlot;
 use super::{Change, Library};
 use crate::interface;
 use crate::shader::annotation::pass::{MODEL, PassDesc, PassTarget};
-use crate::shader::annotation::{self, Mode};
+use crate::shader::annotation::{self, Encode, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::expression;
 use crate::shader::glsl::{Line, TokenKind, code, find_word, is_name, lines};
-use crate::shader::graph::{FULL_SCREEN, Graph, RenderPhase, missing_passes, read_later};
+use crate::shader::graph::{FULL_SCREEN, Graph, GraphPass, RenderPhase, missing_passes, read_later};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
@@ -216,10 +217,36 @@ fn doc_of_output(stage: &str, name: &str, snapshot: &Snapshot<'_>) -> String {
 }
 
 /// A debug mode for each image of a pass.
-pub(super) fn modes_of(graph: &Graph, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Mode> {
+pub(super) fn modes_of<'a>(graph: &'a Graph, snapshot: &'a Snapshot<'_>) -> impl Iterator<Item = Mode> + 'a {
     let shown = graph.passes.iter().filter(|pass| !pass.desc.is_drawn_with_model() && !pass.desc.is_built_in());
     let images = shown.flat_map(|pass| pass.desc.images().map(move |(name, _)| (pass, name)));
-    (interface::PASS_MODES..).zip(images).map(|(id, (pass, name))| Mode {
+    (interface::PASS_MODES..).zip(images).map(|(id, (pass, name))| match pass.desc.watches {
+        Some(_) => mode_of_expression(pass, graph),
+        None => mode_of_image(id, pass, name, graph, snapshot),
+    })
+}
+
+fn stage_of_model(graph: &Graph) -> String {
+    graph.pass(MODEL).map(|model| model.desc.stage.clone()).unwrap_or_default()
+}
+
+/// The mode that shows the image of the pass which computes the watched expression.
+fn mode_of_expression(pass: &GraphPass, graph: &Graph) -> Mode {
+    Mode {
+        id: expression::MODE_ID,
+        slug: expression::MODE.to_owned(),
+        name: pass.desc.label.clone(),
+        group: "Expression".to_owned(),
+        encode: Encode::Data,
+        stage: stage_of_model(graph),
+        pass: Some(pass.name().to_owned()),
+        doc: pass.desc.doc.clone(),
+        ..Mode::default()
+    }
+}
+
+fn mode_of_image(id: u32, pass: &GraphPass, name: &str, graph: &Graph, snapshot: &Snapshot<'_>) -> Mode {
+    Mode {
         id,
         slug: format!("pass:{name}"),
         // Further images have no label of their own.
@@ -229,11 +256,11 @@ pub(super) fn modes_of(graph: &Graph, snapshot: &Snapshot<'_>) -> impl Iterator<
         // A pass that changes the picture is shown like the picture.
         is_displayed: pass.phase == RenderPhase::Display,
         tonemap: pass.desc.to_picture() || pass.phase == RenderPhase::Display,
-        stage: graph.pass(MODEL).map(|model| model.desc.stage.clone()).unwrap_or_default(),
+        stage: stage_of_model(graph),
         pass: Some(name.to_owned()),
         doc: if name == pass.name() { pass.desc.doc.clone() } else { doc_of_output(&pass.desc.stage, name, snapshot) },
         file: pass.desc.place.file.clone(),
         line: pass.desc.place.line,
         ..Mode::default()
-    })
+    }
 }

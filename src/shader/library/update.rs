@@ -6,11 +6,12 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::slot::Stage;
+use crate::shader::annotation::pass::MODEL;
 use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::expression::{self, Expression};
-use crate::shader::graph::Graph;
+use crate::shader::expression::{self, Watching};
+use crate::shader::graph::{FULL_SCREEN, Graph};
 use crate::shader::source::TreePath;
 
 /// The files that may have changed since the last update.
@@ -59,14 +60,30 @@ pub struct ShaderSet {
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,
-    /// The watched expression, and its line now, after edits above it.
-    pub watched: Option<(Expression, u32)>,
+    /// The watched expression.
+    pub watched: Option<Watching>,
 }
 
 impl ShaderSet {
-    /// Whether no stage is still to be compiled. A watched expression that does not compile costs only its own mode.
+    /// Whether no stage is still to be compiled.
     pub fn is_complete(&self) -> bool {
-        self.pending.iter().all(|path| path == expression::STAGE)
+        self.pending.is_empty()
+    }
+
+    /// Why the watched expression has no mode.
+    pub fn expression_error(&self) -> Option<&Diagnostic> {
+        self.watched.as_ref()?.error.as_ref()
+    }
+
+    /// Whether expressions of a file can be watched: a pass that can show one includes it.
+    pub fn can_watch(&self, path: &TreePath) -> bool {
+        let model = self.graph.pass(MODEL).map(|model| model.pre_rasterization.vertex.as_str());
+        self.graph.passes.iter().filter(|pass| !pass.is_compute).any(|pass| {
+            let vertex = pass.pre_rasterization.vertex.as_str();
+            let has_own = || vertex != FULL_SCREEN && Some(vertex) != model;
+            let stage = self.stages.get(&pass.desc.stage);
+            stage.is_some_and(|stage| stage.dependencies.contains(path)) && expression::can_show(&pass.desc, has_own)
+        })
     }
 
     /// `FEATURE_*` bits of the extensions that the author's `user_surface` brings into the picture. Every lit material has them.

@@ -6,10 +6,7 @@ use std::sync::Arc;
 use super::slot::StageSlot;
 use super::watched::{View, Watched, is_watched};
 use super::{Change, Library};
-use crate::shader::annotation;
-use crate::shader::annotation::pass::MODEL;
-use crate::shader::compile::StageKind;
-use crate::shader::expression::{Expression, Overlay, STAGE, follow};
+use crate::shader::expression::{Expression, Overlay, STAGE, Watching, follow, hosts};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::{Read, Snapshot};
 
@@ -30,9 +27,13 @@ impl Library {
         Some(Change::Paths(BTreeSet::from([TreePath::from(STAGE)])))
     }
 
-    /// The watched expression and its line, after edits above it.
-    pub(super) fn watched(&self) -> Option<(Expression, u32)> {
-        self.watched.as_ref().map(|watched| (watched.expression.clone(), watched.line))
+    /// The watched expression as the next set tells it.
+    pub(super) fn watching(&self) -> Option<Watching> {
+        let Watched { expression, line, .. } = self.watched.as_ref()?;
+        let slot = self.slots.iter().find(|slot| is_watched(&slot.path));
+        let broken = slot.and_then(|slot| slot.current.as_ref()?.as_ref().err());
+        let error = broken.and_then(|broken| broken.diagnostics.first().cloned());
+        Some(Watching { expression: expression.clone(), line: *line, error })
     }
 
     /// The snapshot for a stage. Finds the line of the watched expression in it.
@@ -45,12 +46,9 @@ impl Library {
         {
             watched.line = follow(old, &new, watched.line);
         }
-        let host = self.slots.iter().map(|slot| &slot.path).find(|path| {
-            StageKind::of(path) == Some(StageKind::Fragment)
-                && annotation::passes_of(&snapshot, path).any(|desc| desc.name == MODEL)
-        });
-        let host = host.cloned().unwrap_or_else(|| TreePath::from("pbr.frag"));
-        let overlay = Overlay::new(&watched.expression, watched.line, &host, &snapshot);
+        let stages = self.slots.iter().map(|slot| &slot.path).filter(|path| !is_watched(path));
+        let hosts = hosts(stages, &snapshot);
+        let overlay = Overlay::new(&watched.expression, watched.line, &hosts, &snapshot);
         watched.file = overlay.file.clone().and_then(|path| {
             let text = snapshot.read(&path).ok()?;
             Some((path, text))

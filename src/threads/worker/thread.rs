@@ -19,7 +19,7 @@ use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
 use crate::shader::annotation::neighbors;
-use crate::shader::{Change, ShaderSet, Source, TreePath, text_hash};
+use crate::shader::{Change, Diagnostic, ShaderSet, Source, TreePath, text_hash};
 use crate::threads::message::{Message, MessageSender, TaskKind};
 use crate::threads::results::WorkerMessage;
 
@@ -27,7 +27,6 @@ use crate::threads::results::WorkerMessage;
 const RESTARTS: u32 = 3;
 /// How long the worker waits for the first frame of a reload.
 const LONGEST_FRAME: Duration = Duration::from_secs(2);
-const PENDING: &str = "this mode's shader does not compile; its errors are in the list";
 
 /// Joins an edit with an older one that has not been compiled yet.
 fn join(old: Option<Edit>, new: Edit) -> Edit {
@@ -142,7 +141,9 @@ impl Thread {
                     continue;
                 }
                 let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
-                let built = if pending { Err(PENDING.to_owned()) } else { built };
+                let error = self.reloader.library().error_of(&request.stages());
+                let error = error.map_or_else(|| "the shaders have errors".to_owned(), Diagnostic::one_line);
+                let built = if pending { Err(format!("This mode does not compile: {error}")) } else { built };
                 self.sender.send(Message::Worker(WorkerMessage::Built(built)));
                 // A comparison requests pipelines of older sets, whose neighboring modes are not needed.
                 if self.reloader.library().set().is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {

@@ -103,6 +103,91 @@ fn loops_lights_and_lines_that_are_not_reached() {
 }
 
 #[test]
+fn values_of_passes_and_of_the_tone_map_are_shown() {
+    let tree = Tree::new();
+    let at = |file: &str, what: &str, name: &str| format!("{file}:{}:{name}", line_of(&tree.read(file), what));
+    let is = |value: &Value, expected: [f64; 3]| {
+        let found: Vec<f64> = (0..3).map(|index| value[index].as_f64().unwrap_or(f64::NAN)).collect();
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * b.abs().max(1.0);
+        assert!(found.iter().zip(&expected).all(is_near), "{found:?}, not {expected:?}");
+    };
+    // The centers of pixels, in 96 x 64.
+    let center = [48.5 / 96.0, 30.5 / 64.0];
+    // A pass that reads the displayed picture: its values are no colors of the display.
+    let outline =
+        |name: &str| value(&tree, &at("passes/outline.frag", "vec4 scene = texture(picture, uv);", name), &[]);
+    is(&outline("vec3(-3.5, 0.25, 1000.0)"), [-3.5, 0.25, 1000.0]);
+    is(&outline("vec3(uv, 0.0)"), [center[0], center[1], 0.0]);
+    let displayed = outline("scene.rgb");
+    assert!((0..3).all(|index| (0.0..=1.0).contains(&displayed[index].as_f64().unwrap())), "{displayed}");
+    // The tone map, with the functions that only it calls.
+    is(&value(&tree, &at("tonemap.frag", "vec2 uv = (gl_FragCoord.xy", "uv"), &[]), [center[0], center[1], 0.0]);
+    let mapped = value(&tree, &at("tonemap.frag", "if (TONEMAP != TONEMAP_OFF) value = tonemap(", "value"), &[]);
+    assert!(mapped[0].as_f64().is_some_and(|red| red > 0.0 && red <= 1.0), "{mapped}");
+    // A pass with an image of a quarter of the size that a constant switches on, and a library of another one.
+    let bloom = at("passes/bloom/bloom_light.frag", "sum += weight * light;", "i");
+    is(&value(&tree, &bloom, &["--set", "expression.evaluation=2"]), [1.0, 1.0, 1.0]);
+    is(
+        &value(&tree, &at("passes/depth_of_field/dof_circle.frag", "vec2 half_pixel", "half_pixel"), &[]),
+        [0.5 / 96.0, 0.5 / 64.0, 0.0],
+    );
+}
+
+#[test]
+fn a_value_that_is_not_finite_has_a_color_of_its_own() {
+    let tree = tree();
+    let line = line_of(&tree.read("user.glsl"), "return sum + x");
+    let shot = |expression: &str, color: [u8; 3]| {
+        let folder = tree.root().parent().expect("the folder beside the tree").to_owned();
+        let out = folder.join("shot.png");
+        let shaders = tree.root().display().to_string();
+        let at = format!("user.glsl:{line}:{expression}");
+        let args = ["render", "--watch-expr", &at, "--out", "shot.png", "--size", "32x32", "--env", "none"];
+        run(&folder, &[&args[..], &["--shaders", &shaders]].concat()).expect(0, &[]);
+        let image = image::open(out).unwrap().to_rgba8();
+        assert_eq!(image.get_pixel(16, 16).0[..3], color, "{expression}");
+        let pass = format!("passes/outline.frag:{}:{expression}", line_of(&tree.read("passes/outline.frag"), "far"));
+        let pass = pass.replace("(x", "(uv.x");
+        let args = ["render", "--watch-expr", &pass, "--out", "shot.png", "--size", "32x32", "--env", "none"];
+        run(&folder, &[&args[..], &["--shaders", &shaders]].concat()).expect(0, &[]);
+        let image = image::open(folder.join("shot.png")).unwrap().to_rgba8();
+        assert_eq!(image.get_pixel(16, 16).0[..3], color, "{pass}");
+    };
+    shot("sqrt(-1.0 - abs(x))", [255, 0, 255]);
+    shot("1.0 / (x * 0.0)", [255, 255, 0]);
+}
+
+#[test]
+fn values_of_a_toy_and_of_its_buffers_are_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "toy.glsl",
+        "float lifted(float x) {\n    float y = 2.0 * x;\n    return y - 300.0;\n}\n\
+         void mainImage(out vec4 c, in vec2 p) {\n    vec2 q = p;\n    \
+         c = vec4(lifted(q.x), texture(iChannel0, q / iResolution.xy).xy, 1.0);\n}\n",
+    );
+    write("buffer_a.glsl", "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(p, 0.0, 1.0);\n}\n");
+    let value = |expression: &str| {
+        let args = ["probe", "--json", "--shaders", "toy.glsl", "--size", "96x64", "--at", "48,30"];
+        let found = run(folder.path(), &[&args[..], &["--watch-expr", expression]].concat());
+        found.expect(0, &[]).json()["modes"]["expression"].clone()
+    };
+    // Rows count from below there.
+    let q = value("toy.glsl:6:q");
+    assert_eq!((q[0].as_f64(), q[1].as_f64()), (Some(48.5), Some(33.5)));
+    assert_eq!(value("toy.glsl:2:y")[0].as_f64(), Some(97.0));
+    assert_eq!(value("toy.glsl:3:return")[0].as_f64(), Some(-203.0));
+    // The image of a buffer is shown with its rows as those of the picture.
+    let p = value("buffer_a.glsl:2:p");
+    assert_eq!((p[0].as_f64(), p[1].as_f64()), (Some(48.5), Some(33.5)));
+    let image = run(folder.path(), &["probe", "--json", "--shaders", "toy.glsl", "--size", "96x64", "--at", "48,30"]);
+    let modes = image.expect(0, &[]).json()["modes"].clone();
+    assert_eq!(modes["pass:buffer_a"][1].as_f64(), Some(33.5), "{modes}");
+    assert!(modes["pass:image"][2].as_f64().is_some_and(|blue| blue > 0.0), "{modes}");
+}
+
+#[test]
 fn what_cannot_be_watched_is_said_at_its_place() {
     let tree = tree();
     let ndf = tree.read(NDF);
@@ -111,8 +196,12 @@ fn what_cannot_be_watched_is_said_at_its_place() {
     let unknown = error(&format!("{NDF}:{line}:a3"));
     assert!(unknown.contains(&format!("{NDF}:{line}:")) && unknown.contains("cannot watch `a3`"), "{unknown}");
     assert!(unknown.contains("a2"), "the nearest name: {unknown}");
-    assert!(error("passes/outline.frag:10:x").contains("not in vertex stages"));
+    assert!(error("pbr.vert:10:x").contains("not in vertex stages"));
     assert!(error("brdf/nfd.glsl:10:x").contains("brdf/ndf.glsl"));
+    let shade = tree.read("lighting/shade.glsl");
+    let whole = line_of(&shade, "Light light = light_at(i, s.position_ws);");
+    let members = error(&format!("lighting/shade.glsl:{whole}:light"));
+    assert!(members.contains("its members:") && members.contains("light.intensity"), "{members}");
     let usage = probe(&tree, "brdf/ndf.glsl:x:a2", &[]).expect(2, &[]).stderr.clone();
     assert!(usage.contains("--watch-expr"), "{usage}");
     // The picture has no part in it.
@@ -146,18 +235,19 @@ fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
     tree.write(NDF, &ndf.replace("// D: the", "// One more line.\n\n// D: the"));
     let paths = Change::Paths(BTreeSet::from([TreePath::from(NDF)]));
     let (moved, _) = ready(library.update(&paths));
-    assert_eq!((moved.watched.as_ref().map(|(_, line)| *line), moved.pending.len()), (Some(line + 2), 0));
+    assert_eq!((moved.watched.as_ref().map(|watched| watched.line), moved.pending.len()), (Some(line + 2), 0));
     assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
 
-    // Without the variable, the picture goes on, and the mode waits.
+    // Without the variable, the picture goes on without the mode. The error is none of the tree.
     tree.write(NDF, &ndf.replace("a2", "squared"));
     let (broken, _) = ready(library.update(&paths));
-    assert!(broken.is_complete() && !broken.pending.is_empty());
-    assert!(
-        broken.warnings.iter().any(|warning| warning.message.contains("cannot watch `a2`")),
-        "{:?}",
-        broken.warnings
-    );
+    assert!(broken.is_complete() && broken.warnings.is_empty(), "{:?}", broken.warnings);
+    assert!(broken.modes.iter().all(|mode| mode.slug != "expression"));
+    let error = broken.expression_error().expect("the error of the expression");
+    assert!(error.message.contains("cannot watch `a2`"), "{error:?}");
+    tree.write(NDF, &ndf);
+    let (repaired, _) = ready(library.update(&paths));
+    assert!(repaired.expression_error().is_none() && repaired.modes.iter().any(|mode| mode.slug == "expression"));
     let change = library.watch(None).unwrap();
     let (without, _) = ready(library.update(&change));
     assert!(without.modes.iter().all(|mode| mode.slug != "expression") && without.pending.is_empty());

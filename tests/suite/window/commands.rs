@@ -150,6 +150,7 @@ fn a_program_drives_the_window_by_standard_input() {
     viewer.tree.write(NDF, &original);
     viewer.running.reload(true);
     viewer.running.done(json!({"command": "reload"}));
+    viewer.running.until_stderr("the shaders compile again");
 
     // The end of the input ends nothing else.
     viewer.running.end_input();

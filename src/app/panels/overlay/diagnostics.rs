@@ -19,7 +19,7 @@ pub(in crate::app::panels) struct Files(BTreeMap<String, bool>);
 
 impl Files {
     /// Asks for the files of new diagnostics, and forgets those of old ones.
-    fn update(&mut self, diagnostics: &[Diagnostic]) {
+    pub(super) fn update(&mut self, diagnostics: &[Diagnostic]) {
         self.0.retain(|file, _| diagnostics.iter().any(|diagnostic| diagnostic.file == *file));
         for Diagnostic { file, .. } in diagnostics {
             if !self.0.contains_key(file) {
@@ -28,7 +28,7 @@ impl Files {
         }
     }
 
-    fn is_file(&self, file: &str) -> bool {
+    pub(super) fn is_file(&self, file: &str) -> bool {
         self.0.get(file).copied().unwrap_or_default()
     }
 }
@@ -89,7 +89,7 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(ui: &mut Ui, diagnostic: &Diagnostic, is_file: bool, commands: &mut Vec<Command>) {
+pub(super) fn one(ui: &mut Ui, diagnostic: &Diagnostic, is_file: bool, commands: &mut Vec<Command>) {
     position(ui, diagnostic, is_file, commands);
     // A monospace character is 7.6 points wide; the number of the line and its bar take up to 8.
     let columns = (ui.available_width() / 7.6) as usize;

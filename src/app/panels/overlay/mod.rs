@@ -8,9 +8,11 @@ mod grid;
 mod hint;
 mod labels;
 pub(in crate::app) mod legend;
+mod light;
 mod restore;
 pub(in crate::app) mod swatches;
 mod version;
+mod watched;
 
 use egui::{Align2, Id, Rect, RichText, TextStyle};
 
@@ -67,12 +69,15 @@ pub(super) fn show(
         if hides {
             commands.push(HIDE_DIAGNOSTICS.with(()));
         }
+    } else if let Some(error) = state.shown_expression_error() {
+        free.max.y = watched::show(egui, error, picture, &mut own.files, commands).top();
     } else if with_panels {
         hint::show(egui, state, picture, &mut commands.list);
     }
     restore::show(egui, state, picture, &mut commands.list);
     version::show(egui, state, picture, &mut commands.list);
     warnings(egui, state, picture, &mut commands.list);
+    light::show(egui, context, picture);
     notice(egui, state, picture, free);
     if with_panels {
         label(egui, context, &mut own.legend, picture, commands);

@@ -18,6 +18,8 @@ pub(in crate::app) struct ShaderStatus {
     pub(in crate::app) is_single_file: bool,
     /// Whether a compile is under way.
     pub(in crate::app) compiling: bool,
+    /// Whether an error of the shaders was told, and no repair since.
+    pub(in crate::app) is_broken: bool,
     /// The last finished reload.
     pub(in crate::app) last: Option<ReloadEvent>,
     /// Log of the last edits.

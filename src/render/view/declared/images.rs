@@ -169,7 +169,10 @@ impl Images {
         next.displays = take("display of a pass", Swapchain::FORMAT, displays, &self.displays)?;
         if request.shown_pass.is_some() {
             let known: Vec<_> = self.shown.iter().cloned().collect();
-            next.shown = take("shown pass", next.key.picture, 1, &known)?.pop();
+            // Its values are read, so full floats stay what they are.
+            let is_full = request.shown().is_some_and(|pass| pass.desc.format == PassFormat::Rgba32f);
+            let format = if is_full { vk::Format::R32G32B32A32_SFLOAT } else { next.key.picture };
+            next.shown = take("shown pass", format, 1, &known)?.pop();
         }
         Ok(Some(next))
     }

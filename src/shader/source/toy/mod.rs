@@ -320,7 +320,7 @@ impl Toy {
     fn stage(&self, drawings: &[Drawing], index: usize) -> String {
         let Drawing { pass, file, text } = &drawings[index];
         let is_picture = index + 1 == drawings.len() && !keeps_image(drawings);
-        let goes = if is_picture { "to=picture after=tonemap" } else { "keep format=rgba32f" };
+        let goes = if is_picture { "to=picture after=tonemap" } else { "keep format=rgba32f rows=up" };
         let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n#define TOY_FILE\n");
         if !is_picture {
             out += "#define TOY_BUFFER\n";
