@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::app::engine::Engine;
 use crate::app::state::State;
-use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, Shown};
+use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, SearchOf, Shown};
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::render::Texel;
@@ -23,6 +23,10 @@ pub(in crate::app) fn inspect(state: &mut State, at: [u32; 2]) {
     let inspector = &mut state.inspection;
     // The panel reads the pixel once it is open.
     if !state.workspace.sight.inspector {
+        // A click is the shader's own input there.
+        if state.shader.is_single_file {
+            return;
+        }
         inspector.pin = Some(at);
         if !std::mem::replace(&mut inspector.was_mentioned, true) {
             state.say("The panel Inspector reads the values of the pixel that you click");
@@ -49,7 +53,10 @@ pub(in crate::app) fn begin_values(
     if inspector.reading.as_ref().is_some_and(|reading| reading.picture == picture) {
         return false;
     }
-    if inspector.search_not_finite.take().is_some() {
+    let settings = &state.session.settings;
+    let of = || SearchOf::new(at, frame_state.shaders.generation, settings);
+    if inspector.search_not_finite.is_some() && inspector.searched != Some(of()) {
+        inspector.search_not_finite = None;
         engine.threads.finder.cancel();
     }
     let before = inspector.reading.take().map(|reading| reading.values).unwrap_or_default();
@@ -138,6 +145,7 @@ fn search_not_finite(state: &mut State, engine: &mut Engine) {
         shaders: shaders.clone(),
     };
     let mode = mode.slug.clone();
+    state.inspection.searched = Some(SearchOf::new(reading.at, shaders.generation, &state.session.settings));
     let number = engine.threads.finder.find(request);
     state.inspection.search_not_finite = Some(NotFiniteSearch { number, mode, found: None });
 }

@@ -12,6 +12,7 @@ use crate::interface::Light;
 use crate::measure::{Curves, Material};
 use crate::render::Texel;
 use crate::scene::CameraView;
+use crate::settings::Settings;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Mode, PixelValue};
 
@@ -56,6 +57,8 @@ pub(in crate::app) struct Inspection {
     pub(in crate::app) curves: Option<Shown>,
     /// The search for the first statement that makes NaN or infinity at the pinned pixel.
     pub(in crate::app) search_not_finite: Option<NotFiniteSearch>,
+    /// The picture and the pixel in which it looks. Another mode of them keeps the search.
+    pub(in crate::app) searched: Option<SearchOf>,
 }
 
 impl Inspection {
@@ -78,6 +81,20 @@ impl Inspection {
         if !self.follows {
             (self.reading, self.asked, self.curves) = (None, None, None);
         }
+    }
+}
+
+/// The picture and the pixel in which a search looks.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct SearchOf {
+    pub(in crate::app) at: [u32; 2],
+    pub(in crate::app) generation: u64,
+    pub(in crate::app) settings: Settings,
+}
+
+impl SearchOf {
+    pub(in crate::app) fn new(at: [u32; 2], generation: u64, settings: &Settings) -> Self {
+        Self { at, generation, settings: Settings { mode: String::new(), ..settings.clone() } }
     }
 }
 

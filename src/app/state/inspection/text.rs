@@ -35,6 +35,8 @@ pub(in crate::app) fn swatch(mode: &Mode, value: &PixelValue, exposure: f32) -> 
     let [r, g, b, _] = value.value;
     let rgb = if mode.components == 1 { [r; 3] } else { [r, g, b] };
     match mode.encode {
+        // The swatch gets the curve that these have already.
+        Encode::Color if mode.is_displayed => rgb.map(|number| number.clamp(0.0, 1.0).powf(2.2)),
         Encode::Color if mode.tonemap => rgb.map(|number| {
             let exposed = (number * exposure).max(0.0);
             exposed / (1.0 + exposed)
