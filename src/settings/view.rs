@@ -20,13 +20,13 @@ pub enum Tonemap {
     /// Hable's filmic curve.
     Uncharted2,
     /// Narkowicz's approximation of ACES.
-    #[default]
     Aces,
     /// Hill's approximation of ACES RRT + ODT.
     AcesHill,
     /// AgX.
     Agx,
     /// Khronos PBR Neutral.
+    #[default]
     Neutral,
 }
 
@@ -42,7 +42,7 @@ settings! {
     pub struct ViewSettings {
         /// Exposure as EV100: light in cd/m² is multiplied by 1 / (1.2 × 2^EV100), so +1 is half as bright. The window shows the exposure
         /// compensation in stops, -EV100: there, +1 is twice as bright.
-        ev: f32 = 0.0, limits(-30.0, 30.0) unit(EV100) row("Exposure") negated(-16.0, 16.0, 1);
+        ev: f32 = 0.7, limits(-30.0, 30.0) unit(EV100) row("Exposure") negated(-16.0, 16.0, 1);
         /// Curve that maps exposed light to the range of the display.
         tonemap: Tonemap, row("Tone map");
         /// What is behind the model: none (transparent), env (the environment), or a color as #rrggbb.

@@ -107,7 +107,7 @@ fn rows_are_named_and_follow_the_keyboard() {
     harness.run();
     harness.key_press(egui::Key::ArrowRight);
     harness.run();
-    assert!(harness.state().view.ev < 0.0, "one step brighter");
+    assert!(harness.state().view.ev < Settings::of_window().view.ev, "one step brighter");
     harness.get_by_role_and_label(Role::CheckBox, "Wireframe").click();
     harness.run();
     assert!(harness.state().view.wireframe);

@@ -64,7 +64,7 @@ pub struct Common {
     /// Tone map
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     tonemap: Option<Tonemap>,
-    /// Exposure value (EV100), -30 to 30: exposure is 1 / (1.2 * 2^N), so +1 is half as bright. Exposure in the window is -N [default: 0]
+    /// Exposure value (EV100), -30 to 30: exposure is 1 / (1.2 * 2^N), so +1 is half as bright. Exposure in the window is -N [default: 0.7]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = ev)]
     ev: Option<f32>,
     /// Background: none (transparent), env (the environment) or #rrggbb

@@ -20,7 +20,7 @@ use specula::headless::{Headless, HeadlessError};
 use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
 use specula::scene::{Model, built_in, load_bytes};
-use specula::settings::Settings;
+use specula::settings::{Settings, Tonemap};
 use specula::shader::{Change, Compiler, Diagnostic, Library, Source, TreePath, check, embedded};
 use tempfile::TempDir;
 
@@ -200,9 +200,10 @@ fn explain<T>(error: HeadlessError) -> T {
     }
 }
 
-/// Settings from `--set` assignments.
+/// Settings from `--set` assignments, over the defaults with a fixed curve and exposure, since numbers of tests are those of these.
 pub fn settings(assignments: &[&str]) -> Settings {
     let mut settings = Settings::default();
+    (settings.view.tonemap, settings.view.ev) = (Tonemap::Aces, 0.0);
     assignments.iter().for_each(|assignment| settings.assign(assignment).unwrap());
     settings
 }

@@ -72,7 +72,7 @@ fn a_program_drives_the_window_by_standard_input() {
     assert!(dark != first && dark.dimensions() == first.dimensions());
     let running = &mut viewer.running;
     running.done(json!({"command": "undo"}));
-    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.0));
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.7));
     assert!(capture(&mut viewer, "undone.png") == first, "undo brings the picture back");
 
     // Another mode, size and format, drawn beside the window.
@@ -125,7 +125,7 @@ fn a_program_drives_the_window_by_standard_input() {
     running.until("the answer to no JSON", |event| event["event"] == "error" && event["id"].is_null());
     running.say(&"x".repeat(3 << 20));
     running.until("the answer to a long line", |event| event["event"] == "error" && event["id"].is_null());
-    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.0));
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.7));
     running.done(json!({"command": "set", "values": "environment.name=none"}));
 
     // Lists, from which a client learns what there is.

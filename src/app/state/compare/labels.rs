@@ -171,7 +171,7 @@ mod tests {
         let mut after = before.clone();
         after.view.ev = 0.3;
         after.camera.azimuth += 10.0;
-        assert_eq!(labels(shown(3, "Final", &before), shown(3, "Final", &after)), ["view.ev 0", "view.ev 0.3"]);
+        assert_eq!(labels(shown(3, "Final", &before), shown(3, "Final", &after)), ["view.ev 0.7", "view.ev 0.3"]);
         after.environment.name = "/maps/forest.hdr".into();
         after.environment.rotation = 90.0;
         let [kept, now] = labels(shown(3, "Final", &before), shown(3, "Final", &after));

@@ -222,12 +222,12 @@ fn help_set_lists_every_setting() {
         std::iter::once(first).chain(lines.take_while(|line| line.starts_with(' '))).collect::<String>()
     };
     for (path, parts) in [
-        ("view.ev", &["number", "0", "-30 to 30", "EV100"][..]),
+        ("view.ev", &["number", "0.7", "-30 to 30", "EV100"][..]),
         ("camera.fovy", &["number", "35", "1 to 170", "degrees"]),
         ("lights.orbit.1.color", &["3 numbers", "0.45,0.65,1", "0 to 1e6", "linear RGB"]),
         ("lights.rect.enabled", &["true or false", "false"]),
         ("view.msaa", &["whole number", "4", "1 or 4"]),
-        ("view.tonemap", &["name", "aces", "reinhard-luminance"]),
+        ("view.tonemap", &["name", "neutral", "reinhard-luminance"]),
         ("environment.name", &["studio", "furnace", "sky", "none"]),
         ("camera.eye", &["3 numbers", "meters"]),
     ] {
