@@ -1,8 +1,10 @@
 //! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. This module checks and reads all other data, since the
 //! crate's own readers panic on invalid files and refuse some valid ones.
 
+mod compression;
 mod file;
 mod geometry;
+mod instancing;
 pub(super) mod materials;
 mod nodes;
 mod place;
@@ -63,13 +65,16 @@ fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result
 }
 
 fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {
-    let container::Document { root, bin, mut warnings } = container::parse(bytes)?;
-    let buffers = Buffers::load(&root, bin, &mut files)?;
-    let scene = nodes::walk(&root)?;
+    let container::Document { mut root, bin, mut warnings } = container::parse(bytes)?;
+    let mut buffers = Buffers::load(&root, bin, &mut files)?;
+    warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
+    let reader = Reader { root: &root, buffers: &buffers };
+    let mut scene = nodes::walk(&root)?;
+    scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;
     let material::Materials { mut materials, textures, images, warnings: material_warnings } = material::read(&root)?;
     let variants = variants::names(&root, &mut warnings)?;
     let encoded = images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
-    let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials, variants.len())?;
+    let meshes = read_meshes(reader, &scene, &materials, variants.len())?;
     let parse_ms = milliseconds(start);
     let canceled = files.canceled;
     let ((images, decode_ms), (meshes, tangents_ms)) = rayon::join(
@@ -100,7 +105,7 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     model.contents = Contents { scenes: root.scenes.len(), animations: root.animations.len(), skins: root.skins.len() };
     placing::place(&mut model, scene.meshes, scene.lights, scene.cameras, &ranges, &mut warnings)?;
     model.outline = outline(&model);
-    warnings.extend(unseen::reason(&root, &model));
+    warnings.extend(unseen::reason(&model));
     if model.lights.len() > MAX_LIGHTS {
         warnings.push(format!("it has {} lights: the first {MAX_LIGHTS} shine.", model.lights.len()));
     }

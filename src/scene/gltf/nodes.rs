@@ -11,6 +11,9 @@ use super::super::error::Problem;
 use super::super::model::{Camera, Lens, Light, LightKind, Node};
 use super::place::{get, out_of_range, place};
 
+/// The extension that hides a node with all below it.
+pub const VISIBILITY: &str = "KHR_node_visibility";
+
 /// How many more nodes than the file has a scene may show, since a node with several parents is shown below each of them.
 const MOST_REPEATED: usize = 1 << 16;
 
@@ -61,8 +64,13 @@ pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
     // An explicit stack, since files may nest deeper than the thread's stack allows.
     let root_of = |node| (node, None, DMat4::IDENTITY);
     let mut stack: Vec<(usize, Option<usize>, DMat4)> = start.into_iter().rev().map(root_of).collect();
+    let mut hidden = 0;
     while let Some((index, parent, world_from_parent)) = stack.pop() {
         let node = &root.nodes[index];
+        if is_hidden(node) {
+            hidden += 1;
+            continue;
+        }
         let place = place("nodes", index, node.name.as_deref());
         let world_from_object = world_from_parent * local_transform(node, &place, &mut scene.warnings)?.as_dmat4();
         if !world_from_object.as_mat4().is_finite() {
@@ -73,6 +81,9 @@ pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
         scene.add(root, node, index, &world_from_object, &place)?;
         let children = hierarchy.children[index].iter().rev();
         stack.extend(children.map(|child| (*child, Some(at), world_from_object)));
+    }
+    if hidden > 0 {
+        scene.warnings.push(format!("{VISIBILITY} hides {hidden} nodes with all below them: they are not shown."));
     }
     if scene.meshes.is_empty() {
         let found = format!("{} nodes, {} meshes in the file, none in the scene", root.nodes.len(), root.meshes.len());
@@ -168,6 +179,11 @@ impl Hierarchy {
         }
         Ok(roots)
     }
+}
+
+fn is_hidden(node: &json::Node) -> bool {
+    let others = node.extensions.as_ref().map(|extensions| &extensions.others);
+    others.and_then(|others| others.get(VISIBILITY)?.get("visible")?.as_bool()) == Some(false)
 }
 
 fn local_transform(node: &json::Node, place: &str, warnings: &mut Vec<String>) -> Result<Mat4, Problem> {

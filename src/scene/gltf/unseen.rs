@@ -1,19 +1,15 @@
 //! Finds models of which nothing can be seen.
 
 use glam::{Mat3, Vec3};
-use gltf::json;
 
 use super::geometry::triangles::has_faces;
 use crate::scene::model::{AlphaMode, Instance, Model};
-
-/// Extensions that hold the vertices of a mesh in a compressed form. A file that does not require them may leave out all others.
-const COMPRESSED: [&str; 1] = ["KHR_draco_mesh_compression"];
 
 /// Whether an instance passes a check.
 type Check = fn(&Model, &Instance) -> bool;
 
 /// A sentence that says why nothing of the model can be seen; `None` if something can.
-pub fn reason(root: &json::Root, model: &Model) -> Option<String> {
+pub fn reason(model: &Model) -> Option<String> {
     // Each check looks at the instances that all checks before it have passed.
     let mut left: Vec<&Instance> = model.instances.iter().collect();
     let checks: [(&str, Check); 3] = [
@@ -24,11 +20,6 @@ pub fn reason(root: &json::Root, model: &Model) -> Option<String> {
     for (why, passes) in checks {
         left.retain(|instance| passes(model, instance));
         if left.is_empty() {
-            let compressed = COMPRESSED.iter().find(|name| root.extensions_used.iter().any(|used| used == *name));
-            let why = match compressed {
-                Some(name) => format!("its vertices are compressed by {name}, which Specula does not read"),
-                None => why.to_owned(),
-            };
             return Some(format!("Nothing of the model can be seen: {why}."));
         }
     }

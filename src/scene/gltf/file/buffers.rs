@@ -119,9 +119,21 @@ impl<'a> Buffers<'a> {
             return Err(out_of_range(user, "bufferViews", index, root.buffer_views.len()));
         };
         let place = place("bufferViews", index, view.name.as_deref());
-        let buffer_index = view.buffer.value();
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        self.range(root, view.buffer.value(), start, view.byte_length.0, &place)
+    }
+
+    /// `length` bytes of a buffer, from byte `start`.
+    pub fn range(
+        &self,
+        root: &json::Root,
+        buffer_index: usize,
+        start: u64,
+        length: u64,
+        place: &str,
+    ) -> Result<&[u8], Problem> {
         let Some(buffer) = self.0.get(buffer_index) else {
-            return Err(out_of_range(&place, "buffers", buffer_index, self.0.len()));
+            return Err(out_of_range(place, "buffers", buffer_index, self.0.len()));
         };
         let Some(bytes) = buffer else {
             let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");
@@ -129,12 +141,16 @@ impl<'a> Buffers<'a> {
         };
         // `byteLength` is the limit. Data beyond it is padding.
         let limit = root.buffers[buffer_index].byte_length.0.min(bytes.len() as u64);
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= limit);
+        let end = start.checked_add(length).filter(|&end| end <= limit);
         let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
         range.and_then(|range| bytes.get(range)).ok_or_else(|| {
-            let found = format!("byteOffset {start} and byteLength {}", view.byte_length.0);
+            let found = format!("byteOffset {start} and byteLength {length}");
             Problem::invalid(place, format!("a range inside of the {limit} bytes of buffers[{buffer_index}]"), found)
         })
+    }
+
+    /// Adds a buffer.
+    pub fn push(&mut self, bytes: Vec<u8>) {
+        self.0.push(Some(Cow::Owned(bytes)));
     }
 }

@@ -6,21 +6,25 @@ use gltf::json;
 
 use crate::scene::error::Problem;
 use crate::scene::extensions::EXTENSIONS;
+use crate::scene::gltf::{compression, instancing, nodes};
 
 /// Extensions that a model may require, beside those of `scene::extensions`.
 const SUPPORTED: &[&str] = &[
+    instancing::EXTENSION,
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
     "KHR_materials_variants",
     "KHR_mesh_quantization",
+    nodes::VISIBILITY,
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 
 /// All extensions that a model may require.
 fn supported() -> BTreeSet<&'static str> {
-    SUPPORTED.iter().copied().chain(EXTENSIONS.iter().map(|extension| extension.name)).collect()
+    SUPPORTED.iter().copied().chain(compression::EXTENSIONS).chain(EXTENSIONS.iter().map(|e| e.name)).collect()
 }
 
 const MAGIC: &[u8; 4] = b"glTF";

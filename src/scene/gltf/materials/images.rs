@@ -8,8 +8,8 @@ use gltf::json;
 use image::{ImageFormat, ImageReader};
 use rayon::prelude::*;
 
-use super::placeholder;
 use super::textures::Origin;
+use super::{ktx2, placeholder};
 use crate::message::catch_panic;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
@@ -26,8 +26,7 @@ const MAX_DECODED_BYTES: u64 = 512 << 20;
 const LONGEST_REASON: usize = 120;
 
 /// The first bytes of other formats, and their names.
-const OTHER_FORMATS: [(&[u8], &str); 4] =
-    [(b"\xabKTX 20\xbb", "KTX2"), (b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "Basis Universal")];
+const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "a .basis file")];
 
 /// An image before decoding.
 pub struct Encoded<'a> {
@@ -130,6 +129,9 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
 
 /// Width, height and pixels, or the reason of a failure.
 fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
+    if ktx2::is_ktx2(bytes) {
+        return ktx2::pixels(bytes, MAX_SIZE);
+    }
     let other = OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
     // Trust only the content: mimeType and file endings are often wrong or absent.
     let format = match image::guess_format(bytes) {
@@ -137,7 +139,9 @@ fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
         _ if bytes.is_empty() => return Err("it is empty".into()),
         found => {
             let name = other.map(str::to_owned).or_else(|| Some(format!("{:?}", found.ok()?)));
-            return Err(name.map_or("it is not PNG, JPEG or WebP".into(), |name| format!("{name} is not supported")));
+            return Err(
+                name.map_or("it is not PNG, JPEG, WebP or KTX2".into(), |name| format!("{name} is not supported"))
+            );
         }
     };
     let mut limits = image::Limits::default();

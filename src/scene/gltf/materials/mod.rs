@@ -2,6 +2,7 @@
 
 pub mod conductor;
 pub mod images;
+mod ktx2;
 pub mod material;
 pub mod placeholder;
 pub mod reader;

@@ -16,6 +16,9 @@ use crate::scene::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 /// The highest TEXCOORD set of a vertex.
 const LAST_UV_SET: u32 = 1;
 
+/// Extensions that name another image for a texture, the best first.
+const SOURCES: [&str; 2] = ["KHR_texture_basisu", "EXT_texture_webp"];
+
 /// Collects the textures and images that the materials of a file use, each once.
 pub struct Collector<'a> {
     /// Used pairs of image and sampler.
@@ -131,14 +134,14 @@ impl<'a> Collector<'a> {
         Ok(TextureUse { texture, uv_set, uv_from_mesh })
     }
 
-    /// The source of a texture's image: EXT_texture_webp's, or that of the core texture.
+    /// The source of a texture's image: that of an extension, or of the core texture.
     fn origin(&self, texture: &json::Texture, index: usize) -> Result<Origin, Problem> {
         let place = place("textures", index, texture.name.as_deref());
-        let webp =
-            texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
+        let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
+        let extended = others.and_then(|others| SOURCES.iter().find_map(|name| others.get(*name)?.get("source")));
         // The parser returns u32::MAX if the source is absent.
         let core = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
-        let source = match webp {
+        let source = match extended {
             Some(source) => Some(values::index(Some(source), &place, "images")?),
             None => core,
         };

@@ -4,7 +4,7 @@ use super::*;
 use crate::damaged;
 
 /// A caught panic would be a bug of the loader, not an answer.
-fn load_or_refuse(bytes: &[u8]) {
+pub(super) fn load_or_refuse(bytes: &[u8]) {
     if let Err(LoadError { problem, .. }) = load_bytes("damaged", bytes) {
         assert!(!matches!(*problem, Problem::Refused { .. }), "{problem}");
     }

@@ -1,5 +1,6 @@
 //! Tests of the loader on small files built in code.
 
+mod compression;
 mod damaged;
 mod extensions;
 mod features;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::interface as contract;
 
-const KTX2: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n and so on";
+const DDS: &[u8] = b"DDS  and so on";
 const BASE_COLOR: usize = contract::TEXTURE_BASE_COLOR as usize;
 
 /// A square whose material has these bytes as the image of a slot.
@@ -24,15 +24,15 @@ fn warning(builder: &Builder) -> String {
 
 #[test]
 fn a_base_color_that_cannot_be_decoded_is_a_checkerboard() {
-    let mut builder = with_image("baseColorTexture", KTX2);
-    builder.json["images"][0]["name"] = json!("a.ktx2");
-    let expected = "material 'Helmet', base color texture: image 'a.ktx2' cannot be decoded (KTX2 is not supported); \
+    let mut builder = with_image("baseColorTexture", DDS);
+    builder.json["images"][0]["name"] = json!("a.dds");
+    let expected = "material 'Helmet', base color texture: image 'a.dds' cannot be decoded (DDS is not supported); \
                     a checkerboard is shown in its place.";
     assert_eq!(warning(&builder), expected);
     let model = builder.model();
     let used = model.materials[1].textures[BASE_COLOR].expect("the placeholder");
     let image = &model.images[model.textures[used.texture].image];
-    assert_eq!(image.name, "a.ktx2");
+    assert_eq!(image.name, "a.dds");
     let mut colors: Vec<&[u8]> = image.rgba8.chunks_exact(4).collect();
     let mean = colors.iter().map(|color| u32::from(color[0])).sum::<u32>() / colors.len() as u32;
     colors.sort_unstable();
@@ -52,7 +52,7 @@ fn other_slots_show_what_they_show_without_a_texture() {
         let mut builder = with_image(slot, b"nonsense");
         builder.json["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
         let said = warning(&builder);
-        assert!(said.contains(words) && said.contains("(it is not PNG, JPEG or WebP)"), "{said}");
+        assert!(said.contains(words) && said.contains("(it is not PNG, JPEG, WebP or KTX2)"), "{said}");
         let material = &builder.model().materials[1];
         assert_eq!(material.textures[texture as usize], None, "{slot}");
         assert_eq!(material.numbers.emissive_factor == [0.0; 3], slot == "emissiveTexture");
@@ -62,7 +62,16 @@ fn other_slots_show_what_they_show_without_a_texture() {
 #[test]
 fn every_kind_of_bad_image_is_named_and_unused_ones_are_not_decoded() {
     let png = materials::png(8, 8);
-    for bytes in [&png[..40], b"hello", b"", &[0xff, 0xd8, 0xff, 0xe0], b"RIFF\0\0\0\0WEBPVP8 ", b"GIF89a", KTX2] {
+    for bytes in [
+        &png[..40],
+        b"hello",
+        b"",
+        &[0xff, 0xd8, 0xff, 0xe0],
+        b"RIFF\0\0\0\0WEBPVP8 ",
+        b"GIF89a",
+        DDS,
+        b"\xabKTX 20\xbb\r\n\x1a\n and so on",
+    ] {
         let mut builder = with_image("emissiveTexture", bytes);
         builder.json["images"][0]["name"] = json!("glow");
         let said = warning(&builder);
@@ -98,17 +107,17 @@ fn an_image_that_cannot_be_found_costs_only_itself() {
 
 #[test]
 fn a_texture_whose_only_image_is_of_another_extension() {
-    let mut builder = with_image("baseColorTexture", KTX2);
-    builder.json["images"][0] = json!({ "uri": "rock.ktx2" });
-    builder.json["textures"][0] = json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } });
+    let mut builder = with_image("baseColorTexture", DDS);
+    builder.json["images"][0] = json!({ "uri": "rock.dds" });
+    builder.json["textures"][0] = json!({ "extensions": { "MSFT_texture_dds": { "source": 0 } } });
     let said = warning(&builder);
-    assert!(said.contains("image 'rock.ktx2' cannot be decoded (KHR_texture_basisu is not supported); a"), "{said}");
+    assert!(said.contains("image 'rock.dds' cannot be decoded (MSFT_texture_dds is not supported); a"), "{said}");
     builder.json["textures"][0] = json!({});
     let said = warning(&builder);
     assert!(said.contains("the image of texture 0 cannot be decoded (the texture names none)"), "{said}");
     // An extension that the file requires is an error all the same.
-    builder.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
-    assert!(builder.error().contains("requires KHR_texture_basisu"));
+    builder.json["extensionsRequired"] = json!(["MSFT_texture_dds"]);
+    assert!(builder.error().contains("requires MSFT_texture_dds"));
 }
 
 #[test]
@@ -141,7 +150,7 @@ fn files_outside_of_the_folder_are_not_read_for_images_either() {
 
 #[test]
 fn one_warning_for_each_slot_names_all_materials() {
-    let mut builder = with_image("baseColorTexture", KTX2);
+    let mut builder = with_image("baseColorTexture", DDS);
     let material = builder.json["materials"][0].clone();
     let named = |name: &str| {
         let mut material = material.clone();

@@ -1,0 +1,95 @@
+//! `EXT_mesh_gpu_instancing`: a node that shows its mesh many times.
+
+use glam::{DMat4, Quat, Vec3, Vec4};
+use gltf::json;
+use json::accessor::{ComponentType as C, Type};
+
+use super::geometry::accessor::{Format, Normalized as N, Reader};
+use super::nodes::PlacedMesh;
+use super::place::place;
+use super::values;
+use crate::scene::error::Problem;
+
+/// The extension's name.
+pub const EXTENSION: &str = "EXT_mesh_gpu_instancing";
+
+/// Maximum number of instances of a scene, since each is drawn by itself.
+const MOST: usize = 1 << 16;
+
+const VECTOR: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No)] };
+const ROTATION: Format =
+    Format { types: &[Type::Vec4], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
+
+/// Replaces each mesh of an instancing node by its instances.
+///
+/// # Errors
+/// The extension or an accessor of it is invalid.
+pub fn expand(
+    reader: Reader<'_>,
+    meshes: Vec<PlacedMesh>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<PlacedMesh>, Problem> {
+    let mut out = Vec::with_capacity(meshes.len());
+    let mut left_out = 0;
+    for mesh in meshes {
+        let node = &reader.root.nodes[mesh.node];
+        let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION));
+        let Some(extension) = extension else {
+            out.push(mesh);
+            continue;
+        };
+        let place = format!("{}.extensions.{EXTENSION}", place("nodes", mesh.node, node.name.as_deref()));
+        let instances = transforms(reader, &extension["attributes"], &place)?;
+        let room = MOST.saturating_sub(out.len()).min(instances.len());
+        left_out += instances.len() - room;
+        out.extend(instances[..room].iter().map(|instance| PlacedMesh {
+            name: mesh.name.clone(),
+            world_from_object: mesh.world_from_object * *instance,
+            ..mesh
+        }));
+    }
+    if left_out > 0 {
+        warnings.push(format!("{EXTENSION} has more than {MOST} instances: {left_out} are left out."));
+    }
+    Ok(out)
+}
+
+/// The transform of each instance, relative to its node.
+fn transforms(reader: Reader<'_>, attributes: &json::Value, place: &str) -> Result<Vec<DMat4>, Problem> {
+    let index = |name: &str| {
+        let place = format!("{place}.attributes.{name}");
+        let index = attributes.get(name).map(|value| values::index(Some(value), &place, "accessors")).transpose()?;
+        Ok(index.map(|index| (json::Index::new(index as u32), place)))
+    };
+    fn read<const K: usize>(
+        reader: Reader<'_>,
+        accessor: Option<(json::Index<json::Accessor>, String)>,
+        format: &Format,
+    ) -> Result<Option<Vec<[f32; K]>>, Problem> {
+        accessor.map(|(index, place)| reader.floats(index, format, 0.0, &place)).transpose()
+    }
+    let translations = read::<3>(reader, index("TRANSLATION")?, &VECTOR)?;
+    let rotations = read::<4>(reader, index("ROTATION")?, &ROTATION)?;
+    let scales = read::<3>(reader, index("SCALE")?, &VECTOR)?;
+    let counts = [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let mut present = counts.into_iter().flatten();
+    let Some(count) = present.next() else {
+        return Err(Problem::invalid(place, "TRANSLATION, ROTATION or SCALE", "none of them"));
+    };
+    if let Some(other) = present.find(|other| *other != count) {
+        return Err(Problem::invalid(place, "attributes of equal count", format!("{count} and {other}")));
+    }
+    let transform = |at: usize| {
+        let translation = translations.as_ref().map_or(Vec3::ZERO, |all| all[at].into());
+        let rotation = rotations.as_ref().map_or(Vec4::W, |all| all[at].into());
+        let rotation = Quat::from_vec4(rotation.try_normalize().unwrap_or(Vec4::W));
+        let scale = scales.as_ref().map_or(Vec3::ONE, |all| all[at].into());
+        let transform =
+            DMat4::from_scale_rotation_translation(scale.as_dvec3(), rotation.as_dquat(), translation.as_dvec3());
+        match transform.is_finite() {
+            true => Ok(transform),
+            false => Err(Problem::invalid(place, "finite transforms", format!("another at instance {at}"))),
+        }
+    };
+    (0..count).map(transform).collect()
+}
