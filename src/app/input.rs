@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 
+use super::interface::Interface;
 use super::mouse::Mouse;
 use super::screen::Screen;
 use crate::app::actions::compare::hold_reference;
@@ -30,18 +31,18 @@ pub(super) fn on_window_event(
     state: &mut State,
     engine: &mut Engine,
     event: &WindowEvent,
-    screen: &mut Screen,
+    (interface, screen): (&mut Interface, &Screen),
     taken: bool,
 ) -> bool {
     match event {
         WindowEvent::ModifiersChanged(modifiers) => {
-            screen.mouse.modifiers = modifiers.state();
+            interface.mouse.modifiers = modifiers.state();
             false
         }
         WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
             // A double click is two presses with nothing in between.
-            screen.mouse.last_press = screen.mouse.last_press.filter(|_| event.state != ElementState::Pressed);
-            on_keyboard(state, engine, screen, event, *is_synthetic, taken)
+            interface.mouse.last_press = interface.mouse.last_press.filter(|_| event.state != ElementState::Pressed);
+            on_keyboard(state, engine, interface, event, *is_synthetic, taken)
         }
         WindowEvent::Focused(false) => {
             state.playback.keys().release_all();
@@ -49,29 +50,29 @@ pub(super) fn on_window_event(
             hold_reference(state, false) || state.reads_keys()
         }
         WindowEvent::MouseInput { state: press, button, .. } => {
-            let pressed = *press == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
+            let pressed = *press == ElementState::Pressed && !taken && inside(screen, interface.mouse.at);
             if let Some(bit) = button_bit(*button) {
                 state.playback.set_button(bit, pressed);
             }
             match button {
-                MouseButton::Left => return on_left_button(state, engine, screen, pressed),
-                MouseButton::Middle => screen.mouse.middle = pressed,
+                MouseButton::Left => return on_left_button(state, engine, (interface, screen), pressed),
+                MouseButton::Middle => interface.mouse.middle = pressed,
                 MouseButton::Right => {
-                    screen.mouse.right = pressed;
-                    screen.camera.fly = Vec3::ZERO;
+                    interface.mouse.right = pressed;
+                    interface.camera.fly = Vec3::ZERO;
                 }
                 _ => {}
             }
             false
         }
         WindowEvent::CursorMoved { position, .. } => {
-            on_cursor_moved(state, screen, Vec2::new(position.x as f32, position.y as f32))
+            on_cursor_moved(state, interface, screen, Vec2::new(position.x as f32, position.y as f32))
         }
         WindowEvent::CursorLeft { .. } => {
             state.playback.hover(BEYOND);
-            std::mem::take(&mut screen.mouse.over)
+            std::mem::take(&mut interface.mouse.over)
         }
-        WindowEvent::MouseWheel { delta, .. } if !taken && inside(screen, screen.mouse.at) => {
+        WindowEvent::MouseWheel { delta, .. } if !taken && inside(screen, interface.mouse.at) => {
             let steps = match delta {
                 MouseScrollDelta::LineDelta(_, lines) => *lines,
                 MouseScrollDelta::PixelDelta(pixels) => pixels.y as f32 / 40.0,
@@ -85,20 +86,20 @@ pub(super) fn on_window_event(
 }
 
 /// Moves the mouse to `at`, in pixels of the window: what it drags, and what shaders know of it. Returns whether to redraw.
-fn on_cursor_moved(state: &mut State, screen: &mut Screen, at: Vec2) -> bool {
-    let delta = (at - screen.mouse.at) / screen.rect.size.1.max(1) as f32;
+fn on_cursor_moved(state: &mut State, interface: &mut Interface, screen: &Screen, at: Vec2) -> bool {
+    let delta = (at - interface.mouse.at) / screen.rect.size.1.max(1) as f32;
     let is_over = inside(screen, at);
-    let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
-    screen.mouse.at = at;
+    let was_over = std::mem::replace(&mut interface.mouse.over, is_over);
+    interface.mouse.at = at;
     let [x, y] = in_picture(screen, at);
     let (width, height) = screen.rect.size;
     let is_inside = is_over && x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
     state.playback.hover(if is_inside { [x, y] } else { BEYOND });
-    screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
-    if screen.mouse.left {
+    interface.mouse.click = interface.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
+    if interface.mouse.left {
         state.playback.drag([x, y]);
     }
-    drag(state, screen, delta) || was_over || screen.mouse.over
+    drag(state, interface, screen, delta) || was_over || interface.mouse.over
 }
 
 /// The bit of a button in `interface::Frame::mouse_buttons`.
@@ -113,35 +114,40 @@ fn button_bit(button: MouseButton) -> Option<u32> {
 
 /// Handles the left button: a press in the picture of a shader, a double click that focuses, a click that picks. Returns whether to
 /// redraw.
-fn on_left_button(state: &mut State, engine: &mut Engine, screen: &mut Screen, pressed: bool) -> bool {
-    let was = std::mem::replace(&mut screen.mouse.left, pressed);
-    let is_double = pressed && is_double_click(&mut screen.mouse);
-    let place = screen.mouse.at;
-    let clicked = screen.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
-    screen.mouse.click = (pressed && !is_double && !has_modifier(&screen.mouse)).then_some(place);
+fn on_left_button(
+    state: &mut State,
+    engine: &mut Engine,
+    (interface, screen): (&mut Interface, &Screen),
+    pressed: bool,
+) -> bool {
+    let was = std::mem::replace(&mut interface.mouse.left, pressed);
+    let is_double = pressed && is_double_click(&mut interface.mouse);
+    let place = interface.mouse.at;
+    let clicked = interface.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
+    interface.mouse.click = (pressed && !is_double && !has_modifier(&interface.mouse)).then_some(place);
     match pressed {
-        true => state.playback.press(in_picture(screen, screen.mouse.at)),
+        true => state.playback.press(in_picture(screen, interface.mouse.at)),
         false if was => state.playback.release(),
         false => {}
     }
     if is_double {
-        return focus_at_mouse(state, screen);
+        return focus_at_mouse(state, interface, screen);
     }
     let is_click = clicked.is_some() && was && !pressed;
-    if is_click && keep_mode_at(state, screen) {
+    if is_click && keep_mode_at(state, interface, screen) {
         return true;
     }
-    let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) else { return false };
+    let Some((x, y)) = screen.pixel_at(interface.mouse.at).filter(|_| is_click) else { return false };
     execute(state, engine, CLICK.with([x, y]));
     true
 }
 
 /// Shows the mode of the grid under the mouse alone. Returns whether there is one.
-fn keep_mode_at(state: &mut State, screen: &Screen) -> bool {
+fn keep_mode_at(state: &mut State, interface: &Interface, screen: &Screen) -> bool {
     if !state.grid.is_on() {
         return false;
     }
-    if let Some(mode) = screen.grid_mode_at(screen.mouse.at) {
+    if let Some(mode) = screen.grid_mode_at(interface.mouse.at) {
         state.session.settings.mode = mode;
     }
     state.grid.end();
@@ -159,8 +165,8 @@ fn is_double_click(mouse: &mut Mouse) -> bool {
 }
 
 /// Moves the camera so that it looks at the surface under the mouse, and orbits around it. Returns whether there is one.
-fn focus_at_mouse(state: &mut State, screen: &Screen) -> bool {
-    let place = screen.mouse_pixel().zip(screen.camera_view());
+fn focus_at_mouse(state: &mut State, interface: &Interface, screen: &Screen) -> bool {
+    let place = screen.pixel_at(interface.mouse.at).zip(screen.camera_view());
     place.is_some_and(|(at, view)| focus(state, screen.rect.size, at, &view))
 }
 
@@ -179,10 +185,10 @@ fn inside(screen: &Screen, at: Vec2) -> bool {
     (0.0..screen.whole.size.0 as f32).contains(&x) && (0.0..screen.whole.size.1 as f32).contains(&y)
 }
 
-fn drag(state: &mut State, screen: &Screen, delta: Vec2) -> bool {
+fn drag(state: &mut State, interface: &Interface, screen: &Screen, delta: Vec2) -> bool {
     let Some(view) = screen.camera_view() else { return false };
     let settings = &mut state.session.settings;
-    let (mouse, camera) = (&screen.mouse, &mut settings.camera);
+    let (mouse, camera) = (&interface.mouse, &mut settings.camera);
     let modifiers = mouse.modifiers;
     let turns = mouse.middle && !modifiers.shift_key()
         || mouse.left && !modifiers.control_key() && (modifiers.alt_key() || modifiers.shift_key());

@@ -1,7 +1,7 @@
 //! The window, which runs beside an editor.
 //!
-//! `state` is what the window knows, `engine` makes frames and starts work, `screen` draws frames and panels. Functions over both, in `actions`,
-//! `frames` and `messages`, carry out what commands and threads ask for. Only this file owns all of them.
+//! `state` is what the window knows, `engine` makes frames and starts work, `interface` runs the panels, `screen` draws requests. Functions over
+//! them, in `actions`, `frames` and `messages`, carry out what commands and threads ask for. Only this file owns all of them.
 
 mod actions;
 mod command;
@@ -14,6 +14,7 @@ mod engine;
 mod frames;
 mod gallery;
 mod input;
+mod interface;
 mod keys;
 mod layout;
 mod messages;
@@ -48,9 +49,12 @@ use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
 use engine::Engine;
+use frames::background::Next;
+use frames::draw::Drawing;
+use interface::Interface;
 use messages::on_message;
 use options::Early;
-use screen::{Next, Screen};
+use screen::Screen;
 use start::start;
 use state::State;
 
@@ -113,11 +117,11 @@ struct App {
     result: Result<(), AppError>,
 }
 
-/// The parts of an open window. The screen must be dropped before the device and before the window.
+/// The parts of an open window. The drawing must be dropped before the device and before the window.
 struct Open {
     state: State,
     engine: Engine,
-    screen: Screen,
+    drawing: Drawing,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
 }
@@ -144,17 +148,18 @@ impl App {
             pipelines: (!options.recorder.is_safe_mode()).then_some(&DiskPipelines as &dyn PipelineStore),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
-        let mut screen = Screen::new(&gpu, &layouts, &window)?;
-        screen.init_accessibility(event_loop, &window, &self.sender);
+        let screen = Screen::new(&gpu, &layouts, &window)?;
+        let mut interface = Interface::new(&gpu, &window);
+        interface.init_accessibility(event_loop, &window, &self.sender);
         window.set_visible(true);
         let (state, engine) = start(&gpu, &layouts, options, early, &self.sender)?;
-        Ok(Open { state, engine, screen, gpu, window })
+        Ok(Open { state, engine, drawing: Drawing::new(screen, interface), gpu, window })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
     fn go_on(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        match open.screen.go_on(&mut open.state, &mut open.engine) {
+        match open.drawing.go_on(&mut open.state, &mut open.engine) {
             Ok(Next::Frame) => open.window.request_redraw(),
             Ok(Next::After(wait)) => event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + wait)),
             Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
@@ -172,14 +177,14 @@ impl App {
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { mut state, engine, screen, gpu, window } = open;
+            let Open { mut state, engine, drawing, gpu, window } = open;
             remember_session(&state);
             engine.recorder.close();
             end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
             assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
             let (frames, [ui_ms, cpu_ms]) = state.timing.summary();
             emit(&state.events, &Event::Closed { frames, ui_ms, cpu_ms });
-            drop(screen);
+            drop(drawing);
             drop(engine);
             state.waiting.closed();
             drop(window);
@@ -232,8 +237,8 @@ impl ApplicationHandler<Message> for App {
         match message {
             // A frame would wait for the thumbnail that the device may be drawing.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => return self.go_on(event_loop),
-            Message::Accessibility(event) => open.screen.on_accessibility(event.window_event),
-            Message::Pictures(pictures) => open.screen.panels.open_gallery.take(pictures),
+            Message::Accessibility(event) => open.drawing.interface.on_accessibility(event.window_event),
+            Message::Pictures(pictures) => open.drawing.interface.panels.open_gallery.take(pictures),
             message => on_message(&mut open.state, &mut open.engine, message),
         }
         open.window.request_redraw();
@@ -241,10 +246,10 @@ impl ApplicationHandler<Message> for App {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let Some(event) = open.screen.wait(event) else { return open.window.request_redraw() };
+        let Some(event) = open.drawing.interface.wait(event) else { return open.window.request_redraw() };
         let is_frame = event == WindowEvent::RedrawRequested;
         self.handle(event_loop, event);
-        while is_frame && let Some(event) = self.open.as_mut().and_then(|open| open.screen.next_waiting()) {
+        while is_frame && let Some(event) = self.open.as_mut().and_then(|open| open.drawing.interface.next_waiting()) {
             self.handle(event_loop, event);
         }
     }
@@ -253,7 +258,7 @@ impl ApplicationHandler<Message> for App {
 impl App {
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let response = open.screen.on_window_event(&open.window, &event);
+        let response = open.drawing.interface.on_window_event(&open.window, &event);
         // egui requests a repaint in response to every redraw, so the window would never be idle.
         if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
@@ -261,11 +266,11 @@ impl App {
         match event {
             WindowEvent::CloseRequested => return self.end(event_loop, Ok(())),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
-                open.screen.resized();
+                open.drawing.screen.resized();
                 open.window.request_redraw();
             }
             WindowEvent::Occluded(is_covered) => {
-                open.screen.is_covered = is_covered;
+                open.drawing.is_covered = is_covered;
                 open.window.request_redraw();
             }
             WindowEvent::DroppedFile(path) => {
@@ -273,7 +278,7 @@ impl App {
                 command::execute(&mut open.state, &mut open.engine, dropped);
             }
             WindowEvent::RedrawRequested => {
-                let drawn = open.screen.draw(&open.window, &mut open.state, &mut open.engine);
+                let drawn = open.drawing.draw(&open.window, &mut open.state, &mut open.engine);
                 match drawn {
                     Ok(again) => event_loop.set_control_flow(match again {
                         Some(wait) if wait.is_zero() => {
@@ -287,8 +292,9 @@ impl App {
                 }
             }
             event => {
-                let taken = open.screen.is_taken(&event, response.consumed);
-                if input::on_window_event(&mut open.state, &mut open.engine, &event, &mut open.screen, taken) {
+                let taken = open.drawing.interface.is_taken(&event, response.consumed);
+                let parts = (&mut open.drawing.interface, &open.drawing.screen);
+                if input::on_window_event(&mut open.state, &mut open.engine, &event, parts, taken) {
                     open.window.request_redraw();
                 }
             }

@@ -284,3 +284,21 @@ fn folders_import_only_from_layers_below() {
     }
     assert!(wrong.is_empty(), "imports against the order of the layers:\n{}", wrong.join("\n"));
 }
+
+/// The files of the window that its screen imports: plain values of requests.
+const REQUESTS: [&str; 4] = ["engine/last_complete.rs", "gallery.rs", "state/grid.rs", "state/workspace.rs"];
+
+#[test]
+fn the_screen_draws_requests_and_knows_neither_state_nor_engine() {
+    let is_screen = |file: &Path| file.starts_with("app/screen") || file == Path::new("app/screen.rs");
+    let imports = Modules::of_library().imports();
+    let of_screen = imports.iter().filter(|(file, _)| is_screen(file));
+    let others = of_screen.flat_map(|(file, targets)| targets.iter().map(move |target| (file, target)));
+    let others = others.filter(|(_, target)| target.starts_with("app") && !is_screen(target));
+    let is_request = |target: &Path| REQUESTS.iter().any(|known| target == Path::new("app").join(known));
+    let wrong: Vec<String> = others
+        .filter(|(_, target)| !is_request(target))
+        .map(|(file, target)| format!("{} imports {}", file.display(), target.display()))
+        .collect();
+    assert!(imports.keys().any(|file| is_screen(file)) && wrong.is_empty(), "{}", wrong.join("\n"));
+}

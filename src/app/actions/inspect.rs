@@ -41,18 +41,14 @@ pub(in crate::app) fn inspect(state: &mut State, at: [u32; 2]) {
 }
 
 /// Begins to read the values of a pixel: picture number `picture`, which `state` draws. Earlier values stay until newer ones come.
-/// Returns whether the picture is new.
 pub(in crate::app) fn begin_values(
     state: &mut State,
     engine: &mut Engine,
     picture: u64,
     at: [u32; 2],
     frame_state: &FrameState,
-) -> bool {
+) {
     let inspector = &mut state.inspection;
-    if inspector.reading.as_ref().is_some_and(|reading| reading.picture == picture) {
-        return false;
-    }
     let settings = &state.session.settings;
     let of = || SearchOf::new(at, frame_state.shaders.generation, settings);
     if inspector.search_not_finite.is_some() && inspector.searched != Some(of()) {
@@ -73,7 +69,6 @@ pub(in crate::app) fn begin_values(
         names: names(frame_state, at),
         texels: Vec::new(),
     });
-    true
 }
 
 /// Takes the texels at the pixel of picture number `picture`.

@@ -83,12 +83,12 @@ pub(in crate::app) fn take_shots(state: &mut State, engine: &Engine) -> Vec<Shot
     if !is_settled(state, engine) {
         return Vec::new();
     }
-    std::iter::from_fn(|| state.waiting.take_shot(false)).collect()
+    std::iter::from_fn(|| state.waiting.take_shot()).collect()
 }
 
-/// The picture of the window that can be taken now.
-pub(in crate::app) fn take_window_shot(state: &mut State, engine: &Engine) -> Option<Shot> {
-    if is_settled(state, engine) { state.waiting.take_shot(true) } else { None }
+/// Whether a picture of the window can be taken now.
+pub(in crate::app) fn wants_window(state: &State, engine: &Engine) -> bool {
+    is_settled(state, engine) && state.waiting.wants_window()
 }
 
 /// Whether there are no shaders, and an edit is needed before there are.

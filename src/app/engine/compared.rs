@@ -6,7 +6,6 @@ use super::last_complete::LastComplete;
 use crate::comparison::{Picture, Still};
 use crate::frame::FrameState;
 use crate::pipeline::PipelineSet;
-use crate::render::BoundFrame;
 use crate::threads::second_tree::SecondTree;
 use crate::threads::worker::Snapshot;
 
@@ -62,14 +61,4 @@ impl LastAsked {
             && asked.tables == state.tables
             && asked.measured == state.measured
     }
-}
-
-/// The other picture, as a frame draws it for a comparison.
-pub(in crate::app) struct Reference {
-    /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
-    pub(in crate::app) frame: BoundFrame,
-    /// The picture from a file, with the number of its request.
-    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
-    /// The part of the width that shows it, from the left, 0..1.
-    pub(in crate::app) part: f32,
 }

@@ -1,8 +1,17 @@
-//! The frame that the state describes: what it is, what it lacks, and whether it is final.
+//! The frame that the state describes: what it is, what it lacks, how the screen draws it, and whether it is final.
 
+pub(super) mod background;
+pub(super) mod draw;
+mod grid;
+mod memory;
 pub(super) mod picture;
+mod pictures;
 pub(super) mod progress;
-pub(super) mod recording;
+mod readings;
+mod readout;
+mod recording;
 pub(super) mod reference;
-pub(super) mod stages;
-pub(super) mod title;
+mod request;
+mod results;
+mod stages;
+mod title;

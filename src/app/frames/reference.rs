@@ -2,8 +2,9 @@
 
 use crate::app::actions::compare::tree::snapshot;
 use crate::app::engine::Engine;
-use crate::app::engine::compared::{Compared, LastAsked, Reference};
+use crate::app::engine::compared::{Compared, LastAsked};
 use crate::app::frames::picture::interim;
+use crate::app::screen::Reference;
 use crate::app::state::State;
 use crate::app::state::compare::With;
 use crate::app::state::shaders::versions::Version;

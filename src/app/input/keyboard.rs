@@ -8,8 +8,8 @@ use crate::app::command;
 use crate::app::command::modes::TOGGLE_MODE;
 use crate::app::command::spec::Command;
 use crate::app::engine::Engine;
+use crate::app::interface::Interface;
 use crate::app::keys;
-use crate::app::screen::Screen;
 use crate::app::state::State;
 use crate::scene::CameraController;
 
@@ -17,26 +17,26 @@ use crate::scene::CameraController;
 pub(super) fn on_keyboard(
     state: &mut State,
     engine: &mut Engine,
-    screen: &mut Screen,
+    interface: &mut Interface,
     event: &KeyEvent,
     is_synthetic: bool,
     taken: bool,
 ) -> bool {
     let pressed = event.state == ElementState::Pressed;
     if let PhysicalKey::Code(code) = event.physical_key
-        && fly_key(&mut screen.camera, code, pressed && screen.mouse.right)
+        && fly_key(&mut interface.camera, code, pressed && interface.mouse.right)
     {
         return true;
     }
     // A release always counts, so that nothing stays held.
-    if pressed && screen.panels.defaults.is_open() {
+    if pressed && interface.panels.defaults.is_open() {
         return false;
     }
     // Escape closes an open list or menu, and nothing else.
-    if pressed && event.logical_key == Key::Named(NamedKey::Escape) && screen.has_open_popup() {
+    if pressed && event.logical_key == Key::Named(NamedKey::Escape) && interface.has_open_popup() {
         return false;
     }
-    let (reads_keys, modifiers) = (state.reads_keys(), screen.mouse.modifiers);
+    let (reads_keys, modifiers) = (state.reads_keys(), interface.mouse.modifiers);
     let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
     if is_space && !pressed && hold_reference(state, false) {
         return true;
@@ -44,7 +44,7 @@ pub(super) fn on_keyboard(
     let found = command::of_key(state, event, modifiers);
     let is_everywhere = found.as_ref().is_some_and(|(_, shortcut)| shortcut.is_everywhere);
     // The search of the palette has the keys from the moment it opens, which may be before egui knows.
-    let taken = (taken || screen.panels.palette.is_open()) && !is_everywhere;
+    let taken = (taken || interface.panels.palette.is_open()) && !is_everywhere;
     if !pressed || (reads_keys && !is_shortcut(&event.logical_key, modifiers, is_everywhere)) {
         // A press that winit makes up when the window gets the focus is none for shaders.
         let counts = !pressed || !(taken || event.repeat || is_synthetic);
@@ -56,7 +56,7 @@ pub(super) fn on_keyboard(
     if is_space && !event.repeat && !is_synthetic {
         return hold_reference(state, true);
     }
-    if event.logical_key == Key::Named(NamedKey::Escape) && screen.panels.close_list() {
+    if event.logical_key == Key::Named(NamedKey::Escape) && interface.panels.close_list() {
         return true;
     }
     // Ctrl with a letter that is no shortcut means nothing, unless it tells the letter from the picture's.
@@ -69,7 +69,7 @@ pub(super) fn on_keyboard(
     let Some(command) = command.filter(|command| !event.repeat || command.about.repeats) else { return false };
     command::execute(state, engine, command);
     // Keys that follow in the same frame are already for a palette that has just been opened.
-    state.workspace.take_requests().iter().for_each(|request| screen.panels.carry_out(request));
+    interface.carry_out(&state.workspace.take_requests());
     true
 }
 

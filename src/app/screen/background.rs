@@ -13,6 +13,7 @@ use crate::gpu::{Encoder, Frames, Gpu, GpuError};
 
 /// The submissions between frames, of which the device has one at a time.
 pub(super) struct Background {
+    gpu: Arc<Gpu>,
     pub(super) frames: Frames,
     /// The commands of the next one, if there are any.
     pub(super) encoder: Option<Encoder>,
@@ -24,7 +25,16 @@ pub(super) struct Background {
 
 impl Background {
     pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
-        Ok(Self { frames: Frames::new(gpu, 1)?, encoder: None, is_unread: false, is_unseen: false })
+        Ok(Self { gpu: gpu.clone(), frames: Frames::new(gpu, 1)?, encoder: None, is_unread: false, is_unseen: false })
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// Whether the device is faster than the display.
+    pub(super) fn is_fast(&self) -> bool {
+        self.gpu.info().kind != "cpu"
     }
 
     /// Whether the device has run the last submission. Its results can be read then.

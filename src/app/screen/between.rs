@@ -1,137 +1,136 @@
 //! Draws thumbnails and values of pixels between frames.
 
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 
-use super::Screen;
-use crate::app::actions::compare::cut_short;
-use crate::app::engine::Engine;
-use crate::app::frames::progress::awaits_edit;
-use crate::app::state::State;
-use crate::gpu::GpuError;
+use super::background::Background;
+use super::between_request::{BetweenRequest, Collected, Drawn};
+use super::gallery::Gallery;
+use super::inspector::PixelReader;
+use super::number::NumberReader;
+use super::thumbnail::VersionThumbnails;
+use crate::app::gallery::Thumbnails;
+use crate::gpu::{Gpu, GpuError, SetLayouts, UiRenderer};
+use crate::render::Resources;
 
 /// Polling interval for a submission's end, for which drivers send no event.
-const POLL: Duration = Duration::from_millis(2);
+pub(in crate::app) const POLL: Duration = Duration::from_millis(2);
 
-/// How long a software device may continue between frames. Showing a thumbnail takes it longer than drawing one.
-const UNSEEN: Duration = Duration::from_millis(200);
-
-/// The next step of the window.
-pub(in crate::app) enum Next {
-    /// Draws a frame.
-    Frame,
-    /// Waits, then asks again.
-    After(Duration),
-    /// Waits for an event.
-    Event,
+/// What draws between frames.
+pub(in crate::app) struct Between {
+    background: Background,
+    gallery: Gallery,
+    inspector: PixelReader,
+    pub(super) number: NumberReader,
+    pub(in crate::app) versions: VersionThumbnails,
+    layouts: Arc<SetLayouts>,
 }
 
-impl Screen {
-    /// Draws more between two frames, once the device has run the last submission, or reports that a frame is due.
-    pub(in crate::app) fn go_on(&mut self, state: &mut State, engine: &mut Engine) -> Result<Next, GpuError> {
-        let now = Instant::now();
-        let left = |due: Option<Instant>| due.map(|due| due.saturating_duration_since(now));
-        let is_finished = self.background.is_finished();
-        if left(self.due).is_some_and(|left| left.is_zero()) || (is_finished && engine.gpu_is_fast()) {
-            return Ok(Next::Frame);
-        }
-        let mut wait = self.time_to_poll();
-        if is_finished && !awaits_edit(state, engine) {
-            if left(self.shows_at()).is_some_and(|left| left.is_zero()) {
-                return Ok(Next::Frame);
-            }
-            wait = self.draw_background(state, engine, self.egui.pixels_per_point())?;
-        }
-        Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
+impl Between {
+    pub(super) fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>) -> Result<Self, GpuError> {
+        Ok(Self {
+            background: Background::new(gpu)?,
+            gallery: Gallery::default(),
+            inspector: PixelReader::default(),
+            number: NumberReader::default(),
+            versions: VersionThumbnails::default(),
+            layouts: layouts.clone(),
+        })
     }
 
-    /// When a frame is due that shows new results.
-    fn shows_at(&self) -> Option<Instant> {
-        self.background.is_unseen.then(|| self.last_frame + UNSEEN)
+    /// Whether the device has run the last submission.
+    pub(in crate::app) fn is_finished(&self) -> bool {
+        self.background.is_finished()
+    }
+
+    /// Notes whether there are results that no frame has shown.
+    pub(in crate::app) fn set_unseen(&mut self, is_unseen: bool) {
+        self.background.is_unseen = is_unseen;
+    }
+
+    pub(in crate::app) fn is_unseen(&self) -> bool {
+        self.background.is_unseen
     }
 
     /// The time until the next poll of the device; `None` if it draws nothing between frames.
-    fn time_to_poll(&self) -> Option<Duration> {
-        (!self.background.is_finished()).then_some(POLL)
+    pub(in crate::app) fn time_to_poll(&self) -> Option<Duration> {
+        (!self.is_finished()).then_some(POLL)
     }
 
-    /// Collects the results of the last submission, if it is finished. Returns whether there are any.
-    fn take_background(&mut self, state: &mut State, engine: &mut Engine) -> bool {
-        self.take_thumbnail(state);
-        self.inspector.take(&self.background, state);
-        self.number.take(&self.background);
-        let is_new = self.background.is_finished() && std::mem::take(&mut self.background.is_unread);
-        if is_new && self.background.frames.endless_loop(0).is_some() {
-            self.end_background(state, engine);
-        }
-        is_new
+    /// The thumbnails of modes as the panels show them.
+    pub(in crate::app) fn thumbnails(&self) -> &Thumbnails {
+        &self.gallery.thumbnails
     }
 
-    /// Collects the results for the frame that begins.
-    pub(super) fn show_background(&mut self, state: &mut State, engine: &mut Engine) {
-        self.take_background(state, engine);
-        self.background.is_unseen = false;
+    /// Whether the thumbnails of modes do not fit any more.
+    pub(super) fn is_misfit(&self, points: [f32; 2], pixels_per_point: f32) -> bool {
+        self.gallery.is_misfit(self.background.gpu(), points, pixels_per_point)
     }
 
-    /// Draws thumbnails and values of pixels that are out of date. Returns the time until they or results that no frame has shown need the
-    /// next frame, or `None`. A lack of memory drops them.
-    ///
-    /// # Errors
-    /// A device error other than out of memory.
-    pub(super) fn draw_background(
+    /// Drops the thumbnails of modes. The caller has waited for the frames that use them. SYNC: waits for the last submission.
+    pub(super) fn drop_thumbnails(&mut self, ui: &mut UiRenderer) -> Result<(), GpuError> {
+        self.background.wait()?;
+        self.gallery.drop_texture(ui);
+        Ok(())
+    }
+
+    /// Collects the results of the last submission, if it is finished.
+    pub(super) fn collect(&mut self) -> Collected {
+        let Self { background, inspector, number, versions, .. } = self;
+        let mut collected = Collected { version: versions.take(background), ..Collected::default() };
+        inspector.take(background, &mut collected);
+        number.take(background);
+        collected.is_new = background.is_finished() && std::mem::take(&mut background.is_unread);
+        collected.is_endless = collected.is_new && background.frames.endless_loop(0).is_some();
+        collected
+    }
+
+    /// Draws thumbnails and values of pixels that are out of date, once the last submission is finished. A lack of memory drops them.
+    pub(super) fn draw(
         &mut self,
-        state: &mut State,
-        engine: &mut Engine,
-        pixels_per_point: f32,
+        request: &BetweenRequest<'_>,
+        resources: &mut Resources,
+        ui: &mut UiRenderer,
+    ) -> Result<Drawn, GpuError> {
+        let mut drawn = Drawn::default();
+        let recorded = self.record(request, resources, ui, &mut drawn);
+        match recorded.and_then(|wait| self.background.submit().map(|()| wait)) {
+            Ok(wait) => drawn.wait = wait,
+            Err(error) if error.is_shortage() => {
+                self.background.encoder = None;
+                self.versions.fail();
+                self.gallery.forget();
+                self.inspector.forget();
+                self.number.stop();
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(drawn)
+    }
+
+    fn record(
+        &mut self,
+        request: &BetweenRequest<'_>,
+        resources: &mut Resources,
+        ui: &mut UiRenderer,
+        drawn: &mut Drawn,
     ) -> Result<Option<Duration>, GpuError> {
-        if !self.background.is_finished() {
-            return Ok(Some(POLL));
+        let Self { background, gallery, inspector, number, versions, layouts } = self;
+        match request.version.as_ref().map_or(Ok(()), |version| versions.record(background, layouts, version)) {
+            Err(error) if error.is_shortage() => versions.fail(),
+            recorded => recorded?,
         }
-        self.background.is_unseen |= self.take_background(state, engine);
-        let recorded = self.record_background(state, engine, pixels_per_point);
-        let submitted = recorded.and_then(|waits| self.background.submit().map(|()| waits));
-        let waits = self.survive(submitted)?;
-        if waits.is_none() {
-            self.background.encoder = None;
-            (self.thumbnails, self.thumbnail, self.lacks_thumbnails) = (None, None, true);
-            self.gallery.forget();
-            self.inspector.forget();
-            self.number.stop();
-            // The newest picture matters more.
-            self.shortage = None;
-        }
-        // The frame that follows shows the results.
-        let wait = self.time_to_poll().or_else(|| waits.into_iter().flatten().flatten().min());
-        let shows = self.shows_at().map(|at| at.saturating_duration_since(Instant::now()));
-        Ok(wait.into_iter().chain(shows).min())
+        let thumbnails = gallery.draw(background, request, resources, (ui, layouts), drawn)?;
+        let values = inspector.draw(background, request, resources, layouts, drawn)?;
+        let number = number.draw(background, request, resources, layouts, drawn)?;
+        Ok([thumbnails, values, number].into_iter().flatten().min())
     }
 
-    fn record_background(
-        &mut self,
-        state: &mut State,
-        engine: &mut Engine,
-        pixels_per_point: f32,
-    ) -> Result<[Option<Duration>; 3], GpuError> {
-        let recorded = self.record_thumbnail(state, engine);
-        if self.survive(recorded)?.is_none() {
-            (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
-            self.lacks_thumbnails = true;
-        }
-        let context = (&self.layouts, pixels_per_point);
-        let thumbnails = self.gallery.draw(&mut self.background, (&mut *state, &mut *engine), &mut self.ui, context)?;
-        let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
-        let values = self.inspector.draw(&mut self.background, state, engine, &self.layouts, of_pixel)?;
-        let pointed = self.pointed_number(state);
-        let number = self.number.draw(&mut self.background, state, engine, &self.layouts, pointed)?;
-        Ok([thumbnails, values, number])
-    }
-
-    /// Draws nothing between frames until something changes.
-    pub(super) fn end_background(&mut self, state: &mut State, engine: &mut Engine) {
+    /// Draws nothing between frames until something changes. Returns the version whose thumbnail was being drawn.
+    pub(super) fn end(&mut self) -> Option<u64> {
         self.gallery.stop();
         self.inspector.stop();
         self.number.stop();
-        if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
-            cut_short(state, engine, number);
-        }
+        self.versions.stop()
     }
 }

@@ -7,18 +7,14 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::app::engine::Engine;
+use super::background::Background;
+use super::between_request::{BetweenRequest, Build, Drawn};
+use super::sets::{BoundSets, RestingPicture, Shown, time_to_rest};
 use crate::app::gallery::Thumbnails as ShownThumbnails;
-use crate::app::state::State;
-use crate::app::state::workspace::Sight;
-use crate::events::{Event, emit};
 use crate::frame::mode_sets;
 use crate::gpu::{Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
-use crate::render::Thumbnails;
-use crate::shader::{Mode, ShaderSet};
-
-use super::background::Background;
-use super::sets::{BoundSets, Shown, shown, time_to_rest};
+use crate::render::{Resources, Thumbnails};
+use crate::shader::Mode;
 
 /// Draws of thumbnails, each of several modes, after one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
@@ -51,8 +47,8 @@ pub(super) struct Gallery {
 
 impl Gallery {
     /// Whether the texture must be dropped: its thumbnails have another size, or memory is short.
-    pub(super) fn is_misfit(&self, gpu: &Gpu, sight: &Sight, pixels_per_point: f32) -> bool {
-        let size = pixels(sight, scale(gpu) * pixels_per_point);
+    pub(super) fn is_misfit(&self, gpu: &Gpu, points: [f32; 2], pixels_per_point: f32) -> bool {
+        let size = pixels(gpu, points, pixels_per_point);
         let is_full = |image: &UiImage| {
             let (width, height) = (image.image().desc().width, image.image().desc().height);
             self.cells.len() as u32 > (width / size.0) * (height / size.1)
@@ -80,18 +76,15 @@ impl Gallery {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        (state, engine): (&mut State, &mut Engine),
-        ui: &mut UiRenderer,
-        (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
+        request: &BetweenRequest<'_>,
+        resources: &mut Resources,
+        (ui, layouts): (&mut UiRenderer, &Arc<SetLayouts>),
+        drawn: &mut Drawn,
     ) -> Result<Option<Duration>, GpuError> {
-        self.collect(state);
-        if state.workspace.sight.thumbnails.is_empty() || engine.recorder.is_safe_mode() {
-            return Ok(None);
-        }
-        let scale = scale(&engine.gpu) * pixels_per_point;
-        let Some((shaders, shown)) = shown(state, engine, pixels(&state.workspace.sight, scale)) else {
-            return Ok(None);
-        };
+        self.collect(request.modes);
+        let Some(picture) = request.picture.filter(|_| !request.thumbnails.is_empty()) else { return Ok(None) };
+        let gpu = background.gpu().clone();
+        let shown = picture.at_size(pixels(&gpu, request.thumbnail_size, request.pixels_per_point));
         if self.shown.as_ref() != Some(&shown) {
             self.fresh.clear();
             self.asked.clear();
@@ -100,37 +93,32 @@ impl Gallery {
         if self.failed {
             return Ok(None);
         }
-        let is_stale =
-            |mode: &&Mode| state.workspace.sight.thumbnails.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
+        let is_stale = |mode: &&Mode| request.thumbnails.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
         // All modes are split into sets, not only the visible ones, so that scrolling needs no other pipelines.
-        let features = state.session.features();
-        let is_seen = |mode: &&Mode| mode.has_data(features) || state.workspace.sight.thumbnails.contains(&mode.slug);
-        let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&engine.gpu));
+        let is_seen = |mode: &&Mode| mode.has_data(picture.features) || request.thumbnails.contains(&mode.slug);
+        let sets = mode_sets(picture.shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&gpu));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
-            if self.drawn > 0 {
-                emit(&state.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
-            }
+            drawn.thumbnails = std::mem::take(&mut self.drawn);
             return Ok(None);
         }
-        if let Some(left) = time_to_rest(engine, self.since) {
+        if let Some(left) = time_to_rest(background.is_fast(), self.since) {
             return Ok(Some(left));
         }
-        let drawn = self.draw_sets(background, engine, ui, layouts, &shaders, stale);
-        match drawn {
+        match self.draw_sets(background, resources, (ui, layouts), picture, stale, drawn) {
             Err(error) if error.is_shortage() => {
                 self.failed = true;
                 Ok(Some(Duration::ZERO))
             }
-            drawn => drawn,
+            result => result,
         }
     }
 
     /// Reads the samples of the last thumbnails. Those whose range they change are drawn again.
-    fn collect(&mut self, state: &State) {
-        let (Some(renderer), Some(shaders)) = (&mut self.renderer, &state.session.shaders) else { return };
+    fn collect(&mut self, modes: &[Mode]) {
+        let Some(renderer) = &mut self.renderer else { return };
         let changed: Vec<u32> = (0..DRAWS_PER_FRAME).flat_map(|index| renderer.collect(index)).collect();
-        for mode in shaders.modes.iter().filter(|mode| changed.contains(&mode.id)) {
+        for mode in modes.iter().filter(|mode| changed.contains(&mode.id)) {
             self.fresh.remove(&mode.slug);
         }
     }
@@ -138,24 +126,23 @@ impl Gallery {
     fn draw_sets(
         &mut self,
         background: &mut Background,
-        engine: &mut Engine,
-        ui: &mut UiRenderer,
-        layouts: &Arc<SetLayouts>,
-        shaders: &Arc<ShaderSet>,
+        resources: &mut Resources,
+        (ui, layouts): (&mut UiRenderer, &Arc<SetLayouts>),
+        picture: &RestingPicture,
         stale: Vec<Vec<&Mode>>,
+        drawn: &mut Drawn,
     ) -> Result<Option<Duration>, GpuError> {
         let Some(shown) = &self.shown else { return Ok(None) };
-        let draws = if engine.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
-        let BoundSets { ready, missing, is_new } = shown.bind(engine, shaders, stale, &mut self.asked)?;
-        if let Some(pipelines) = engine.resources.pipelines().filter(|_| is_new) {
-            engine.threads.worker.build_thumbnails(pipelines, missing);
-        }
+        let gpu = background.gpu().clone();
+        let draws = if background.is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let BoundSets { ready, missing, is_new } = shown.bind(resources, stale, &mut self.asked)?;
+        drawn.builds.extend(is_new.then_some(Build::Thumbnails(missing)));
         if ready.is_empty() {
             return Ok(None);
         }
-        let rows = (shaders.modes.len() as u32).div_ceil(COLUMNS).max(1);
+        let rows = (picture.shaders.modes.len() as u32).div_ceil(COLUMNS).max(1);
         let size = shown.size;
-        self.provide(&engine.gpu, layouts, ui, (size, rows))?;
+        self.provide(&gpu, layouts, ui, (size, rows))?;
         let (Some(renderer), Some((image, _))) = (&mut self.renderer, &self.atlas) else { return Ok(None) };
         let atlas = image.image().clone();
         let before = if std::mem::replace(&mut self.is_drawn, true) { Use::Sampled } else { Use::Undefined };
@@ -222,14 +209,9 @@ impl Gallery {
     }
 }
 
-/// Pixels of a thumbnail per pixel of the window, along each side.
-fn scale(gpu: &Gpu) -> f32 {
-    if gpu.info().kind == "cpu" { 2.0 } else { 1.0 }
-}
-
-/// Width and height of a thumbnail in pixels.
-fn pixels(sight: &Sight, scale: f32) -> (u32, u32) {
-    let side = |points: f32| ((points * scale).round() as u32).clamp(1, 512);
-    let [width, height] = sight.thumbnail_size;
-    (side(width), side(height))
+/// Width and height of a thumbnail in pixels. A software device draws twice the size along each side.
+fn pixels(gpu: &Gpu, points: [f32; 2], pixels_per_point: f32) -> (u32, u32) {
+    let scale = if gpu.info().kind != "cpu" { 1.0 } else { 2.0 } * pixels_per_point;
+    let [width, height] = points.map(|points| ((points * scale).round() as u32).clamp(1, 512));
+    (width, height)
 }

@@ -8,14 +8,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::background::Background;
-use super::sets::{BoundSets, Shown, shown, time_to_rest};
-use crate::app::actions::inspect::{begin_values, take_texels, take_values, values_complete};
-use crate::app::engine::Engine;
-use crate::app::state::State;
-use crate::frame::{TargetFormat, mode_sets};
+use super::between_request::{BetweenRequest, Build, Collected, Drawn, Inspected};
+use super::sets::{BoundSets, Shown, time_to_rest};
+use crate::frame::mode_sets;
 use crate::gpu::{GpuError, SetLayouts};
-use crate::render::{PixelModes, TexelReadback, Thumbnails, texel_places};
-use crate::shader::{Mode, ShaderSet};
+use crate::render::{PixelModes, Resources, TexelReadback, Thumbnails, texel_places};
+use crate::shader::Mode;
 
 /// Draws of sets of modes after one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
@@ -69,14 +67,12 @@ impl PixelReader {
     }
 
     /// Takes the values of finished draws.
-    pub(super) fn take(&mut self, background: &Background, state: &mut State) {
+    pub(super) fn take(&mut self, background: &Background, collected: &mut Collected) {
         let Some(renderer) = self.renderer.as_ref().filter(|_| background.is_finished()) else { return };
-        if let Some((picture, readback)) = self.texels.take() {
-            take_texels(state, picture, readback.finish());
-        }
+        collected.texels = self.texels.take().map(|(picture, readback)| (picture, readback.finish()));
         for Pending { place, slugs, picture } in std::mem::take(&mut self.pending) {
             if picture == self.picture {
-                take_values(state, picture, slugs.into_iter().zip(renderer.values(place)));
+                collected.values.push((picture, slugs.into_iter().zip(renderer.values(place)).collect()));
             }
         }
     }
@@ -86,29 +82,27 @@ impl PixelReader {
     pub(super) fn draw(
         &mut self,
         background: &mut Background,
-        state: &mut State,
-        engine: &mut Engine,
+        request: &BetweenRequest<'_>,
+        resources: &mut Resources,
         layouts: &Arc<SetLayouts>,
-        (size, mouse): ((u32, u32), Option<(u32, u32)>),
+        drawn: &mut Drawn,
     ) -> Result<Option<Duration>, GpuError> {
-        let inspector = &state.inspection;
-        if !state.workspace.sight.inspector || engine.recorder.is_safe_mode() {
+        let Some(inspector) = &request.inspector else {
             // The device memory is free for other things while the panel is closed.
             (self.renderer, self.shown) = (None, None);
             return Ok(None);
-        }
-        if let Some((x, y)) = mouse {
+        };
+        if let Some((x, y)) = inspector.mouse {
             self.under_mouse = Some([x, y]);
         }
         let at = inspector.pin.or(self.under_mouse.filter(|_| inspector.follows));
-        let Some(at) = at.filter(|at| at[0] < size.0 && at[1] < size.1) else {
+        let Some(at) = at.filter(|at| at[0] < inspector.size.0 && at[1] < inspector.size.1) else {
             self.shown = None;
             return Ok(None);
         };
         let is_dropped = inspector.reading.is_none() && !self.drawn.is_empty();
-        let Some((shaders, mut now)) = shown(state, engine, size) else { return Ok(None) };
-        (now.target, now.gives_numbers) = (TargetFormat::full(1), true);
-        let now = (now, at);
+        let Some(picture) = request.picture else { return Ok(None) };
+        let now = (picture.of_pixels(inspector.size), at);
         if is_dropped || self.shown.as_ref() != Some(&now) {
             if self.shown.as_ref().is_none_or(|(before, _)| *before != now.0) {
                 self.asked.clear();
@@ -120,55 +114,54 @@ impl PixelReader {
         if self.stopped {
             return Ok(None);
         }
-        let features = state.session.features();
-        let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
-        let sets = mode_sets(with_data, Thumbnails::most_at_once(&engine.gpu));
+        let gpu = background.gpu().clone();
+        let sets = mode_sets(picture.modes(), Thumbnails::most_at_once(&gpu));
         let is_stale = |set: &Vec<&Mode>| set.iter().any(|mode| !self.drawn.contains(&mode.slug));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(is_stale).collect();
         if stale.is_empty() {
-            // The panel shows them with the next frame.
-            return Ok(values_complete(state, engine, self.picture).then_some(Duration::ZERO));
+            drawn.inspected = Some(Inspected::All(self.picture));
+            return Ok(None);
         }
-        if let Some(left) = time_to_rest(engine, self.since) {
+        if let Some(left) = time_to_rest(background.is_fast(), self.since) {
             return Ok(Some(left));
         }
-        match self.draw_sets(background, state, engine, layouts, &shaders, stale) {
+        let begins = inspector.reading != Some(self.picture);
+        match self.draw_sets(background, resources, layouts, (stale, begins), drawn) {
             Err(error) if error.is_shortage() => {
                 (self.renderer, self.stopped) = (None, true);
                 self.pending.clear();
                 Ok(Some(Duration::ZERO))
             }
-            drawn => drawn,
+            result => result,
         }
     }
 
     fn draw_sets(
         &mut self,
         background: &mut Background,
-        state: &mut State,
-        engine: &mut Engine,
+        resources: &mut Resources,
         layouts: &Arc<SetLayouts>,
-        shaders: &Arc<ShaderSet>,
-        stale: Vec<Vec<&Mode>>,
+        (stale, begins): (Vec<Vec<&Mode>>, bool),
+        drawn: &mut Drawn,
     ) -> Result<Option<Duration>, GpuError> {
         let Some((shown, at)) = &self.shown else { return Ok(None) };
-        let BoundSets { ready, missing, is_new } = shown.bind(engine, shaders, stale, &mut self.asked)?;
-        if let Some(pipelines) = engine.resources.pipelines().filter(|_| is_new) {
-            engine.threads.worker.build_inspected(pipelines, missing);
-        }
+        let gpu = background.gpu().clone();
+        let BoundSets { ready, missing, is_new } = shown.bind(resources, stale, &mut self.asked)?;
+        drawn.builds.extend(is_new.then_some(Build::Inspected(missing)));
         if ready.is_empty() {
             return Ok(None);
         }
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
-            none => none.insert(PixelModes::new(&engine.gpu, layouts, DRAWS_PER_FRAME)?),
+            none => none.insert(PixelModes::new(&gpu, layouts, DRAWS_PER_FRAME)?),
         };
-        let draws = if engine.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let draws = if background.is_fast() { DRAWS_PER_FRAME } else { 1 };
         let encoder = background.encoder()?;
         for (place, (set, frame)) in ready.iter().take(draws).enumerate() {
-            if begin_values(state, engine, self.picture, *at, &frame.state) {
+            if begins && place == 0 {
+                drawn.inspected = Some(Inspected::Begun(self.picture, *at, frame.state.clone()));
                 let places = texel_places(&frame.state, (at[0], at[1]));
-                let readback = TexelReadback::record(&engine.gpu, encoder, &engine.resources, places)?;
+                let readback = TexelReadback::record(&gpu, encoder, resources, places)?;
                 self.texels = Some((self.picture, readback));
             }
             renderer.draw(encoder, place, frame, (at[0], at[1]))?;

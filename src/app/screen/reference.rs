@@ -3,39 +3,28 @@
 
 use std::sync::Arc;
 
-use super::reference_view::ReferenceView;
+use super::reference_view::{Reference, ReferenceView};
 use super::{FRAMES_IN_FLIGHT, Screen};
-use crate::app::engine::Engine;
-use crate::app::engine::compared::Reference;
-use crate::app::frames::reference::reference;
-use crate::app::state::State;
 use crate::gpu::{Encoder, GpuError, Image};
-use crate::render::{BoundFrame, View};
+use crate::render::View;
 
 impl Screen {
-    /// Allocates what the reference needs beside the picture `live`, and drops it when nothing is compared. Without memory, the
-    /// comparison ends.
-    pub(super) fn prepare_reference(
+    /// Allocates what the reference needs beside the picture, or drops it when nothing is compared. A lack of memory, here or in
+    /// `reference`, ends the comparison and is kept for the end of the frame.
+    pub(in crate::app) fn prepare_reference(
         &mut self,
-        state: &mut State,
-        engine: &mut Engine,
-        live: Option<&BoundFrame>,
+        reference: Result<Option<Reference>, GpuError>,
     ) -> Result<(), GpuError> {
-        let Some(live) = live else { return Ok(()) };
-        let prepared = reference(state, engine, live).and_then(|reference| self.reference_view(engine, reference));
+        let prepared = reference.and_then(|reference| self.reference_view(reference));
         self.reference = self.survive(prepared)?.flatten();
         Ok(())
     }
 
-    fn reference_view(
-        &mut self,
-        engine: &Engine,
-        reference: Option<Reference>,
-    ) -> Result<Option<ReferenceView>, GpuError> {
+    fn reference_view(&mut self, reference: Option<Reference>) -> Result<Option<ReferenceView>, GpuError> {
         let Some(Reference { frame, still, part }) = reference else { return Ok(None) };
         let (mut view, image) = match self.reference.take() {
             Some(ReferenceView { view, image, .. }) => (view, Some(image)),
-            None => (View::new(&engine.gpu, engine.resources.layouts(), FRAMES_IN_FLIGHT)?, None),
+            None => (View::new(&self.gpu, &self.layouts, FRAMES_IN_FLIGHT)?, None),
         };
         let stored = still.as_ref().is_some_and(|(_, still)| still.display.is_some());
         view.override_image = still.as_ref().filter(|_| !stored).map(|(_, still)| still.image.clone());

@@ -9,6 +9,16 @@ use crate::gpu::{Encoder, GpuError, Image, Rect, Use};
 use crate::render::{BoundFrame, Output, Redraw, View};
 use crate::threads::Side;
 
+/// The other picture of a comparison, as a frame draws it.
+pub(in crate::app) struct Reference {
+    /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
+    pub(in crate::app) frame: BoundFrame,
+    /// The picture from a file, with the number of its request.
+    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
+    /// The part of the width that shows it, from the left, 0..1.
+    pub(in crate::app) part: f32,
+}
+
 /// The view of the reference, and the image that it draws to.
 pub(super) struct ReferenceView {
     pub(super) view: View,

@@ -5,12 +5,9 @@ use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::app::engine::Engine;
-use crate::app::frames::progress::awaits_edit;
-use crate::app::state::State;
 use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::gpu::GpuError;
-use crate::render::{BoundFrame, GpuEnvironment};
+use crate::render::{BoundFrame, Resources};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet};
 
@@ -19,17 +16,43 @@ const REST: Duration = Duration::from_millis(150);
 /// The same delay on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
 const REST_ON_CPU: Duration = Duration::from_millis(500);
 
+/// The picture that sets show in other modes: complete, and no edit is under way.
+#[derive(Clone)]
+pub(in crate::app) struct RestingPicture {
+    pub(in crate::app) settings: Arc<Settings>,
+    pub(in crate::app) shaders: Arc<ShaderSet>,
+    pub(in crate::app) scene: Scene,
+    pub(in crate::app) revisions: Revisions,
+    /// Address of the environment on the device.
+    pub(in crate::app) environment: usize,
+    pub(in crate::app) target: TargetFormat,
+    /// `FEATURE_*` bits of the scene, which decide about the modes that have data.
+    pub(in crate::app) features: Option<u32>,
+}
+
+impl RestingPicture {
+    /// The modes that have data.
+    pub(super) fn modes(&self) -> impl Iterator<Item = &Mode> {
+        self.shaders.modes.iter().filter(|mode| mode.has_data(self.features))
+    }
+
+    /// Inputs of sets of `size` pixels.
+    pub(super) fn at_size(&self, size: (u32, u32)) -> Shown {
+        Shown { picture: self.clone(), gives_numbers: false, size }
+    }
+
+    /// Inputs of single pixels, in 32 bits and with numbers.
+    pub(super) fn of_pixels(&self, size: (u32, u32)) -> Shown {
+        let picture = Self { target: TargetFormat::full(1), ..self.clone() };
+        Shown { picture, gives_numbers: true, size }
+    }
+}
+
 /// Everything that the sets show. The mode in the settings makes no difference.
 pub(super) struct Shown {
-    settings: Arc<Settings>,
-    /// Address of the shaders: generation numbers may restart at 1.
-    shaders: usize,
-    scene: Scene,
-    revisions: Revisions,
-    environment: usize,
-    pub(super) target: TargetFormat,
+    picture: RestingPicture,
     /// Whether single pixels are read: modes that show a color for each number give the number.
-    pub(super) gives_numbers: bool,
+    gives_numbers: bool,
     /// Pixels of a picture.
     pub(super) size: (u32, u32),
 }
@@ -44,10 +67,15 @@ pub(super) struct BoundSets<'a> {
 
 impl PartialEq for Shown {
     fn eq(&self, other: &Self) -> bool {
-        let parts = |of: &Self| (of.shaders, of.revisions, of.environment, of.target, of.gives_numbers, of.size);
+        // The address of the shaders: generation numbers may restart at 1.
+        let parts = |of: &Self| {
+            let RestingPicture { shaders, revisions, environment, target, .. } = &of.picture;
+            (Arc::as_ptr(shaders), *revisions, *environment, *target, of.gives_numbers, of.size)
+        };
+        let (a, b) = (&self.picture, &other.picture);
         parts(self) == parts(other)
-            && (Arc::ptr_eq(&self.settings, &other.settings) || self.settings.is_of_other_mode(&other.settings))
-            && self.scene == other.scene
+            && (Arc::ptr_eq(&a.settings, &b.settings) || a.settings.is_of_other_mode(&b.settings))
+            && a.scene == b.scene
     }
 }
 
@@ -58,25 +86,25 @@ impl Shown {
     /// Out of memory.
     pub(super) fn bind<'a>(
         &self,
-        engine: &mut Engine,
-        shaders: &Arc<ShaderSet>,
+        resources: &mut Resources,
         sets: Vec<Vec<&'a Mode>>,
         asked: &mut HashSet<String>,
     ) -> Result<BoundSets<'a>, GpuError> {
+        let RestingPicture { settings, shaders, scene, revisions, target, .. } = &self.picture;
         let inputs = FrameInputs {
-            settings: &self.settings,
+            settings,
             shaders,
-            scene: Some(&self.scene),
-            revisions: self.revisions,
+            scene: Some(scene),
+            revisions: *revisions,
             clock: Clock::default(),
             size: self.size,
-            target: self.target,
+            target: *target,
         };
         let mut bound = BoundSets { ready: Vec::new(), missing: VecDeque::new(), is_new: false };
         for set in sets {
             let frame_state = FrameState::of_modes(&inputs, &set);
             let frame_state = Arc::new(if self.gives_numbers { frame_state.with_numbers() } else { frame_state });
-            match engine.resources.bind(&frame_state, false)?.0 {
+            match resources.bind(&frame_state, false)?.0 {
                 Some(frame) => bound.ready.push((set, frame)),
                 None => {
                     let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
@@ -90,35 +118,7 @@ impl Shown {
 }
 
 /// The time until the picture has been idle for long enough.
-pub(super) fn time_to_rest(engine: &Engine, since: Option<Instant>) -> Option<Duration> {
-    let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
+pub(super) fn time_to_rest(gpu_is_fast: bool, since: Option<Instant>) -> Option<Duration> {
+    let rest = if gpu_is_fast { REST } else { REST_ON_CPU };
     since.and_then(|since| rest.checked_sub(since.elapsed())).filter(|left| !left.is_zero())
-}
-
-/// Returns the inputs of sets that are drawn with `size` pixels. `None` while the shaders or resources of the picture are incomplete.
-pub(super) fn shown(state: &State, engine: &Engine, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
-    let frame_state = state.shown()?;
-    let shaders = state.session.shaders.clone()?;
-    let is_current = frame_state.shaders.generation == shaders.generation;
-    if !is_current || !shaders.is_complete() || awaits_edit(state, engine) {
-        return None;
-    }
-    let environment: *const GpuEnvironment = Arc::as_ptr(engine.resources.environment());
-    let shown = Shown {
-        settings: state.session.shared_settings(),
-        shaders: Arc::as_ptr(&shaders) as usize,
-        scene: state.session.scene()?,
-        revisions: state.session.revisions,
-        environment: environment as usize,
-        target: target(engine, frame_state.pipelines.target),
-        gives_numbers: false,
-        size,
-    };
-    Some((shaders, shown))
-}
-
-/// A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
-/// sample per pixel, which egui halves.
-fn target(engine: &Engine, picture: TargetFormat) -> TargetFormat {
-    if engine.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
 }

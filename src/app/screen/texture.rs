@@ -2,67 +2,84 @@
 
 use std::sync::Arc;
 
-use super::Screen;
-use crate::app::engine::Engine;
-use crate::app::state::State;
-use crate::gpu::{DescriptorSet, Encoder, GpuError, Image, UiImage, Use};
+use super::request::TextureDraw;
+use crate::app::state::workspace::TextureRequest;
+use crate::frame::Scene;
+use crate::gpu::{DescriptorSet, Encoder, Frames, GpuError, Image, UiImage, UiRenderer, Use};
 use crate::render::BoundFrame;
+use crate::render::tools::Tools;
 
 /// Sides of the image that pictures are drawn to, pixels: at least and at most.
 const SIDES: (u32, u32) = (256, 2048);
 
-impl Screen {
-    /// Makes room for the preview that the panel requests in this frame, before egui draws it. SYNC: waits for the frames in
-    /// flight when the panel grows beyond the last image.
-    pub(super) fn prepare_texture(&mut self, state: &mut State, engine: &mut Engine) -> Result<(), GpuError> {
-        let Some(request) = &state.workspace.sight.texture else { return Ok(()) };
-        let side = request.size.0.max(request.size.1).next_power_of_two().clamp(SIDES.0, SIDES.1);
+/// The picture of a texture.
+#[derive(Default)]
+pub(super) struct ShownTexture {
+    image: Option<UiImage>,
+    /// The texture for egui, and the part of it that shows the picture.
+    shown: Option<(egui::TextureId, egui::Rect)>,
+    /// The texture that is read, with its descriptor set.
+    source: Option<(Arc<Image>, Arc<DescriptorSet>)>,
+    /// Request that the image shows, and the scene whose meshes it draws.
+    drawn: Option<(TextureRequest, Option<Scene>)>,
+}
+
+impl ShownTexture {
+    /// The picture for egui, and the part of it that shows the texture.
+    pub(super) fn shown(&self) -> Option<(egui::TextureId, egui::Rect)> {
+        self.shown
+    }
+
+    /// Draws the picture again: the commands of a frame were not submitted.
+    pub(super) fn forget(&mut self) {
+        self.drawn = None;
+    }
+
+    /// Makes room for a picture of this size before egui draws it. SYNC: waits for the frames in flight when the panel grows beyond the
+    /// last image.
+    pub(super) fn prepare(
+        &mut self,
+        (ui, frames): (&mut UiRenderer, &mut Frames),
+        tools: &Tools,
+        (width, height): (u32, u32),
+    ) -> Result<(), GpuError> {
+        let side = width.max(height).next_power_of_two().clamp(SIDES.0, SIDES.1);
         let fits = |image: &UiImage| image.image().desc().width >= side;
-        if self.texture.image.as_ref().is_some_and(fits) {
+        if self.image.as_ref().is_some_and(fits) {
             return Ok(());
         }
-        let Some(tools) = engine.tools() else { return Ok(()) };
-        if let Some(old) = self.texture.image.take() {
-            self.frames.wait_all()?;
-            self.texture.shown = None;
-            self.ui.remove_image(old);
+        if let Some(old) = self.image.take() {
+            frames.wait_all()?;
+            self.shown = None;
+            ui.remove_image(old);
         }
-        self.texture.drawn = None;
-        self.texture.image = Some(self.ui.add_image(&tools.preview_image(side)?)?);
+        self.drawn = None;
+        self.image = Some(ui.add_image(&tools.preview_image(side)?)?);
         Ok(())
     }
 
-    /// Draws the picture if it differs from the last one.
-    pub(super) fn draw_texture(
+    /// Draws the picture if it differs from the last one. Returns whether another frame must follow, to show it or to make room for it.
+    pub(super) fn draw(
         &mut self,
         encoder: &mut Encoder,
-        state: &mut State,
-        engine: &mut Engine,
+        draw: &TextureDraw,
         frame: Option<&BoundFrame>,
-    ) -> Result<(), GpuError> {
-        let Some(request) = state.workspace.sight.texture.clone() else { return Ok(()) };
-        let Some(tools) = engine.tools() else { return Ok(()) };
-        let Some(image) = self.texture.image.as_ref() else {
-            // The next frame starts with one.
-            self.redraws = self.shortage.is_none();
-            return Ok(());
-        };
-        let Some(texture) = engine.resources.texture(&request.source).cloned() else { return Ok(()) };
-        let scene = frame.and_then(|frame| frame.state.scene.clone());
-        let wanted = (request, scene);
-        if self.texture.drawn.as_ref() == Some(&wanted) {
-            return Ok(());
+    ) -> Result<bool, GpuError> {
+        let TextureDraw { tools, texture, request } = draw;
+        let Some(image) = self.image.as_ref() else { return Ok(true) };
+        let scene = frame.and_then(|frame| frame.state.scene.as_ref());
+        if self.drawn.as_ref().is_some_and(|(drawn, of)| (drawn, of.as_ref()) == (request, scene)) {
+            return Ok(false);
         }
-        let is_same = |(before, _): &&(Arc<Image>, Arc<DescriptorSet>)| Arc::ptr_eq(before, &texture);
-        let set = match self.texture.source.as_ref().filter(is_same) {
+        let is_same = |(before, _): &&(Arc<Image>, Arc<DescriptorSet>)| Arc::ptr_eq(before, texture);
+        let set = match self.source.as_ref().filter(is_same) {
             Some((_, set)) => set.clone(),
             None => {
-                let set = tools.texture_set(&texture)?;
-                self.texture.source = Some((texture, set.clone()));
+                let set = tools.texture_set(texture)?;
+                self.source = Some((texture.clone(), set.clone()));
                 set
             }
         };
-        let (request, _) = &wanted;
         let target = (image.image(), Use::Undefined);
         let side = image.image().desc().width;
         let size = (request.size.0.clamp(1, side), request.size.1.clamp(1, side));
@@ -70,9 +87,8 @@ impl Screen {
             tools.draw_texture(encoder, &set, &request.view, &request.meshes, frame, target, size);
         });
         let part = egui::vec2(size.0 as f32 / side as f32, size.1 as f32 / side as f32);
-        self.texture.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
-        self.texture.drawn = Some(wanted);
-        self.redraws = true;
-        Ok(())
+        self.shown = Some((image.texture, egui::Rect::from_min_size(egui::Pos2::ZERO, part)));
+        self.drawn = Some((request.clone(), scene.cloned()));
+        Ok(true)
     }
 }

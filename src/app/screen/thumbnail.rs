@@ -1,48 +1,67 @@
 //! Draws the thumbnails of the versions, one at a time, while the panel that shows them is open.
 
-use super::{PendingThumbnail, Screen};
-use crate::app::engine::Engine;
-use crate::app::frames::picture::missing_thumbnail;
-use crate::app::frames::progress::awaits_edit;
-use crate::app::panels::timeline::THUMBNAIL;
-use crate::app::state::State;
-use crate::app::state::shaders::versions::Thumbnail;
-use crate::gpu::{GpuError, Use};
-use crate::render::{Output, Redraw, View};
+use std::sync::Arc;
 
-impl Screen {
-    /// Draws the next missing thumbnail, unless an edit is under way.
-    pub(super) fn record_thumbnail(&mut self, state: &State, engine: &Engine) -> Result<(), GpuError> {
-        self.lacks_thumbnails &= state.workspace.sight.timeline;
-        if self.thumbnail.is_some() || self.lacks_thumbnails || awaits_edit(state, engine) {
-            return Ok(());
-        }
-        let size = THUMBNAIL * self.egui.pixels_per_point();
-        let Some((number, frame)) = missing_thumbnail(state, engine, (size.x.round() as u32, size.y.round() as u32))
-        else {
-            self.thumbnails = None;
-            return Ok(());
-        };
-        let view = match &mut self.thumbnails {
+use super::background::Background;
+use crate::gpu::{GpuError, SetLayouts, Use};
+use crate::render::{BoundFrame, Capture, Output, Readback, Redraw, View};
+
+/// The thumbnails of versions that are being drawn.
+#[derive(Default)]
+pub(in crate::app) struct VersionThumbnails {
+    /// Draws them while some are missing.
+    view: Option<View>,
+    /// The version, and its thumbnail on the way from the device.
+    pending: Option<(u64, Readback)>,
+    /// Whether none are drawn, because memory is short.
+    is_short: bool,
+}
+
+impl VersionThumbnails {
+    /// Whether the next one can be drawn. `in_sight`: whether their panel is.
+    pub(in crate::app) fn is_free(&mut self, in_sight: bool) -> bool {
+        self.is_short &= in_sight;
+        self.pending.is_none() && !self.is_short
+    }
+
+    /// Releases the view: all thumbnails are there.
+    pub(in crate::app) fn rest(&mut self) {
+        self.view = None;
+    }
+
+    /// Draws none until their panel is opened again.
+    pub(super) fn fail(&mut self) {
+        *self = Self { is_short: true, ..Self::default() };
+    }
+
+    /// The version whose thumbnail is being drawn. It is dropped.
+    pub(super) fn stop(&mut self) -> Option<u64> {
+        self.pending.take().map(|(number, _)| number)
+    }
+
+    /// Draws the thumbnail of a version.
+    pub(super) fn record(
+        &mut self,
+        background: &mut Background,
+        layouts: &Arc<SetLayouts>,
+        (number, frame): &(u64, BoundFrame),
+    ) -> Result<(), GpuError> {
+        let view = match &mut self.view {
             Some(view) => view,
-            none => none.insert(View::new(&engine.gpu, engine.resources.layouts(), 1)?),
+            none => none.insert(View::new(background.gpu(), layouts, 1)?),
         };
-        view.prepare(&frame)?;
+        view.prepare(frame)?;
         let image = view.output_image(frame.state.size)?;
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
-        let encoder = self.background.encoder()?;
-        view.draw(encoder, 0, &frame, &output, Redraw::IfChanged)?;
-        self.thumbnail = view.read_back(encoder, &image)?.map(|readback| PendingThumbnail { number, readback });
+        let encoder = background.encoder()?;
+        view.draw(encoder, 0, frame, &output, Redraw::IfChanged)?;
+        self.pending = view.read_back(encoder, &image)?.map(|readback| (*number, readback));
         Ok(())
     }
 
-    /// Stores a finished thumbnail in its version.
-    pub(super) fn take_thumbnail(&mut self, state: &mut State) {
-        let is_finished = |_: &mut PendingThumbnail| self.background.is_finished();
-        let Some(PendingThumbnail { number, readback }) = self.thumbnail.take_if(is_finished) else { return };
-        let capture = readback.finish();
-        let size = [capture.width as usize, capture.height as usize];
-        let thumbnail = Thumbnail { size, rgba8: capture.rgba8 };
-        state.versions.set_thumbnail(number, thumbnail);
+    /// A finished thumbnail and its version.
+    pub(super) fn take(&mut self, background: &Background) -> Option<(u64, Capture)> {
+        let (number, readback) = self.pending.take_if(|_| background.is_finished())?;
+        Some((number, readback.finish()))
     }
 }

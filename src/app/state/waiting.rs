@@ -56,32 +56,36 @@ pub(in crate::app) struct Shot {
 }
 
 /// The commands that are not done yet, in their order. Each is answered once.
-pub(in crate::app) struct Waiting<S>(Vec<(Reply, Until<S>)>);
+pub(in crate::app) struct Waiting<S> {
+    list: Vec<(Reply, Until<S>)>,
+    /// The capture of the window that the device is copying.
+    copying: Option<Shot>,
+}
 
 impl<S> Default for Waiting<S> {
     fn default() -> Self {
-        Self(Vec::new())
+        Self { list: Vec::new(), copying: None }
     }
 }
 
 impl<S> Waiting<S> {
     pub(in crate::app) fn push(&mut self, reply: Reply, until: Until<S>) {
-        self.0.push((reply, until));
+        self.list.push((reply, until));
     }
 
     pub(in crate::app) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.list.is_empty()
     }
 
     /// All of them; the caller pushes those again that still wait.
     pub(in crate::app) fn take(&mut self) -> Vec<(Reply, Until<S>)> {
-        std::mem::take(&mut self.0)
+        std::mem::take(&mut self.list)
     }
 
     /// Whether a command waits for nothing but another frame. Messages wake the window for all others.
     pub(in crate::app) fn needs_frame(&self) -> bool {
         let needs_frame = |until: &Until<S>| matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_));
-        self.0.iter().any(|(_, until)| needs_frame(until))
+        self.list.iter().any(|(_, until)| needs_frame(until))
     }
 
     /// Answers the commands for which `result` has a result.
@@ -122,7 +126,7 @@ impl<S> Waiting<S> {
         let is_it = |until: &Until<S>| matches!(until, Until::Tree(of) if of == path);
         match result {
             Ok(()) => {
-                self.0.iter_mut().filter(|(_, until)| is_it(until)).for_each(|(_, until)| *until = Until::Reloaded);
+                self.list.iter_mut().filter(|(_, until)| is_it(until)).for_each(|(_, until)| *until = Until::Reloaded);
             }
             Err(message) => self.refuse(is_it, message),
         }
@@ -138,7 +142,7 @@ impl<S> Waiting<S> {
         let is_look = |until: &Until<S>| matches!(until, Until::Look);
         match result {
             Ok(model) => {
-                for (_, until) in self.0.iter_mut().filter(|(_, until)| is_look(until)) {
+                for (_, until) in self.list.iter_mut().filter(|(_, until)| is_look(until)) {
                     *until = model.clone().map_or(Until::SHOWN, Until::Model);
                 }
             }
@@ -177,17 +181,36 @@ impl<S> Waiting<S> {
 
     /// Answers all: the device is lost.
     pub(in crate::app) fn end_all(&mut self) {
+        self.list.extend(self.copying.take().map(|Shot { reply, file }| (reply, Until::Window(file))));
         self.refuse(|_| true, "the graphics device was lost");
     }
 
-    /// Removes the first picture of the screen, or of the window, that is asked for.
-    pub(in crate::app) fn take_shot(&mut self, of_window: bool) -> Option<Shot> {
-        let is = |(_, until): &(Reply, Until<S>)| match until {
-            Until::Screen(_) => !of_window,
-            Until::Window(_) => of_window,
-            _ => false,
-        };
-        match self.0.remove(self.0.iter().position(is)?) {
+    /// Removes the first picture of the screen that is asked for.
+    pub(in crate::app) fn take_shot(&mut self) -> Option<Shot> {
+        self.take_first(|until| matches!(until, Until::Screen(_)))
+    }
+
+    /// Whether a picture of the window is asked for.
+    pub(in crate::app) fn wants_window(&self) -> bool {
+        self.list.iter().any(|(_, until)| matches!(until, Until::Window(_)))
+    }
+
+    /// The device copies the window for the first picture of it that is asked for, or `error` tells why it cannot.
+    pub(in crate::app) fn window_copied(&mut self, error: Option<String>) {
+        let shot = self.take_first(|until| matches!(until, Until::Window(_)));
+        match (shot, error) {
+            (Some(shot), Some(error)) => shot.reply.error(error),
+            (shot, _) => self.copying = shot,
+        }
+    }
+
+    /// The picture of the window whose copy is done.
+    pub(in crate::app) fn take_copied(&mut self) -> Option<Shot> {
+        self.copying.take()
+    }
+
+    fn take_first(&mut self, is: impl Fn(&Until<S>) -> bool) -> Option<Shot> {
+        match self.list.remove(self.list.iter().position(|(_, until)| is(until))?) {
             (reply, Until::Screen(file) | Until::Window(file)) => Some(Shot { reply, file }),
             _ => None,
         }

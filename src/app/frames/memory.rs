@@ -9,14 +9,14 @@ const INTERVAL: Duration = Duration::from_millis(500);
 
 /// The memory in use, and when it was looked up.
 #[derive(Default)]
-pub(in crate::app) struct MemoryClock {
+pub(super) struct MemoryClock {
     known: Option<(Instant, MemoryUse, Option<u64>)>,
 }
 
 impl MemoryClock {
     /// Memory of the device, and resident memory of the process in bytes where the system reports it. The latter is a file of the
     /// kernel, which no disk can delay.
-    pub(in crate::app) fn read(&mut self, gpu: &Gpu) -> (&MemoryUse, Option<u64>) {
+    pub(super) fn read(&mut self, gpu: &Gpu) -> (&MemoryUse, Option<u64>) {
         let old = self.known.take().filter(|(at, ..)| at.elapsed() < INTERVAL);
         let (_, device, process) = self.known.insert(match old {
             Some(known) => known,

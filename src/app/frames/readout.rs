@@ -1,22 +1,18 @@
 //! The value under the mouse, in words.
 
 use crate::app::readings::Readout;
-use crate::frame::FrameState;
+use crate::app::screen::PixelUnderMouse;
 use crate::render::PixelAt;
 use crate::shader::{Mode, PixelValue};
 
-/// The value of a pixel in a picture; `None` where nothing covers the pixel. `exact` is its value in 32 bits if that can be read, and
-/// `None` in it until it has been read.
-pub(in crate::app) fn readout(
-    state: &FrameState,
-    pixel: &PixelAt,
-    exact: Option<Option<PixelValue>>,
-) -> Option<Readout> {
-    let PixelAt { at, value, .. } = pixel;
+/// The value of a pixel; `None` where nothing covers the pixel. `sides`: the names of both sides of a comparison.
+pub(super) fn readout(pixel: &PixelUnderMouse<'_>, sides: Option<[String; 2]>) -> Option<Readout> {
+    let PixelAt { at, value, .. } = &pixel.pixel;
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
-    let mode = state.mode().filter(|_| covered)?;
-    let [value, unit] = texts(mode, value, exact);
-    Some(Readout { side: None, value: value.trim_start().to_owned(), unit, at: *at })
+    let mode = pixel.state.mode().filter(|_| covered)?;
+    let [value, unit] = texts(mode, value, pixel.exact);
+    let side = sides.map(|[earlier, now]| if pixel.is_of_reference { earlier } else { now });
+    Some(Readout { side, value: value.trim_start().to_owned(), unit, at: *at })
 }
 
 /// A pixel's value and its unit: see [`readout`].

@@ -4,9 +4,9 @@
 use egui::{Event, Key};
 use winit::event::WindowEvent;
 
-use super::Screen;
+use super::Interface;
 
-impl Screen {
+impl Interface {
     /// Defers a key until after the next frame if egui has yet to process one that moves the focus, and all events that follow
     /// such a key. Returns an event that need not wait.
     pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {

@@ -1,0 +1,225 @@
+//! Draws the window: runs the panels over the state, has the screen draw the frame that the state describes, and tells the state what came
+//! of it.
+
+use std::time::{Duration, Instant};
+
+use winit::window::Window;
+
+use super::grid::{arrange, prepare_grid};
+use super::memory::MemoryClock;
+use super::picture::next_frame;
+use super::pictures::{take_screenshot, take_shots};
+use super::progress::{moves, set_shortage};
+use super::readings::readings;
+use super::recording::record;
+use super::reference::reference;
+use super::request::frame_request;
+use super::results::{finished, take_background, take_ended, take_measurement, take_results, take_times, timed};
+use super::stages::update_stages;
+use crate::app::actions::select::selected_instances;
+use crate::app::actions::sessions::update_offer;
+use crate::app::actions::watch::watch_files;
+use crate::app::command::execute;
+use crate::app::control::{answer, has_unanswered, wants_window};
+use crate::app::engine::Engine;
+use crate::app::interface::{Interface, Shown};
+use crate::app::screen::{Beginning, Screen};
+use crate::app::state::State;
+use crate::app::state::timing::CpuTimes;
+use crate::cpu_clock::CpuClock;
+use crate::gpu::GpuError;
+use crate::render::Redraw;
+use crate::scene::built_in_pictures;
+use crate::threads::Message;
+
+/// Time until the next attempt at a frame while memory is short.
+const RETRY: Duration = Duration::from_millis(500);
+/// Least time between two frames of a window that others cover, if neither an event nor a command needs one.
+const COVERED: Duration = Duration::from_secs(1);
+/// Time until the next attempt at a frame while the screen releases no image.
+const HIDDEN: Duration = Duration::from_millis(100);
+/// egui needs no repaint if its repaint delay is at least this.
+const NEVER: Duration = Duration::from_secs(3600);
+
+/// The parts of a window that draw, and the times between its frames.
+pub(in crate::app) struct Drawing {
+    pub(in crate::app) screen: Screen,
+    pub(in crate::app) interface: Interface,
+    /// Whether other windows cover this one.
+    pub(in crate::app) is_covered: bool,
+    pub(super) last_frame: Instant,
+    /// When egui wants the next frame.
+    pub(super) due: Option<Instant>,
+    is_first: bool,
+    memory: MemoryClock,
+    /// CPU time of the driver to present the current frame, milliseconds.
+    present_ms: f64,
+}
+
+impl Drawing {
+    pub(in crate::app) fn new(screen: Screen, interface: Interface) -> Self {
+        Self {
+            screen,
+            interface,
+            is_covered: false,
+            last_frame: Instant::now(),
+            due: None,
+            is_first: true,
+            memory: MemoryClock::default(),
+            present_ms: 0.0,
+        }
+    }
+
+    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the last frame
+    /// stays, the window reports it, and the next frame tries again.
+    pub(in crate::app) fn draw(
+        &mut self,
+        window: &Window,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<Option<Duration>, GpuError> {
+        self.present_ms = 0.0;
+        let clock = CpuClock::start();
+        let drawn = self.draw_frame(window, state, engine);
+        clock.into_iter().for_each(|clock| state.timing.used(clock.ms() - self.present_ms));
+        let drawn = self.screen.survive(drawn)?;
+        if drawn.is_none() {
+            self.screen.forget_frame();
+        }
+        let shortage = self.screen.take_shortage();
+        let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
+        let wait = if set_shortage(state, engine, shortage.as_ref()) { Some(Duration::ZERO) } else { wait };
+        Ok(match wait {
+            // Nobody sees a covered window, but what ends with a frame must end.
+            Some(wait) if self.is_covered && wait < COVERED && !has_unanswered(state, engine) => {
+                Some(self.frame_after(COVERED))
+            }
+            wait => wait,
+        })
+    }
+
+    /// Plans the next frame. Returns `wait`.
+    fn frame_after(&mut self, wait: Duration) -> Duration {
+        self.due = Some(Instant::now() + wait);
+        wait
+    }
+
+    /// Draws a frame. Without memory for the targets of a new frame it draws the last one; any other lack of memory is an error.
+    fn draw_frame(
+        &mut self,
+        window: &Window,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<Option<Duration>, GpuError> {
+        if !self.screen.resize(window.inner_size().into())? {
+            state.waiting.fail("the window is minimized, so nothing is drawn");
+            return Ok(None);
+        }
+
+        // The user interface, which determines the rectangle of the picture.
+        let begin = Instant::now();
+        let mut shown = self.run_interface(window, state, engine)?;
+        let cells = arrange(state, &mut self.screen, shown.picture, shown.pixels_per_point);
+        self.screen.take_textures(std::mem::take(&mut shown.textures))?;
+
+        // The picture.
+        let moving = self.advance(state);
+        watch_files(state, engine);
+        let screen = &mut self.screen;
+        if state.playback.take_restart() {
+            screen.view.restart_passes();
+        }
+        let prepared = next_frame(state, engine, screen.rect.size, |frame| screen.view.prepare(frame));
+        let frame = screen.accept(prepared)?;
+        let frame = frame.as_ref();
+        if let Some(live) = frame {
+            screen.prepare_reference(reference(state, engine, live))?;
+        }
+        prepare_grid(state, engine, screen, &cells)?;
+        screen.view.samples_range = state.workspace.shows_histogram && self.interface.panels.visible;
+        screen.place_probe();
+        let measurement = screen.measure_error(state.compare.is_on() && !state.compare.is_held, frame)?;
+        take_ended(state, engine, screen);
+        let measures = take_measurement(state, measurement);
+        if let Some(frame) = frame {
+            take_screenshot(state, engine, screen, frame)?;
+            take_shots(state, engine, screen, frame)?;
+        }
+
+        // Record both to an image of the window.
+        let beginning = screen.begin();
+        take_ended(state, engine, screen);
+        let mut begun = match beginning? {
+            Beginning::Begun(begun) => begun,
+            Beginning::Outdated => return Ok(Some(Duration::ZERO)),
+            Beginning::Hidden => return Ok(Some(self.frame_after(HIDDEN))),
+        };
+        let record_begin = Instant::now();
+        let copies_window = wants_window(state, engine) && !screen.copies_window();
+        let request = frame_request(state, engine, frame, &shown, copies_window);
+        let redraw = request.redraw;
+        let recorded = screen.record(&mut begun, &request)?;
+        if recorded.grid_failed {
+            state.grid.end();
+        }
+        if copies_window {
+            state.waiting.window_copied(recorded.copy_error);
+        }
+        let attempt = record(state, engine, window);
+        let cpu = CpuTimes { ui_ms: shown.ms, record_ms: record_begin.elapsed().as_secs_f64() * 1e3 };
+        self.present_ms = screen.submit(begun, frame, attempt)?;
+        timed(state, screen, frame, cpu);
+
+        answer(state, engine);
+        let reported = finished(state, engine, screen, frame, &mut self.is_first, begin)?;
+        let wait = self.draw_background(state, engine)?;
+        let changes = moving || reported || measures || redraw == Redraw::Always;
+        if self.screen.has_more(frame) || changes || has_unanswered(state, engine) || moves(state) {
+            return Ok(Some(Duration::ZERO));
+        }
+        let delay = shown.delay.filter(|delay| *delay < NEVER);
+        self.due = delay.map(|delay| Instant::now() + delay);
+        Ok(wait.into_iter().chain(delay).min())
+    }
+
+    /// Takes the results of finished frames, runs the panels, and carries out what they ask for.
+    fn run_interface(&mut self, window: &Window, state: &mut State, engine: &mut Engine) -> Result<Shown, GpuError> {
+        let Self { screen, interface, memory, .. } = self;
+        screen.pointer = interface.mouse.over.then_some(interface.mouse.at);
+        screen.read_finished();
+        take_background(state, engine, screen);
+        screen.between.set_unseen(false);
+        take_results(state, engine, screen);
+        screen.fit_thumbnails(state.workspace.sight.thumbnail_size, interface.pixels_per_point())?;
+        take_times(state, screen, engine.gpu_is_fast());
+        if let Some(request) = &state.workspace.sight.texture
+            && let Some(tools) = engine.tools()
+        {
+            screen.prepare_texture(&tools, request.size)?;
+        }
+        update_stages(state, engine);
+        update_offer(state);
+        selected_instances(state);
+        interface.carry_out(&state.workspace.take_requests());
+        let mut shown = interface.run(window, state, readings(state, engine, screen, memory));
+        if shown.wants_pictures {
+            engine.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
+        }
+        state.workspace.sight = std::mem::take(&mut shown.sight);
+        shown.commands.drain(..).for_each(|command| execute(state, engine, command));
+        state.grid.follow(&state.session.settings.mode);
+        // A drag, or a number that is being typed, is one step.
+        state.history.record(&state.session.shared_settings(), shown.is_held);
+        Ok(shown)
+    }
+
+    /// Moves a flying camera and orbiting lights. Returns whether the camera moved.
+    fn advance(&mut self, state: &mut State) -> bool {
+        let seconds = self.last_frame.elapsed().as_secs_f32();
+        self.last_frame = Instant::now();
+        // Limit the step, so that lights do not jump after a pause.
+        state.turn_lights(seconds.min(0.5));
+        let Some((view, model)) = self.screen.camera_view().zip(state.session.placed_model()) else { return false };
+        self.interface.camera.step(&mut state.session.settings.camera, &view, &model.bounds, seconds)
+    }
+}

@@ -1,0 +1,76 @@
+//! Pictures of the screen that keys and commands have asked for: of the picture alone, and of the whole window.
+
+use super::picture::shown_session_state;
+use super::results::take_ended;
+use crate::app::control;
+use crate::app::engine::Engine;
+use crate::app::screen::Screen;
+use crate::app::state::State;
+use crate::events::{Event, emit};
+use crate::gpu::GpuError;
+use crate::picture;
+use crate::render::{BoundFrame, Capture};
+
+/// Writes the screenshot that a key has asked for. It waits for the first picture, and for the range of a mode's values.
+pub(super) fn take_screenshot(
+    state: &mut State,
+    engine: &mut Engine,
+    screen: &mut Screen,
+    frame: &BoundFrame,
+) -> Result<(), GpuError> {
+    if !state.screenshot || screen.lacks_limits(frame) {
+        return Ok(());
+    }
+    state.screenshot = false;
+    match read_picture(state, engine, screen, frame) {
+        Ok(Some(capture)) => write_screenshot(state, &capture),
+        Ok(None) => {}
+        Err(error) if error.is_shortage() => state.say(format!("no screenshot: {error}")),
+        Err(error) => return Err(error),
+    }
+    Ok(())
+}
+
+/// Writes the picture, without panels, to `specula-N.png` in the working directory.
+fn write_screenshot(state: &mut State, capture: &Capture) {
+    match picture::write_numbered(capture, &shown_session_state(state)) {
+        Ok(path) => {
+            let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+            state.say(format!("wrote {}", whole.display()));
+            emit(&state.events, &Event::Screenshot { file: &path.display().to_string() });
+        }
+        Err(message) => state.say(message),
+    }
+}
+
+fn read_picture(
+    state: &mut State,
+    engine: &mut Engine,
+    screen: &mut Screen,
+    frame: &BoundFrame,
+) -> Result<Option<Capture>, GpuError> {
+    let read = screen.read_picture(frame);
+    take_ended(state, engine, screen);
+    read
+}
+
+/// Takes the requested captures of what is on screen. A lack of memory fails only them.
+pub(super) fn take_shots(
+    state: &mut State,
+    engine: &mut Engine,
+    screen: &mut Screen,
+    frame: &BoundFrame,
+) -> Result<(), GpuError> {
+    if screen.lacks_limits(frame) {
+        return Ok(());
+    }
+    for shot in control::take_shots(state, engine) {
+        match read_picture(state, engine, screen, frame) {
+            Ok(Some(capture)) => control::write_shot(state, engine, shot, capture),
+            Ok(None) => shot.reply.error("there is no picture"),
+            Err(error) if error.is_shortage() => shot.reply.error(error.to_string()),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,144 @@
+//! The user interface: egui with the panels, and the window's input for both. It knows neither the engine nor the screen.
+
+mod waiting;
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use egui_winit::accesskit_winit;
+use winit::event::WindowEvent;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::Window;
+
+use super::command::spec::Command;
+use super::commands::Commands;
+use super::context::Context;
+use super::mouse::Mouse;
+use super::panels::{self, Panels, PictureArea};
+use super::readings::Readings;
+use super::state::State;
+use super::state::workspace::{PanelRequest, Sight};
+use super::widgets;
+use crate::gpu::Gpu;
+use crate::scene::CameraController;
+use crate::threads::MessageSender;
+
+/// The user interface of the window.
+pub(super) struct Interface {
+    egui: egui::Context,
+    pub(super) panels: Panels,
+    input: egui_winit::State,
+    /// Events that wait until egui has moved the focus, in their order.
+    waiting: VecDeque<WindowEvent>,
+    /// The part of the picture that no handle between it and a panel covers, in points.
+    free: egui::Rect,
+    pub(super) mouse: Mouse,
+    pub(super) camera: CameraController,
+}
+
+/// What the panels show in a frame, and what they ask for.
+pub(super) struct Shown {
+    pub(super) primitives: Vec<egui::ClippedPrimitive>,
+    pub(super) pixels_per_point: f32,
+    pub(super) textures: egui::TexturesDelta,
+    pub(super) picture: Option<PictureArea>,
+    pub(super) commands: Vec<Command>,
+    pub(super) sight: Sight,
+    /// Whether a value is being dragged or typed.
+    pub(super) is_held: bool,
+    /// Whether the gallery lacks its pictures.
+    pub(super) wants_pictures: bool,
+    /// The time until egui wants a repaint.
+    pub(super) delay: Option<Duration>,
+    /// Time of the panels and of making triangles of them, milliseconds.
+    pub(super) ms: f64,
+}
+
+impl Interface {
+    pub(super) fn new(gpu: &Gpu, window: &Window) -> Self {
+        let egui = egui::Context::default();
+        widgets::theme::apply(&egui);
+        let scale = Some(window.scale_factor() as f32);
+        let largest = Some(gpu.max_image_size() as usize);
+        let input = egui_winit::State::new(egui.clone(), egui::ViewportId::ROOT, window, scale, None, largest);
+        Self {
+            egui,
+            panels: Panels::restored(),
+            input,
+            waiting: VecDeque::new(),
+            free: egui::Rect::NOTHING,
+            mouse: Mouse::default(),
+            camera: CameraController::default(),
+        }
+    }
+
+    /// Registers the window with screen readers. The accessibility tree is built once one connects.
+    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, sender: &MessageSender) {
+        self.input.init_accesskit(event_loop, window, sender.proxy());
+    }
+
+    pub(super) fn on_accessibility(&mut self, event: accesskit_winit::WindowEvent) {
+        match event {
+            accesskit_winit::WindowEvent::InitialTreeRequested => self.egui.enable_accesskit(),
+            accesskit_winit::WindowEvent::ActionRequested(request) => self.input.on_accesskit_action_request(request),
+            accesskit_winit::WindowEvent::AccessibilityDeactivated => self.egui.disable_accesskit(),
+        }
+    }
+
+    pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {
+        self.input.on_window_event(window, event)
+    }
+
+    /// Whether an event belongs to the user interface. egui has `consumed` every event over the tiles, which are one panel to it,
+    /// picture included. Over the picture, only areas above it and a drag that began elsewhere take the mouse.
+    pub(super) fn is_taken(&self, event: &WindowEvent, consumed: bool) -> bool {
+        if !matches!(event, WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. }) {
+            return consumed;
+        }
+        let scale = self.egui.pixels_per_point();
+        let at = egui::Pos2::new(self.mouse.at.x, self.mouse.at.y) / scale;
+        let is_covered = self.egui.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
+        is_covered || self.egui.egui_is_using_pointer() || !self.free.contains(at)
+    }
+
+    /// Whether a list or a menu of egui is open.
+    pub(super) fn has_open_popup(&self) -> bool {
+        egui::Popup::is_any_open(&self.egui)
+    }
+
+    pub(super) fn pixels_per_point(&self) -> f32 {
+        self.egui.pixels_per_point()
+    }
+
+    /// Does what the rest of the window asks panels for.
+    pub(super) fn carry_out(&mut self, requests: &[PanelRequest]) {
+        requests.iter().for_each(|request| self.panels.carry_out(request));
+    }
+
+    /// Runs the panels over the state.
+    pub(super) fn run(&mut self, window: &Window, state: &State, readings: Readings<'_>) -> Shown {
+        let input = self.input.take_egui_input(window);
+        let begin = Instant::now();
+        let (context, mut commands) = (Context::new(state, readings), Commands::new(&state.session.settings));
+        let (mut picture, panels) = (None, &mut self.panels);
+        let output = self.egui.run_ui(input, |ui| picture = Some(panels::show(ui, &context, panels, &mut commands)));
+        let pixels_per_point = output.pixels_per_point;
+        let primitives = self.egui.tessellate(output.shapes, pixels_per_point);
+        let ms = begin.elapsed().as_secs_f64() * 1e3;
+        self.input.handle_platform_output(window, output.platform_output);
+        let (commands, sight) = commands.finish(&state.session.settings);
+        self.free = picture.map_or(self.free, |area: PictureArea| area.free);
+        Shown {
+            primitives,
+            pixels_per_point,
+            textures: output.textures_delta,
+            picture,
+            commands,
+            sight,
+            is_held: self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input(),
+            wants_pictures: std::mem::take(&mut self.panels.open_gallery.wants_pictures),
+            delay: output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay),
+            ms,
+        }
+    }
+}
