@@ -1,5 +1,6 @@
 //! The user interface: egui with the panels, and the window's input for both. It knows neither the engine nor the screen.
 
+mod freshness;
 mod waiting;
 
 use std::collections::VecDeque;
@@ -17,11 +18,16 @@ use super::mouse::Mouse;
 use super::panels::{self, Panels, PictureArea};
 use super::readings::Readings;
 use super::state::State;
+use super::state::waits::Waits;
 use super::state::workspace::{PanelRequest, Sight};
 use super::widgets;
+use crate::frame::Limits;
 use crate::gpu::Gpu;
+use crate::render::PixelAt;
 use crate::scene::CameraController;
+use crate::settings::Settings;
 use crate::threads::MessageSender;
+use freshness::Freshness;
 
 /// The user interface of the window.
 pub(super) struct Interface {
@@ -34,9 +40,23 @@ pub(super) struct Interface {
     free: egui::Rect,
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
+    freshness: Freshness<Followed>,
+    /// What the panels have shown last.
+    pub(super) shown: Shown,
+}
+
+/// What panels show at once although no event tells of it: settings that move by themselves, and what the device has read.
+#[derive(PartialEq)]
+pub(super) struct Followed {
+    pub(super) settings: *const Settings,
+    pub(super) pixel: Option<(PixelAt, bool)>,
+    pub(super) limits: Option<Limits>,
+    pub(super) is_settled: bool,
+    pub(super) waits: Option<Waits>,
 }
 
 /// What the panels show in a frame, and what they ask for.
+#[derive(Default)]
 pub(super) struct Shown {
     pub(super) primitives: Vec<egui::ClippedPrimitive>,
     pub(super) pixels_per_point: f32,
@@ -69,6 +89,8 @@ impl Interface {
             free: egui::Rect::NOTHING,
             mouse: Mouse::default(),
             camera: CameraController::default(),
+            freshness: Freshness::new(),
+            shown: Shown::default(),
         }
     }
 
@@ -78,6 +100,7 @@ impl Interface {
     }
 
     pub(super) fn on_accessibility(&mut self, event: accesskit_winit::WindowEvent) {
+        self.outdate();
         match event {
             accesskit_winit::WindowEvent::InitialTreeRequested => self.egui.enable_accesskit(),
             accesskit_winit::WindowEvent::ActionRequested(request) => self.input.on_accesskit_action_request(request),
@@ -86,6 +109,9 @@ impl Interface {
     }
 
     pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {
+        if *event != WindowEvent::RedrawRequested {
+            self.outdate();
+        }
         self.input.on_window_event(window, event)
     }
 
@@ -115,8 +141,18 @@ impl Interface {
         requests.iter().for_each(|request| self.panels.carry_out(request));
     }
 
+    /// Runs the panels with the next frame: something has happened that they may show.
+    pub(super) fn outdate(&mut self) {
+        self.freshness.outdate();
+    }
+
+    /// Whether what the panels have shown last still holds, so that they need not run.
+    pub(super) fn is_fresh(&self, followed: &Followed) -> bool {
+        self.freshness.is_fresh(followed, Instant::now())
+    }
+
     /// Runs the panels over the state.
-    pub(super) fn run(&mut self, window: &Window, state: &State, readings: Readings<'_>) -> Shown {
+    pub(super) fn run(&mut self, window: &Window, state: &State, readings: Readings<'_>, followed: Followed) {
         let input = self.input.take_egui_input(window);
         let begin = Instant::now();
         let (context, mut commands) = (Context::new(state, readings), Commands::new(&state.session.settings));
@@ -128,7 +164,9 @@ impl Interface {
         self.input.handle_platform_output(window, output.platform_output);
         let (commands, sight) = commands.finish(&state.session.settings);
         self.free = picture.map_or(self.free, |area: PictureArea| area.free);
-        Shown {
+        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
+        self.freshness.ran(followed, begin, delay);
+        self.shown = Shown {
             primitives,
             pixels_per_point,
             textures: output.textures_delta,
@@ -137,8 +175,8 @@ impl Interface {
             sight,
             is_held: self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input(),
             wants_pictures: std::mem::take(&mut self.panels.open_gallery.wants_pictures),
-            delay: output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay),
+            delay,
             ms,
-        }
+        };
     }
 }

@@ -241,6 +241,7 @@ impl ApplicationHandler<Message> for App {
             Message::Pictures(pictures) => open.drawing.interface.panels.open_gallery.take(pictures),
             message => on_message(&mut open.state, &mut open.engine, message),
         }
+        open.drawing.interface.outdate();
         open.window.request_redraw();
     }
 

@@ -1,6 +1,7 @@
 //! Draws the window: runs the panels over the state, has the screen draw the frame that the state describes, and tells the state what came
 //! of it.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::window::Window;
@@ -9,7 +10,7 @@ use super::grid::{arrange, prepare_grid};
 use super::memory::MemoryClock;
 use super::picture::next_frame;
 use super::pictures::{take_screenshot, take_shots};
-use super::progress::{moves, set_shortage};
+use super::progress::{awaits_edit, is_settled, moves, set_shortage};
 use super::readings::readings;
 use super::recording::record;
 use super::reference::reference;
@@ -22,7 +23,7 @@ use crate::app::actions::watch::watch_files;
 use crate::app::command::execute;
 use crate::app::control::{answer, has_unanswered, wants_window};
 use crate::app::engine::Engine;
-use crate::app::interface::{Interface, Shown};
+use crate::app::interface::{Followed, Interface};
 use crate::app::screen::{Beginning, Screen};
 use crate::app::state::State;
 use crate::app::state::timing::CpuTimes;
@@ -88,7 +89,11 @@ impl Drawing {
         }
         let shortage = self.screen.take_shortage();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
-        let wait = if set_shortage(state, engine, shortage.as_ref()) { Some(Duration::ZERO) } else { wait };
+        let is_told = set_shortage(state, engine, shortage.as_ref());
+        if is_told {
+            self.interface.outdate();
+        }
+        let wait = if is_told { Some(Duration::ZERO) } else { wait };
         Ok(match wait {
             // Nobody sees a covered window, but what ends with a frame must end.
             Some(wait) if self.is_covered && wait < COVERED && !has_unanswered(state, engine) => {
@@ -118,9 +123,11 @@ impl Drawing {
 
         // The user interface, which determines the rectangle of the picture.
         let begin = Instant::now();
-        let mut shown = self.run_interface(window, state, engine)?;
+        let has_run = self.run_interface(window, state, engine)?;
+        let textures = std::mem::take(&mut self.interface.shown.textures);
+        let shown = &self.interface.shown;
         let cells = arrange(state, &mut self.screen, shown.picture, shown.pixels_per_point);
-        self.screen.take_textures(std::mem::take(&mut shown.textures))?;
+        self.screen.take_textures(textures)?;
 
         // The picture.
         let moving = self.advance(state);
@@ -156,7 +163,8 @@ impl Drawing {
         };
         let record_begin = Instant::now();
         let copies_window = wants_window(state, engine) && !screen.copies_window();
-        let request = frame_request(state, engine, frame, &shown, copies_window);
+        let shown = &self.interface.shown;
+        let request = frame_request(state, engine, frame, shown, copies_window);
         let redraw = request.redraw;
         let recorded = screen.record(&mut begun, &request)?;
         if recorded.grid_failed {
@@ -166,7 +174,10 @@ impl Drawing {
             state.waiting.window_copied(recorded.copy_error);
         }
         let attempt = record(state, engine, window);
-        let cpu = CpuTimes { ui_ms: shown.ms, record_ms: record_begin.elapsed().as_secs_f64() * 1e3 };
+        let cpu = CpuTimes {
+            ui_ms: if has_run { shown.ms } else { 0.0 },
+            record_ms: record_begin.elapsed().as_secs_f64() * 1e3,
+        };
         self.present_ms = screen.submit(begun, frame, attempt)?;
         timed(state, screen, frame, cpu);
 
@@ -175,23 +186,44 @@ impl Drawing {
         let wait = self.draw_background(state, engine)?;
         let changes = moving || reported || measures || redraw == Redraw::Always;
         if self.screen.has_more(frame) || changes || has_unanswered(state, engine) || moves(state) {
+            if reported || measures {
+                self.interface.outdate();
+            }
             return Ok(Some(Duration::ZERO));
         }
-        let delay = shown.delay.filter(|delay| *delay < NEVER);
+        if !has_run {
+            // The last frame before the window rests shows the panels as they are.
+            self.interface.outdate();
+            return Ok(Some(Duration::ZERO));
+        }
+        let delay = self.interface.shown.delay.filter(|delay| *delay < NEVER);
         self.due = delay.map(|delay| Instant::now() + delay);
         Ok(wait.into_iter().chain(delay).min())
     }
 
-    /// Takes the results of finished frames, runs the panels, and carries out what they ask for.
-    fn run_interface(&mut self, window: &Window, state: &mut State, engine: &mut Engine) -> Result<Shown, GpuError> {
+    /// Takes the results of finished frames, runs the panels, and carries out what they ask for. Returns whether they have run: if nothing
+    /// has happened that they show, the frame shows them as they are.
+    fn run_interface(&mut self, window: &Window, state: &mut State, engine: &mut Engine) -> Result<bool, GpuError> {
         let Self { screen, interface, memory, .. } = self;
         screen.pointer = interface.mouse.over.then_some(interface.mouse.at);
         screen.read_finished();
-        take_background(state, engine, screen);
+        if take_background(state, engine, screen) || screen.between.is_unseen() {
+            interface.outdate();
+        }
         screen.between.set_unseen(false);
         take_results(state, engine, screen);
-        screen.fit_thumbnails(state.workspace.sight.thumbnail_size, interface.pixels_per_point())?;
         take_times(state, screen, engine.gpu_is_fast());
+        let followed = Followed {
+            settings: Arc::as_ptr(&state.session.shared_settings()),
+            pixel: screen.pixel(),
+            limits: screen.view.limits(),
+            is_settled: is_settled(state, engine),
+            waits: state.picture.waits_for().map(|(waits, _)| waits),
+        };
+        if state.waiting.is_empty() && !awaits_edit(state, engine) && interface.is_fresh(&followed) {
+            return Ok(false);
+        }
+        screen.fit_thumbnails(state.workspace.sight.thumbnail_size, interface.pixels_per_point())?;
         if let Some(request) = &state.workspace.sight.texture
             && let Some(tools) = engine.tools()
         {
@@ -201,7 +233,8 @@ impl Drawing {
         update_offer(state);
         selected_instances(state);
         interface.carry_out(&state.workspace.take_requests());
-        let mut shown = interface.run(window, state, readings(state, engine, screen, memory));
+        interface.run(window, state, readings(state, engine, screen, memory), followed);
+        let shown = &mut interface.shown;
         if shown.wants_pictures {
             engine.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
         }
@@ -210,7 +243,7 @@ impl Drawing {
         state.grid.follow(&state.session.settings.mode);
         // A drag, or a number that is being typed, is one step.
         state.history.record(&state.session.shared_settings(), shown.is_held);
-        Ok(shown)
+        Ok(true)
     }
 
     /// Moves a flying camera and orbiting lights. Returns whether the camera moved.

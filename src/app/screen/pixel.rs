@@ -20,6 +20,11 @@ pub(in crate::app) struct PixelUnderMouse<'a> {
 }
 
 impl Screen {
+    /// The newest value under the mouse, and whether it is the reference's.
+    pub(in crate::app) fn pixel(&self) -> Option<(PixelAt, bool)> {
+        self.pixel
+    }
+
     /// The pixel of the picture at a place of the window.
     pub(in crate::app) fn pixel_at(&self, at: Vec2) -> Option<(u32, u32)> {
         let (x, y) = (at.x - self.rect.at.0 as f32, at.y - self.rect.at.1 as f32);
