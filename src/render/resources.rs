@@ -247,21 +247,7 @@ impl Resources {
         let tables = self.tables.get(Some(&state.tables));
         let tables = tables.or_else(|| self.tables.before_edit(|key| key.is_edit_of(&state.tables))).cloned();
         let environment = self.environment_of(state, is_first).cloned();
-        let (Some(tables), Some(environment)) = (tables, environment) else { return Ok(None) };
-        if !adds_suns_of(state, &environment) {
-            return Ok(None);
-        }
-        let key = Self::path_tracing_key(state, &environment);
-        let Some(path_tracing) = self.path_tracing.get(key.as_ref()).cloned() else { return Ok(None) };
-        let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
-        let scene = match &state.scene {
-            Some(scene) => match self.scene_of(scene)? {
-                Some(scene) => Some(scene),
-                None => return Ok(None),
-            },
-            None => None,
-        };
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, path_tracing }))
+        self.bind_in(pipelines, state, tables.zip(environment))
     }
 
     /// Binds `state`, whose shaders are older than the newest, to the pipelines of their own `set`. Light and tables are those of
@@ -281,23 +267,29 @@ impl Resources {
         let environment = of_like.or_else(|| self.environment.get(state.environment.as_ref())).cloned();
         let of_like = like.filter(|like| like.state.tables == state.tables).map(|like| &like.tables);
         let tables = of_like.or_else(|| self.tables.get(Some(&state.tables))).cloned();
-        let measured = self.measured.get(state.measured.as_ref()).cloned();
-        let (Some(environment), Some(tables), Some(measured)) = (environment, tables, measured) else {
+        self.bind_in(pipelines, state, tables.zip(environment))
+    }
+
+    /// Binds `state` in this light. `None` if a resource is missing.
+    fn bind_in(
+        &mut self,
+        pipelines: Arc<BoundPipelines>,
+        state: &Arc<FrameState>,
+        light: Option<(Arc<Tables>, Arc<GpuEnvironment>)>,
+    ) -> Result<Option<BoundFrame>, GpuError> {
+        let Some((tables, environment)) = light.filter(|(_, environment)| adds_suns_of(state, environment)) else {
             return Ok(None);
         };
-        if !adds_suns_of(state, &environment) {
-            return Ok(None);
-        }
         let key = Self::path_tracing_key(state, &environment);
         let Some(path_tracing) = self.path_tracing.get(key.as_ref()).cloned() else { return Ok(None) };
-        let scene = match &state.scene {
-            Some(scene) => self.scene_of(scene)?,
-            None => None,
-        };
-        if scene.is_none() && state.scene.is_some() {
+        let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
+        let scene = state.scene.as_ref().map(|scene| self.scene_of(scene)).transpose()?;
+        // A scene whose model is not uploaded is missing.
+        if matches!(scene, Some(None)) {
             return Ok(None);
         }
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, path_tracing }))
+        let (state, scene) = (state.clone(), scene.flatten());
+        Ok(Some(BoundFrame { state, pipelines, scene, tables, environment, measured, path_tracing }))
     }
 
     /// Creates everything that `state` lacks on this thread, and binds it.
@@ -354,14 +346,9 @@ impl Resources {
     ) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;
         let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        match GpuEnvironment::bake(&set, &key, before, &control) {
-            Ok(environment) => self.set_environment(key, Some(environment)),
-            Err(error) => {
-                self.set_environment(key, None);
-                return Err(error.into());
-            }
-        }
-        Ok(())
+        let baked = GpuEnvironment::bake(&set, &key, before, &control);
+        self.set_environment(key, baked.as_ref().ok().cloned());
+        Ok(baked.map(drop)?)
     }
 
     /// The newest set, if it has the shaders of `state`.
