@@ -9,7 +9,7 @@ use super::{PipelineSet, lock};
 use crate::frame::{PipelineKey, PipelineRequest};
 use crate::gpu::{CompileInfo, ComputePipeline, Executable, GpuError, Pipeline, Specialization};
 use crate::pipeline::bounds::shader_module;
-use crate::shader::{GraphPass, StageKind};
+use crate::shader::GraphPass;
 
 /// A stage in the largest of its pipelines.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -78,7 +78,7 @@ impl PipelineSet {
                 if report.largest.as_ref().is_some_and(|known| known.words >= stage.words) {
                     continue;
                 }
-                let kind = self.shaders.stages.get(&stage.stage).map(|stage| name_of(stage.kind)).unwrap_or_default();
+                let kind = self.shaders.stages.get(&stage.stage).map(|stage| stage.kind.name()).unwrap_or_default();
                 let is_of_stage = |executable: &&Executable| executable.stages.contains(&kind);
                 let of_stage = |all: &[Executable]| all.iter().filter(is_of_stage).cloned().collect();
                 report.largest = Some(InPipeline {
@@ -151,19 +151,5 @@ impl PipelineSet {
             Some(FramePipeline::Compute(pass.clone(), pipeline))
         }));
         found
-    }
-}
-
-/// The name of a kind of stage in [`Executable::stages`].
-fn name_of(kind: StageKind) -> &'static str {
-    match kind {
-        StageKind::Vertex => "vertex",
-        StageKind::TessellationControl => "tessellation control",
-        StageKind::TessellationEvaluation => "tessellation evaluation",
-        StageKind::Geometry => "geometry",
-        StageKind::Task => "task",
-        StageKind::Mesh => "mesh",
-        StageKind::Fragment => "fragment",
-        StageKind::Compute => "compute",
     }
 }

@@ -48,19 +48,22 @@ pub enum StageKind {
 }
 
 impl StageKind {
+    /// All kinds, each with the extension of its files, its name in messages, and the compiler's word for it.
+    const ALL: [(Self, &'static str, &'static str, ShaderKind); 8] = [
+        (Self::Vertex, "vert", "vertex", ShaderKind::Vertex),
+        (Self::TessellationControl, "tesc", "tessellation control", ShaderKind::TessControl),
+        (Self::TessellationEvaluation, "tese", "tessellation evaluation", ShaderKind::TessEvaluation),
+        (Self::Geometry, "geom", "geometry", ShaderKind::Geometry),
+        (Self::Task, "task", "task", ShaderKind::Task),
+        (Self::Mesh, "mesh", "mesh", ShaderKind::Mesh),
+        (Self::Fragment, "frag", "fragment", ShaderKind::Fragment),
+        (Self::Compute, "comp", "compute", ShaderKind::Compute),
+    ];
+
     /// The kind of a file, by its extension.
     pub fn of(path: &TreePath) -> Option<Self> {
-        match path.extension()? {
-            "vert" => Some(Self::Vertex),
-            "tesc" => Some(Self::TessellationControl),
-            "tese" => Some(Self::TessellationEvaluation),
-            "geom" => Some(Self::Geometry),
-            "task" => Some(Self::Task),
-            "mesh" => Some(Self::Mesh),
-            "frag" => Some(Self::Fragment),
-            "comp" => Some(Self::Compute),
-            _ => None,
-        }
+        let extension = path.extension()?;
+        Self::ALL.iter().find(|(_, known, ..)| *known == extension).map(|(kind, ..)| *kind)
     }
 
     /// The stages before the rasterizer, in the order in which they run. A pipeline has some of the first four, or some of the last
@@ -70,30 +73,12 @@ impl StageKind {
 
     /// The name in messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Vertex => "vertex",
-            Self::TessellationControl => "tessellation control",
-            Self::TessellationEvaluation => "tessellation evaluation",
-            Self::Geometry => "geometry",
-            Self::Task => "task",
-            Self::Mesh => "mesh",
-            Self::Fragment => "fragment",
-            Self::Compute => "compute",
-        }
+        Self::ALL[self as usize].2
     }
 
     /// The extension of its files.
     pub fn extension(self) -> &'static str {
-        match self {
-            Self::Vertex => "vert",
-            Self::TessellationControl => "tesc",
-            Self::TessellationEvaluation => "tese",
-            Self::Geometry => "geom",
-            Self::Task => "task",
-            Self::Mesh => "mesh",
-            Self::Fragment => "frag",
-            Self::Compute => "comp",
-        }
+        Self::ALL[self as usize].1
     }
 
     /// Whether its output goes to the rasterizer or to another stage before it.
@@ -112,16 +97,7 @@ impl StageKind {
     }
 
     fn shaderc(self) -> ShaderKind {
-        match self {
-            Self::Vertex => ShaderKind::Vertex,
-            Self::TessellationControl => ShaderKind::TessControl,
-            Self::TessellationEvaluation => ShaderKind::TessEvaluation,
-            Self::Geometry => ShaderKind::Geometry,
-            Self::Task => ShaderKind::Task,
-            Self::Mesh => ShaderKind::Mesh,
-            Self::Fragment => ShaderKind::Fragment,
-            Self::Compute => ShaderKind::Compute,
-        }
+        Self::ALL[self as usize].3
     }
 }
 
