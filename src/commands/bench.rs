@@ -1,30 +1,28 @@
 //! `specula bench reload|frame|load|bake|thumbnails|passes`: measures times on this machine, and prints them with the device's name.
 
 mod args;
+mod context;
 mod edits;
 mod folder;
 mod passes;
 mod samples;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
-use crossbeam_channel::unbounded;
 use serde_json::{Value, json};
 use specula::cpu_clock::CpuClock;
-use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::pipeline::Outcome;
-use specula::scene::{LoadTiming, Model};
-use specula::shader::{Batch, Compiler, Source, TreePath, Watcher};
+use specula::scene::LoadTiming;
+use specula::shader::{Source, TreePath};
 
 use super::common::{check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_json};
 pub use args::Args;
 use args::What;
-use folder::{TempFolder, copy_tree};
+use context::Bench;
 use samples::{ms, round, summary};
 
 /// Width and height of a thumbnail, pixels.
@@ -38,14 +36,15 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     compiler.warm();
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
+    let bench = Bench { args: &args, gpu: &gpu, compiler: &compiler, progress: &progress };
     let mut result = match args.what {
-        What::Reload if args.edits.is_some() => edits::edits(&args, &gpu, &compiler, &progress)?,
-        What::Reload => reload(&args, &gpu, &compiler, &progress)?,
-        What::Frame => frame(&args, &gpu, &compiler, &progress)?,
-        What::Load => load(&args, &gpu, &compiler, (start, &progress))?,
-        What::Bake => bake(&args, &gpu, &compiler, &progress)?,
-        What::Passes => passes::passes(&args, &gpu, &compiler, &progress)?,
-        What::Thumbnails => thumbnails(&args, &gpu, &compiler, &progress)?,
+        What::Reload if args.edits.is_some() => edits::edits(&bench)?,
+        What::Reload => reload(&bench)?,
+        What::Frame => frame(&bench)?,
+        What::Load => load(&bench, start)?,
+        What::Bake => bake(&bench)?,
+        What::Passes => passes::passes(&bench)?,
+        What::Thumbnails => thumbnails(&bench)?,
     };
     drop(progress);
     result["device"] = json!(gpu.info().name);
@@ -60,19 +59,12 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
 
 /// Saves an edited file in a copy of the tree, waits for the watcher, reloads and renders. Times every step, and what is
 /// left to compile when the frame is on screen.
-fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
-    let folder = TempFolder::new()?;
-    copy_tree(&args.common.source()?, &folder.0)?;
-    let source = Source::disk(folder.0.clone());
-    let (sender, batches) = unbounded::<Batch>();
-    let on_batch = move |batch| {
-        let _ = sender.send(batch);
-    };
-    let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
-    let model = args.common.model_silently(args.model.as_deref())?;
-    let mut settings = args.common.settings()?;
+fn reload(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
+    let (folder, _watcher, batches) = bench.watched_copy()?;
+    let (model, mut settings) = (bench.model()?, args.common.settings()?);
     args.common.fit(&model, &mut settings)?;
-    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let mut headless = bench.renderer(Source::disk(folder.0.clone()), settings, model)?;
     headless.render()?;
 
     let path = folder.0.join(&args.edit);
@@ -80,8 +72,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Prog
     let used = TreePath::from(args.edit.as_str());
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms", "rest_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
-    for sample in 0..args.samples {
-        progress.begin("sample", (sample as usize, args.samples as usize), "");
+    for sample in bench.samples() {
         let text = edited(&original, sample + 1);
         let begin = Instant::now();
         std::fs::write(&path, text).map_err(|e| Failure::Input(e.to_string()))?;
@@ -124,14 +115,13 @@ fn edited(text: &str, number: u32) -> String {
 }
 
 /// Times frames of the selected mode, the CPU time of frames that do not change, and the first and second frame of every mode.
-fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
-    let model = args.common.model_silently(args.model.as_deref())?;
+fn frame(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
-    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let mut headless = bench.renderer(source, settings, bench.model()?)?;
     headless.draw()?;
     let (mut wall, mut device, mut passes) = (Vec::new(), Vec::new(), BTreeMap::<String, Vec<f64>>::new());
-    for sample in 0..args.samples {
-        progress.begin("sample", (sample as usize, args.samples as usize), "");
+    for _ in bench.samples() {
         // A still picture is not drawn again, so measure one that turns, too slowly for it to change.
         headless.settings_mut().camera.azimuth += 0.001;
         let begin = Instant::now();
@@ -156,7 +146,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progr
     };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
     for (index, slug) in slugs.iter().enumerate() {
-        progress.begin("mode", (index, slugs.len()), slug);
+        bench.progress.begin("mode", (index, slugs.len()), slug);
         headless.settings_mut().mode.clone_from(slug);
         let begin = Instant::now();
         headless.draw()?;
@@ -181,17 +171,17 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progr
 }
 
 /// Draws all thumbnails of the gallery.
-fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
-    let model = args.common.model_silently(args.model.as_deref())?;
+fn thumbnails(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
     let (source, mut settings) = (args.common.source()?, args.common.settings()?);
     // As the window draws them.
-    let is_cpu = gpu.info().kind == "cpu";
+    let is_cpu = bench.gpu.info().kind == "cpu";
     settings.view.msaa = if is_cpu { 1 } else { settings.view.msaa };
     let size = if is_cpu { THUMBNAIL.map(|side| 2 * side) } else { THUMBNAIL };
-    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let mut headless = bench.renderer(source, settings, bench.model()?)?;
     headless.draw()?;
     let modes = headless.shaders().modes.clone();
-    progress.say("drawing the thumbnails");
+    bench.progress.say("drawing the thumbnails");
     let mut draw = || -> Result<(usize, f64), Failure> {
         let begin = Instant::now();
         let drawn = headless.thumbnails(size.into(), &modes)?.len();
@@ -208,12 +198,8 @@ fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &
 }
 
 /// Loads the model repeatedly, while the shaders compile. Times the first load also from the start of the program.
-fn load(
-    args: &Args,
-    gpu: &Arc<Gpu>,
-    compiler: &Arc<Compiler>,
-    (start, progress): (Instant, &Progress),
-) -> Result<Value, Failure> {
+fn load(bench: &Bench<'_>, start: Instant) -> Result<Value, Failure> {
+    let args = bench.args;
     let device_ms = ms(start);
     let names = [
         "parse_ms",
@@ -228,17 +214,17 @@ fn load(
     ];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     let mut cold_ms = 0.0;
-    for sample in 0..args.samples {
-        progress.begin("sample", (sample as usize, args.samples as usize), "");
+    for sample in bench.samples() {
         let begin = Instant::now();
         let (source, settings) = (args.common.source()?, args.common.settings()?);
         let (mut load_ms, mut timing) = (0.0, LoadTiming::default());
-        let (mut headless, reload) = Headless::start(gpu, compiler, source, settings, args.common.size, |settings| {
-            let model: Model = args.common.model_silently(args.model.as_deref())?;
-            args.common.fit(&model, settings)?;
-            (load_ms, timing) = (ms(begin), model.timing);
-            Ok::<_, Failure>(model)
-        })?;
+        let (mut headless, reload) =
+            Headless::start(bench.gpu, bench.compiler, source, settings, args.common.size, |settings| {
+                let model = bench.model()?;
+                args.common.fit(&model, settings)?;
+                (load_ms, timing) = (ms(begin), model.timing);
+                Ok::<_, Failure>(model)
+            })?;
         if let Outcome::Failed(diagnostics) = reload.outcome {
             return Err(Failure::Shaders(diagnostics));
         }
@@ -280,18 +266,17 @@ fn finish(headless: &mut Headless) -> Result<(), Failure> {
 }
 
 /// Bakes the selected environment repeatedly. The first bake includes the creation of its pipelines.
-fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
-    let model = args.common.model_silently(args.model.as_deref())?;
+fn bake(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     if !settings.environment.is_lit() {
         return Err(Failure::Usage(
             "--env none leaves no environment to bake; use --env studio, sky, furnace or a file".into(),
         ));
     }
-    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let mut headless = bench.renderer(source, settings, bench.model()?)?;
     let (mut table, mut from_disk) = (BTreeMap::<String, Vec<f64>>::new(), Vec::new());
-    for sample in 0..args.samples {
-        progress.begin("sample", (sample as usize, args.samples as usize), "");
+    for _ in bench.samples() {
         headless.bake(false)?;
         let report = serde_json::to_value(headless.bake_report()).unwrap_or_default();
         for (name, value) in report.as_object().into_iter().flatten() {

@@ -6,22 +6,18 @@
 //! its code; `shader::incremental` has the numbers.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
-use crossbeam_channel::{Receiver, unbounded};
+use crossbeam_channel::Receiver;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::pipeline::Outcome;
-use specula::shader::{Batch, Change, Compiler, Source, Watcher};
+use specula::shader::{Batch, Change, Source};
 
-use super::args::Args;
-use super::folder::{TempFolder, copy_tree};
+use super::context::Bench;
 use super::samples::{ms, round, summary};
 use crate::commands::Failure;
-use crate::commands::progress::Progress;
 
 #[derive(Deserialize)]
 struct List {
@@ -89,30 +85,19 @@ fn check(outcome: Outcome) -> Result<(), Failure> {
 }
 
 /// Replays the list `--samples` times.
-pub(super) fn edits(
-    args: &Args,
-    gpu: &Arc<Gpu>,
-    compiler: &Arc<Compiler>,
-    progress: &Progress,
-) -> Result<Value, Failure> {
+pub(super) fn edits(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
     let list = read(args.edits.as_deref().unwrap_or(Path::new("")))?;
-    let folder = TempFolder::new()?;
-    copy_tree(&args.common.source()?, &folder.0)?;
-    let (sender, batches) = unbounded::<Batch>();
-    let on_batch = move |batch| {
-        let _ = sender.send(batch);
-    };
-    let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
-    let model = args.common.model_silently(args.model.as_deref())?;
+    let (folder, _watcher, batches) = bench.watched_copy()?;
     let (source, settings) = (Source::disk(folder.0.clone()), args.common.settings()?);
-    let (headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let headless = bench.renderer(source, settings, bench.model()?)?;
     let mut replay = Replay { headless, root: folder.0.clone(), batches };
     // Each edit's times, with incremental compilation and without.
     let mut times: Vec<[Vec<f64>; 2]> = list.iter().map(|_| Default::default()).collect();
     let mut number = 100;
     for sample in 0..args.samples as usize {
         for (index, (edit, times)) in list.iter().zip(&mut times).enumerate() {
-            progress.begin("edit", (index, list.len()), &edit.file);
+            bench.progress.begin("edit", (index, list.len()), &edit.file);
             replay.headless.settings_mut().mode.clone_from(&edit.mode);
             replay.headless.draw()?;
             // Whoever comes second may find warm caches.

@@ -1,20 +1,17 @@
 //! `specula bench passes`: what declared passes cost a frame.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::scene::Model;
 use specula::settings::Settings;
-use specula::shader::{Compiler, Source};
+use specula::shader::Source;
 
-use super::args::Args;
+use super::context::Bench;
 use super::folder::{TempFolder, copy_tree};
 use super::samples::{ms, round, summary};
 use crate::commands::Failure;
-use crate::commands::progress::Progress;
 
 /// The passes that the picture is drawn with, as `--set` takes them.
 const WITH: [&str; 3] = ["SHADOWS=Hard", "AMBIENT_OCCLUSION=true", "BLOOM=true"];
@@ -22,24 +19,19 @@ const WITH: [&str; 3] = ["SHADOWS=Hard", "AMBIENT_OCCLUSION=true", "BLOOM=true"]
 const MANY: usize = 100;
 
 /// Times frames in turn: with the current settings, with [`WITH`], and with [`MANY`] passes of one pixel that read each other.
-pub(super) fn passes(
-    args: &Args,
-    gpu: &Arc<Gpu>,
-    compiler: &Arc<Compiler>,
-    progress: &Progress,
-) -> Result<Value, Failure> {
+pub(super) fn passes(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let args = bench.args;
     let folder = TempFolder::new()?;
     copy_tree(&args.common.source()?, &folder.0)?;
     for index in 0..MANY {
         let path = folder.0.join(format!("passes/chain_{index}.frag"));
         std::fs::write(path, pass_of_chain(index)).map_err(|e| Failure::Input(e.to_string()))?;
     }
-    let model = args.common.model_silently(args.model.as_deref())?;
-    let settings = args.common.settings()?;
+    let (model, settings) = (bench.model()?, args.common.settings()?);
     let mut more = settings.clone();
     WITH.iter().try_for_each(|set| more.assign(set)).map_err(Failure::Usage)?;
     let renderer = |source: Source, settings: Settings, model: Model| -> Result<Headless, Failure> {
-        let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+        let mut headless = bench.renderer(source, settings, model)?;
         headless.draw()?;
         Ok(headless)
     };
@@ -51,8 +43,7 @@ pub(super) fn passes(
     let mut samples: [Vec<f64>; 3] = Default::default();
     // Wall time minus device time; empty on a device that does not measure.
     let mut cpu: [Vec<f64>; 3] = Default::default();
-    for sample in 0..args.samples {
-        progress.begin("sample", (sample as usize, args.samples as usize), "");
+    for _ in bench.samples() {
         for ((headless, list), cpu) in renderers.iter_mut().zip(&mut samples).zip(&mut cpu) {
             headless.settings_mut().camera.azimuth += 0.001;
             let begin = Instant::now();
