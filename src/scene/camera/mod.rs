@@ -1,138 +1,21 @@
 //! The camera: framing and matrices.
 
 mod controller;
+mod framing;
 mod motion;
+mod view;
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 pub use controller::CameraController;
 pub use motion::{FlyCamera, OrbitCamera};
+pub use view::{CameraView, Parallel};
 
-use crate::scene::model::{Bounds, Camera, Lens, Model};
+use crate::scene::model::{Lens, Model};
 use crate::settings::CameraSettings;
-
-/// The framed model fills this fraction of the picture's width or height.
-const FILL: f32 = 1.0 / 1.08;
-/// Larger coordinates of eye and target overflow when squared.
-const FARTHEST: f32 = 1e18;
-/// A parallel projection is a perspective from as many radii, or heights of the picture, away: sizes then differ by 0.2 % over a radius,
-/// and all that follows rays from an eye needs no second kind of them.
-const PARALLEL: f32 = 500.0;
-/// Largest height of a parallel projection, meters.
-const HIGHEST: f32 = 1e9;
-/// Smallest and largest field of view of a camera of the model, radians.
-const LENSES: (f32, f32) = (1e-3, 3.1);
-/// Field of view if the setting is not finite, degrees.
-const DEFAULT_FOVY_DEG: f32 = 35.0;
-
-/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or [`view_of`], which
-/// never return a degenerate view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraView {
-    /// Position.
-    pub eye: Vec3,
-    /// The point looked at; never equal to `eye`.
-    pub target: Vec3,
-    /// Up in the picture: unit, perpendicular to the viewing direction.
-    pub up: Vec3,
-    /// Vertical field of view, radians.
-    pub fovy_rad: f32,
-    /// Width over height.
-    pub aspect: f32,
-    /// Near plane distance, meters.
-    pub near: f32,
-    /// Distance beyond which the model has no point, meters. (The projection itself is infinite.)
-    pub far: f32,
-    /// For a parallel projection, which is a perspective from far away.
-    pub parallel: Option<Parallel>,
-}
-
-/// Parameters of a parallel projection.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parallel {
-    /// Height of the picture, meters.
-    pub height: f32,
-    /// Distance from the target to the plane of the eye, behind which nothing is shown, meters.
-    pub distance: f32,
-}
-
-impl CameraView {
-    /// A view of a model with these bounds. Values that are not finite, or that give no direction, are replaced so that
-    /// the model is visible. The near plane is as far away as the bounds allow.
-    pub fn new(eye: Vec3, target: Vec3, fovy_rad: f32, aspect: f32, bounds: &Bounds) -> Self {
-        let radius = bounds.radius();
-        let usable = |point: Vec3| point.abs().max_element() <= FARTHEST && point.is_finite();
-        let target = if usable(target) { target } else { bounds.center() };
-        let apart = usable(eye) && (target - eye).try_normalize().is_some();
-        // Far from the origin a radius can be smaller than the spacing of floats.
-        let eye = if apart { eye } else { target + Vec3::Z * radius.max(target.length() * 1e-3) };
-        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
-        let center_distance = (bounds.center() - eye).length();
-        let least = radius * 1e-3;
-        let near = (center_distance - radius).max(least);
-        Self {
-            eye,
-            target,
-            up: upright(forward),
-            fovy_rad: sane_fovy(fovy_rad),
-            aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
-            near,
-            far: (center_distance + radius).max(near * 2.0),
-            parallel: None,
-        }
-    }
-
-    /// The view of one of the model's cameras. The target is at the depth of the model's center, which suits orbiting.
-    /// If the center is behind the camera or too close to orbit around, the target is one radius ahead.
-    fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
-        let depth = camera.forward.dot(bounds.center() - camera.eye);
-        let depth = if depth > bounds.radius() * 1e-2 { depth } else { bounds.radius() };
-        Self::new(camera.eye, camera.eye + camera.forward * depth, 0.0, aspect, bounds).upright_as(camera.up)
-    }
-
-    fn upright_as(self, up: Vec3) -> Self {
-        Self { up: up.reject_from_normalized(self.forward()).normalize_or(self.up), ..self }
-    }
-
-    /// The same with another projection. A parallel one shows nothing behind the eye, either.
-    fn through(self, lens: Lens, bounds: &Bounds) -> Self {
-        match lens {
-            Lens::Perspective { fovy } => Self { fovy_rad: fovy.clamp(LENSES.0, LENSES.1), ..self },
-            Lens::Orthographic { height } => {
-                let distance = PARALLEL * bounds.radius().max(height.min(HIGHEST));
-                let parallel = Parallel { height, distance: self.eye.distance(self.target) };
-                let plane = distance - parallel.distance;
-                let eye = self.target - self.forward() * distance;
-                let far = Self::new(eye, self.target, 0.0, self.aspect, bounds);
-                let fovy_rad = 2.0 * (0.5 * height / distance).atan();
-                let (near, most) = (far.near.max(plane), far.far.max(plane * 2.0));
-                Self { up: self.up, fovy_rad, near, far: most, parallel: Some(parallel), ..far }
-            }
-        }
-    }
-
-    /// Whether the picture is turned about the viewing direction.
-    fn is_rolled(&self) -> bool {
-        self.up.distance(upright(self.forward())) > 1e-4
-    }
-
-    /// Viewing direction, unit.
-    pub fn forward(&self) -> Vec3 {
-        (self.target - self.eye).normalize_or(Vec3::NEG_Z)
-    }
-
-    /// World to view space: the camera looks along -Z, +Y is up.
-    pub fn view_from_world(&self) -> Mat4 {
-        glam::camera::rh::view::look_to_mat4(self.eye, self.forward(), self.up)
-    }
-
-    /// World to Vulkan's clip space: +Y down, depth 1 at the near plane and 0 at infinity (reversed, for float depth).
-    pub fn clip_from_world(&self) -> Mat4 {
-        let clip_from_view =
-            glam::camera::rh::proj::vulkan::perspective_infinite_reverse(self.fovy_rad, self.aspect, self.near);
-        clip_from_view * self.view_from_world()
-    }
-}
+pub(super) use framing::direction;
+use framing::frame;
+use view::HIGHEST;
 
 /// The view of a model according to the settings: that of the camera that they name, if the model has it, or else one that frames the model.
 pub fn view_of(model: &Model, settings: &CameraSettings, aspect: f32) -> CameraView {
@@ -154,95 +37,11 @@ pub fn view_of(model: &Model, settings: &CameraSettings, aspect: f32) -> CameraV
     lens.map_or(view, |lens| view.through(lens, bounds))
 }
 
-/// The view without a camera of the model. Without `eye`, this fits the model's outline (or its bounding box) into the
-/// picture with a margin, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
-fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> CameraView {
-    let corners = bounds.corners();
-    let outline = if outline.is_empty() { &corners } else { outline };
-    let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
-    let fovy_rad = sane_fovy(settings.fovy.to_radians());
-    let number = |degrees: f32| if degrees.is_finite() { degrees.to_radians() } else { 0.0 };
-    let (framed_eye, framed_target) =
-        fit(bounds, outline, number(settings.azimuth), number(settings.elevation), fovy_rad, aspect);
-    let (eye, target) = match (settings.eye.map(Vec3::from), settings.target.map(Vec3::from)) {
-        (None, None) => (framed_eye, framed_target),
-        (None, Some(target)) => (target + (framed_eye - framed_target), target),
-        (Some(eye), None) => (eye, bounds.center()),
-        (Some(eye), Some(target)) => (eye, target),
-    };
-    let mut view = CameraView::new(eye, target, fovy_rad, aspect, bounds);
-    if settings.eye.is_none() {
-        // When looking straight down, the azimuth still determines which direction is up.
-        let (_, _, up) = basis(number(settings.azimuth), number(settings.elevation));
-        view.up = up.reject_from_normalized(view.forward()).normalize_or(view.up);
-    }
-    view
-}
-
-/// Unit vectors back (towards the eye), right and up.
-fn basis(azimuth_rad: f32, elevation_rad: f32) -> (Vec3, Vec3, Vec3) {
-    let (sin_a, cos_a) = azimuth_rad.sin_cos();
-    let back = direction(azimuth_rad, elevation_rad);
-    let right = Vec3::new(cos_a, 0.0, -sin_a);
-    (back, right, back.cross(right))
-}
-
-/// Unit vector at an azimuth (from +Z towards +X) and an elevation above the horizon.
-pub(super) fn direction(azimuth_rad: f32, elevation_rad: f32) -> Vec3 {
-    let (sin_a, cos_a) = azimuth_rad.sin_cos();
-    let (sin_e, cos_e) = elevation_rad.sin_cos();
-    Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
-}
-
-/// Eye and target at which the points just fit. In camera space, with t the tangent of half the usable angle, a point
-/// (x, z) is inside if |x - eye.x| <= t (eye.z - z). These are two linear bounds per axis; the closest eye meets both
-/// with equality.
-fn fit(
-    bounds: &Bounds,
-    points: &[Vec3],
-    azimuth_rad: f32,
-    elevation_rad: f32,
-    fovy_rad: f32,
-    aspect: f32,
-) -> (Vec3, Vec3) {
-    let (back, right, up) = basis(azimuth_rad, elevation_rad);
-    let center = bounds.center();
-    let tan_y = (fovy_rad * 0.5).tan() * FILL;
-    let tan_x = tan_y * aspect;
-    // If there is nothing to fit, or a single point, this fits a sphere of radius 1.
-    let solid = !bounds.is_empty() && (bounds.max - bounds.min).max_element() > 0.0;
-    if !solid {
-        return (center + back * (bounds.radius() / tan_y.min(tan_x)).max(1.0), center);
-    }
-    let axis = |side: Vec3, tan: f32| {
-        let most = |sign: f32| {
-            let reach = |point: &Vec3| sign * (*point - center).dot(side) + tan * (*point - center).dot(back);
-            points.iter().map(reach).fold(f32::NEG_INFINITY, f32::max)
-        };
-        let (high, low) = (most(1.0), most(-1.0));
-        ((high - low) * 0.5, (high + low) / (2.0 * tan))
-    };
-    let (x, distance_x) = axis(right, tan_x);
-    let (y, distance_y) = axis(up, tan_y);
-    let target = center + right * x + up * y;
-    (target + back * distance_x.max(distance_y), target)
-}
-
-/// Up in the picture for a viewing direction: +Y projected, or a fixed vector when looking straight up or down.
-fn upright(forward: Vec3) -> Vec3 {
-    let fallback = if forward.y < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
-    let up = Vec3::Y.reject_from_normalized(forward);
-    if up.length() > 1e-4 { up.normalize() } else { fallback.reject_from_normalized(forward).normalize_or(fallback) }
-}
-
-fn sane_fovy(fovy_rad: f32) -> f32 {
-    let fovy_rad = if fovy_rad.is_finite() { fovy_rad } else { DEFAULT_FOVY_DEG.to_radians() };
-    fovy_rad.clamp(1_f32.to_radians(), 170_f32.to_radians())
-}
-
 #[cfg(test)]
 mod tests {
+    use super::framing::FILL;
     use super::*;
+    use crate::scene::model::{Bounds, Camera};
 
     fn cube() -> Bounds {
         Bounds { min: Vec3::new(-1.0, 0.0, -0.5), max: Vec3::new(3.0, 2.0, 0.5) }

@@ -29,6 +29,7 @@ mod mode_list;
 mod name;
 mod parameter;
 mod parse;
+mod parse_pass;
 pub mod pass;
 pub mod place;
 mod resolve;

@@ -2,7 +2,8 @@
 
 use super::cursor::Cursor;
 use super::mode::{Mode, mode};
-use super::pass::{self, PassDesc};
+use super::parse_pass::pass;
+use super::pass::PassDesc;
 use super::place::Place;
 use super::texture::{self, TextureDesc};
 use super::ui::{Ui, ui};
@@ -57,7 +58,7 @@ fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<F
             let ui = ui(&mut cursor, declaration)?;
             Ok(Found::Ui(Ui { place, ..ui }))
         }
-        "pass" => pass::pass(&mut cursor).map(Found::Pass),
+        "pass" => pass(&mut cursor).map(Found::Pass),
         "texture" => texture::texture(&mut cursor).map(Found::Texture),
         _ => {
             let hint = did_you_mean(kind, ["mode", "ui", "pass", "texture"]);

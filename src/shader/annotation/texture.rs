@@ -21,7 +21,7 @@ pub enum Wrap {
 }
 
 /// A declared texture: one or more image files of the tree.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct TextureDesc {
     /// Name in GLSL.
     pub name: String,
@@ -66,19 +66,7 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureDesc, Box<Diagnostic>> 
     if image.trim().is_empty() {
         return Err(cursor.error(start..cursor.position(), "expected the name of the image's file in the quotes"));
     }
-    let place = cursor.place().clone();
-    let mut desc = TextureDesc {
-        name,
-        image,
-        declared_in: String::new(),
-        srgb: true,
-        wrap: Wrap::Repeat,
-        mips: false,
-        nearest: [false; 2],
-        flip: false,
-        layers: None,
-        place,
-    };
+    let mut desc = TextureDesc { name, image, srgb: true, place: cursor.place().clone(), ..TextureDesc::default() };
     while !cursor.at_end() {
         let (bytes, word) = cursor.key();
         match word {

@@ -15,6 +15,7 @@ mod adapt;
 mod beside;
 mod channel;
 mod declared;
+mod drawing;
 mod explain;
 mod initial;
 mod noise;
@@ -30,38 +31,24 @@ use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{code, includes};
 use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
-use channel::{Channel, Kind, channel_of, channels};
-use declared::{BEFORE, Variable, assignments, globals, narrowed, outputs, sliders, variables};
+use channel::{Channel, channels};
+use declared::{Variable, assignments, globals, narrowed, outputs, sliders, variables};
+use drawing::{BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
 /// The folder of the stages.
 const STAGES: &str = "passes";
-/// The image of a channel that names none.
-const NOISE: &str = "opened/noise.png";
-/// The pass that draws the state of the keys, for files that read it.
-const KEYBOARD: &str = "toy_keyboard";
 /// The library with the sliders for uniforms.
 const SLIDERS: &str = "toy/sliders.glsl";
 /// The pass that shows the image of a file that reads its own image of the previous frame.
 const SHOWN: &str = "toy_shown";
-/// Shadertoy has four buffers.
-const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buffer_d"];
 
 /// An opened file.
 #[derive(Clone, Debug)]
 pub struct Toy {
     /// Absolute.
     file: PathBuf,
-}
-
-/// A file that draws an image.
-struct Drawing {
-    /// The name of its pass.
-    pass: String,
-    /// The file, relative to the folder.
-    file: String,
-    text: String,
 }
 
 impl Toy {
@@ -353,83 +340,6 @@ impl Toy {
         }
         if own.is_empty() { out } else { out + &assignments(&own) }
     }
-}
-
-/// Whether the last drawing's image of the previous frame is read, so that it cannot be drawn to the picture itself.
-fn keeps_image(drawings: &[Drawing]) -> bool {
-    let Some(image) = drawings.last() else { return false };
-    let reads = |drawing: &Drawing| {
-        let is_own = drawing.file == image.file;
-        channels(&drawing.text).iter().any(|(_, channel)| match channel {
-            Channel::This => is_own,
-            Channel::Drawing(file) => *file == image.file,
-            Channel::Image(..) | Channel::Keyboard => false,
-        })
-    };
-    drawings.iter().any(reads) || BEFORE.iter().any(|name| uses(&image.text, name))
-}
-
-/// Declares the channels that a drawing, or the text that all files share, uses.
-fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
-    let Drawing { pass, text, .. } = &drawings[index];
-    let named = channels(text);
-    let (mut lines, mut sizes) = (BTreeSet::new(), Vec::new());
-    for (number, buffer) in BUFFERS.iter().enumerate() {
-        let name = format!("iChannel{number}");
-        let aliases = aliases(text, number);
-        if aliases.is_empty() && !uses(text, &name) && !uses(shared, &name) {
-            sizes.push("vec3(0.0)".to_owned());
-            continue;
-        }
-        let mut kind = Kind::Flat;
-        // A channel reads what was drawn earlier in this frame, or otherwise the previous frame.
-        let of_frame = |place: usize| match place < index {
-            true => drawings[place].pass.clone(),
-            false => format!("before_{}", drawings[place].pass),
-        };
-        let drawn = |is_it: &dyn Fn(&Drawing) -> bool| drawings.iter().position(is_it).map(of_frame);
-        let sampler = match named.iter().find(|(channel, _)| *channel == number).map(|(_, channel)| channel) {
-            Some(Channel::This) => Some(format!("before_{pass}")),
-            Some(Channel::Drawing(file)) => drawn(&|drawing| drawing.file == *file),
-            Some(Channel::Image(_, sampler)) => {
-                kind = sampler.kind;
-                Some(adapt::texture_name(pass, number))
-            }
-            Some(Channel::Keyboard) => Some(KEYBOARD.to_owned()),
-            None => drawn(&|drawing| drawing.pass == *buffer),
-        };
-        let sampler = sampler.unwrap_or_else(|| {
-            lines.insert(format!("//@texture {pass}_noise \"{NOISE}\" linear mips\n"));
-            lines.insert("#include \"toy/kinds.glsl\"\n".to_owned());
-            format!("{pass}_noise")
-        });
-        sizes.push(match kind {
-            Kind::Volume => format!("vec3(textureSize({name}, 0))"),
-            Kind::Flat | Kind::Cube => format!("vec3(textureSize({name}, 0), 1.0)"),
-        });
-        lines.insert(format!("uniform {} {sampler};\n", kind.glsl()));
-        lines.extend(aliases.iter().chain([&name]).map(|name| format!("#define {name} {sampler}\n")));
-    }
-    for name in BEFORE.iter().filter(|name| uses(text, name)) {
-        lines.insert(format!("uniform sampler2D before_{pass};\n#define {name} before_{pass}\n"));
-    }
-    if has_key_functions(text) || has_key_functions(shared) {
-        lines.insert(format!("uniform sampler2D {KEYBOARD};\n"));
-    }
-    lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
-    lines.into_iter().collect()
-}
-
-/// The samplers and sizes of glslViewer's names that a text declares for a channel: `u_tex0`, `u_tex0Resolution`.
-fn aliases(text: &str, number: usize) -> Vec<String> {
-    let code = code(text);
-    let declared = declared::declarations(&code).into_iter().flat_map(|declaration| declaration.names);
-    let of_channel = declared.map(|name| name.text.strip_suffix("Resolution").unwrap_or(name.text));
-    let mut names: Vec<String> =
-        of_channel.filter(|name| channel_of(name) == Some(number)).map(str::to_owned).collect();
-    names.retain(|name| !declared::has_texture(text, name));
-    names.dedup();
-    names
 }
 
 /// The name of the pass of a file other than Shadertoy's buffers.
