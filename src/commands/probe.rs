@@ -25,7 +25,7 @@ use super::{Failure, print_json, tell_left_out};
     Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage. Angles are in degrees. Where the \
     picture shows a color for each number (triangle, front or back, NaN), the number or its meaning is printed.\n\
     In JSON, a value is [r, g, b, coverage], or, for modes that show a color for each number, that number or its name; null: the mode has no data at the pixel; \
-    \"NaN\": the value is NaN or infinite. `not_finite` is then the first statement that made NaN or infinity.\n\
+    \"NaN\": the value is NaN or infinite. `not_finite` is then the first statement that made NaN or infinity, with the components of its value.\n\
     The pixel has one sample in its center: view.msaa is 1, so that no edge mixes two surfaces. An accumulating mode is the mean of \
     view.frames frames.\n\
     Where there is no model, as in a Shadertoy file, passes have values: `pass:image` is what is shown.\n\

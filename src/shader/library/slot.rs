@@ -104,17 +104,9 @@ impl Stage {
         self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Compiles a stage as a whole, of a text that takes the place of another with these dependencies.
-    pub(in crate::shader) fn compile(
-        compiler: &Compiler,
-        snapshot: &Snapshot<'_>,
-        path: &TreePath,
-        dependencies: &BTreeSet<TreePath>,
-    ) -> Result<Self, Vec<Diagnostic>> {
-        let spirv = compiler.compile(snapshot, path).result?;
-        let kind = StageKind::of(path).ok_or_else(Vec::new)?;
-        let reflection = Reflection::of(&spirv);
-        Ok(Self::new(path, kind, (spirv, reflection), dependencies.clone()))
+    /// The stage with another module that declares the same.
+    pub fn with_module(&self, spirv: Vec<u32>) -> Self {
+        Self::new(&self.path, self.kind, (spirv, self.reflection.clone()), self.dependencies.clone())
     }
 
     fn new(

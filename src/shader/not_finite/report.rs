@@ -32,8 +32,10 @@ impl NotFinite {
     pub fn text(&self) -> String {
         let mode = &self.mode;
         match &self.found {
-            Ok(Some(FirstNotFinite { first, value, nan })) => {
-                let mut text = format!("first {value} in {mode}: {}:{}: {}", first.file, first.line, first.code);
+            Ok(Some(found @ FirstNotFinite { first, value, nan, .. })) => {
+                let components = found.components();
+                let mut text =
+                    format!("first {value} in {mode}: {}:{}: {}{components}", first.file, first.line, first.code);
                 if let Some(nan) = nan {
                     text += &format!("\nfirst NaN in {mode}: {}:{}: {}", nan.file, nan.line, nan.code);
                 }

@@ -1,108 +1,98 @@
-//! The values of a statement that can be traced: initializers, assignments and returned values.
+//! The statement at a place of a traced module, for a reader.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::types::{FLOATS, OTHERS, Types};
-use crate::shader::glsl::syntax::outside_brackets;
-use crate::shader::glsl::{Token, assigns, is_name};
+use serde::Serialize;
 
-/// The target of a trace call.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Traced {
-    /// The value of these bytes, which become the argument of a call.
-    Value(Range<usize>),
-    /// The variable of this name, by a call after the statement.
-    After(String),
+use crate::shader::contract::Texts;
+use crate::shader::glsl::syntax::{Statement, StatementKind, functions, within};
+use crate::shader::glsl::{Code, Token, code, spelled};
+use crate::shader::source::TreePath;
+use crate::shader::spirv::trace::{Place, Purpose};
+
+/// A place that makes a value which is traced.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Site {
+    /// The file as its author knows it.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// From 1, in bytes.
+    pub column: u32,
+    /// The statement on one line, or the declaration of what the stage before has written.
+    pub code: String,
 }
 
-/// A value that is traced, and the bytes of the code that makes it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct TracedValue {
-    pub traced: Traced,
-    pub shown: Range<usize>,
-}
-
-fn range(tokens: &[Token<'_>]) -> Option<Range<usize>> {
-    Some(tokens.first()?.bytes.start..tokens.last()?.bytes.end)
-}
-
-/// Splits at the commas that stand in no bracket.
-fn parts<'a, 'b>(tokens: &'a [Token<'b>]) -> Vec<&'a [Token<'b>]> {
-    let commas = outside_brackets(tokens).filter(|(_, token)| token.text == ",").map(|(at, _)| at);
-    let ends: Vec<usize> = commas.chain([tokens.len()]).collect();
-    let starts = std::iter::once(0).chain(ends.iter().map(|end| end + 1));
-    starts.zip(&ends).map(|(start, end)| &tokens[start..*end]).collect()
-}
-
-/// Whether a value is a struct that is made in place: `NAME(...)`.
-fn is_made<'a>(value: &'a [Token<'a>], types: &Types) -> Option<&'a str> {
-    match value {
-        [name, open, ..] if open.text == "(" && types.structs.contains(name.text) => Some(name.text),
-        _ => None,
-    }
-}
-
-/// Finds the traced value of `return e;`. `kind` is the type that the function returns.
-pub(super) fn of_return(tokens: &[Token<'_>], kind: &str, types: &Types) -> Vec<TracedValue> {
-    let [first, value @ .., _] = tokens else { return Vec::new() };
-    if first.text != "return" || !(FLOATS.contains(&kind) || is_made(value, types) == Some(kind)) {
-        return Vec::new();
-    }
-    let Some(bytes) = range(value) else { return Vec::new() };
-    vec![TracedValue { traced: Traced::Value(bytes), shown: first.bytes.start..tokens[tokens.len() - 1].bytes.end }]
-}
-
-/// Finds the traced values of a declaration, an assignment or a call, with its `;`. `opaque`: variables that are structs or arrays.
-pub(super) fn of_simple(
-    tokens: &[Token<'_>],
-    is_in_block: bool,
-    types: &Types,
-    opaque: &BTreeSet<String>,
-) -> Vec<TracedValue> {
-    const QUALIFIERS: [&str; 5] = ["const", "precise", "highp", "mediump", "lowp"];
-    let [statement @ .., _] = tokens else { return Vec::new() };
-    let qualifiers = statement.iter().take_while(|token| QUALIFIERS.contains(&token.text)).count();
-    let is_const = statement[..qualifiers].iter().any(|token| token.text == "const");
-    let rest = &statement[qualifiers..];
-    let is_type = |text: &str| FLOATS.contains(&text) || OTHERS.contains(&text) || types.all.contains(text);
-    let found = match rest {
-        [kind, name, ..] if is_name(kind.text) && is_name(name.text) => {
-            declared(kind.text, &rest[1..], is_const, is_in_block, types)
+/// The statement of a place; the declaration, if the place reads an input of the stage.
+pub(super) fn site(place: &Place, texts: Texts<'_>) -> Site {
+    let file = TreePath::from(place.file.as_str());
+    if let Purpose::Input(name) = &place.purpose {
+        let found = texts.error(&[name.as_str(), "in"], String::new());
+        if let (Some(line), Some(excerpt)) = (found.line, &found.excerpt) {
+            let column = found.column.unwrap_or(1);
+            return Site { file: found.file, line, column, code: spelled(&code(excerpt)) };
         }
-        [kind, open, ..] if is_type(kind.text) && open.text == "[" => Vec::new(),
-        _ => parts(rest).into_iter().filter_map(|part| assigned(part, types, opaque)).map(Traced::Value).collect(),
-    };
-    let Some(shown) = range(tokens) else { return Vec::new() };
-    found.into_iter().map(|traced| TracedValue { traced, shown: shown.clone() }).collect()
+    }
+    let text = texts.snapshot.read(&file).unwrap_or_default();
+    let (column, code) = statement(&text, place);
+    Site { file: texts.snapshot.display_path(&file), line: place.line, column, code }
 }
 
-fn declared(kind: &str, names: &[Token<'_>], is_const: bool, is_in_block: bool, types: &Types) -> Vec<Traced> {
-    let of = |part: &[Token<'_>]| match part {
-        [name, sign, value @ ..] if sign.text == "=" => {
-            let is_float = FLOATS.contains(&kind);
-            match is_const {
-                // The initializer of a constant stays a constant expression.
-                true => (is_float && is_in_block).then(|| Traced::After(name.text.to_owned())),
-                false => range(value).filter(|_| is_float || is_made(value, types) == Some(kind)).map(Traced::Value),
-            }
+/// The column and the code of the statement on the line of a place. Among several on the line, the one that fits the purpose.
+fn statement(text: &str, place: &Place) -> (u32, String) {
+    let code = Code::new(text);
+    let mut pieces = Vec::new();
+    functions(&code.tokens).iter().for_each(|function| add_pieces(&function.body, &mut pieces));
+    let is_here =
+        |bytes: &Range<usize>| (code.number_at(bytes.start)..=code.number_at(bytes.end - 1)).contains(&place.line);
+    pieces.retain(|bytes| !bytes.is_empty() && is_here(bytes));
+    let fits = |tokens: &[Token<'_>]| match &place.purpose {
+        Purpose::Store(name) => tokens.iter().any(|token| token.text == name),
+        Purpose::Return => tokens.first().is_some_and(|token| token.text == "return"),
+        Purpose::Input(_) | Purpose::Use => true,
+    };
+    let found = pieces.iter().find(|bytes| fits(within(&code.tokens, bytes))).or(pieces.first());
+    let line = code.start(place.line)..code.start(place.line + 1);
+    let tokens = within(&code.tokens, found.unwrap_or(&line));
+    let on_line = tokens.iter().find(|token| token.bytes.start >= line.start);
+    let column = on_line.map_or(1, |token| token.bytes.start - line.start + 1);
+    (u32::try_from(column).unwrap_or(1), spelled(tokens))
+}
+
+/// Adds the bytes of the statements in a statement: of one with parts, its header.
+fn add_pieces(statement: &Statement, pieces: &mut Vec<Range<usize>>) {
+    pieces.push(match statement.kind {
+        StatementKind::Simple | StatementKind::Jump => statement.bytes.clone(),
+        StatementKind::Branch | StatementKind::Loop => statement.bytes.start..statement.header.end,
+        StatementKind::Block | StatementKind::DoLoop => statement.header.clone(),
+    });
+    statement.parts.iter().for_each(|part| add_pieces(part, pieces));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_statement_of_a_line_is_the_one_that_fits() {
+        let text = "float f(float x) {\n    float y = x // half\n        * 0.5;\n    for (float t = 0.0; t < 1.0; t += 0.1) x *= y;\n    \
+            do y += x; while (y < 2.0);\n    if (x > 1.0) return x; else y = 2.0;\n    return y;\n}\n#define G y = 1.0;\n";
+        let store = |name: &str| Purpose::Store(name.to_owned());
+        for (line, purpose, column, code) in [
+            (2, store("y"), 5, "float y = x * 0.5;"),
+            (3, Purpose::Use, 9, "float y = x * 0.5;"),
+            (4, store("t"), 5, "for (float t = 0.0; t < 1.0; t += 0.1)"),
+            (4, store("x"), 44, "x *= y;"),
+            (4, Purpose::Use, 5, "for (float t = 0.0; t < 1.0; t += 0.1)"),
+            (5, Purpose::Use, 16, "while (y < 2.0);"),
+            (6, Purpose::Return, 18, "return x;"),
+            (6, Purpose::Use, 5, "if (x > 1.0)"),
+            (6, store("y"), 33, "y = 2.0;"),
+            (7, Purpose::Return, 5, "return y;"),
+            (99, Purpose::Return, 1, ""),
+        ] {
+            let place = Place { file: String::new(), line, purpose };
+            assert_eq!(statement(text, &place), (column, code.to_owned()), "{place:?}");
         }
-        _ => None,
-    };
-    parts(names).into_iter().filter_map(of).collect()
-}
-
-/// The bytes of an assignment whose value is traced.
-fn assigned(part: &[Token<'_>], types: &Types, opaque: &BTreeSet<String>) -> Option<Range<usize>> {
-    let (at, _) = outside_brackets(part).find(|(at, _)| assigns(part, *at))?;
-    let (target, value) = (&part[..at], &part[at + 1..]);
-    let is_made = is_made(value, types).is_some();
-    let last = target.iter().rposition(|token| is_name(token.text) || token.text == "]")?;
-    let is_traced = match (target[last].text, last.checked_sub(1).map(|at| target[at].text)) {
-        // A number of a vector; an element of an array may be a struct.
-        ("]", _) => target.iter().find(|token| is_name(token.text)).is_none_or(|name| !opaque.contains(name.text)),
-        (name, Some(".")) => !types.members.contains(name),
-        (name, _) => !opaque.contains(name) && !types.globals.contains(name),
-    };
-    range(part).filter(|_| is_traced || is_made)
+    }
 }

@@ -21,6 +21,7 @@ pub mod primitive;
 pub mod reach;
 pub mod reflect;
 mod specialize;
+pub mod trace;
 pub mod uses;
 mod validate;
 

@@ -90,6 +90,52 @@ fn a_search_at_a_finite_pixel_finds_nothing() {
     assert_validated();
 }
 
+/// The header of a loop, a condition, an array, a statement that shares its line and one in a macro.
+#[test]
+fn a_search_finds_statements_of_every_kind() {
+    let settings = settings(&["view.msaa=1", "environment.name=none"]);
+    let mut session = Session::new(model("shader-ball"), settings);
+    let mode = modes(&session.headless, &["roughness"]).remove(0);
+    let mut line = "s.roughness = saturate(s.roughness * roughness_scale);".to_owned();
+    let negative = "(-1.0 - s.roughness)";
+    for (edit, code, components) in [
+        (
+            format!("for (float t = 0.0; t < sqrt{negative}; ++t) s.roughness = 0.5;"),
+            "for (float t = 0.0; t < sqrt(-1.0 - s.roughness); ++t)",
+            &["NaN"][..],
+        ),
+        (
+            format!("if (s.roughness > log{negative}) s.roughness = 0.5;"),
+            "if (s.roughness > log(-1.0 - s.roughness))",
+            &["NaN"],
+        ),
+        (
+            "float all[2] = float[](1.0 / (s.roughness - s.roughness), 2.0); s.roughness = all[1];".to_owned(),
+            "float all[2] = float[](1.0 / (s.roughness - s.roughness), 2.0);",
+            &["Inf"],
+        ),
+        (
+            "float zero = s.roughness - s.roughness; vec3 all = vec3(zero, 1.0 / zero, -1.0 / zero);".to_owned(),
+            "vec3 all = vec3(zero, 1.0 / zero, -1.0 / zero);",
+            &["finite", "Inf", "-Inf"],
+        ),
+        (
+            format!("\n#define ROOT(x) sqrt(x)\ns.roughness = ROOT{negative};"),
+            "s.roughness = ROOT(-1.0 - s.roughness);",
+            &["NaN"],
+        ),
+    ] {
+        crate::support::ready(&session.edit("user.glsl", &line, &edit));
+        let found = session.headless.first_not_finite((48, 30), &mode).unwrap().expect(code);
+        assert_eq!((&*found.first.code, &*found.components), (code, components), "{found:?}");
+        let text = session.tree.read("user.glsl");
+        let at = found.first.line as usize - 1;
+        assert!(text.lines().nth(at).unwrap()[found.first.column as usize - 1..].starts_with(&code[..9]), "{found:?}");
+        line = edit;
+    }
+    assert_validated();
+}
+
 /// What looks up an image of another pass, or noise, finds it at the pixel's place in the picture.
 #[test]
 fn values_with_shadows_and_screen_space_occlusion_are_those_of_probe() {

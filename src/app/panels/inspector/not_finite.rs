@@ -24,10 +24,10 @@ pub(super) fn show(ui: &mut Ui, search: &NotFiniteSearch, has_files: bool, comma
                 quiet(ui, format!("Looking for the first line with NaN or Inf in {mode}…"));
             });
         }
-        Some(Ok(Some(FirstNotFinite { first, value, nan }))) => {
-            line(ui, first, value, mode, has_files, commands);
+        Some(Ok(Some(found @ FirstNotFinite { first, value, nan, .. }))) => {
+            line(ui, first, (value, &found.components()), mode, has_files, commands);
             if let Some(nan) = nan {
-                line(ui, nan, "NaN", mode, has_files, commands);
+                line(ui, nan, ("NaN", ""), mode, has_files, commands);
             }
         }
         Some(Ok(None)) => quiet(ui, format!("NaN or Inf in {mode}: {ELSEWHERE}")),
@@ -40,7 +40,14 @@ fn short(file: &str) -> &str {
     file.rmatch_indices('/').nth(1).map_or(file, |(at, _)| &file[at + 1..])
 }
 
-fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, commands: &mut Vec<Command>) {
+fn line(
+    ui: &mut Ui,
+    site: &Site,
+    (value, components): (&str, &str),
+    mode: &str,
+    has_files: bool,
+    commands: &mut Vec<Command>,
+) {
     let Site { file, line, column, code } = site;
     let text = RichText::new(format!("{value}  {}:{line}  {code}", short(file))).small().color(ERROR);
     let label = ui.add(elided(text).sense(Sense::click()));
@@ -59,7 +66,7 @@ fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, comm
         ui.label(RichText::new(format!("{file}:{line}")).strong());
         ui.label(RichText::new(code).monospace());
         ui.label(format!(
-            "The first statement in {mode} that produces {value} at this pixel, in the order of execution"
+            "The first statement in {mode} that produces {value}{components} at this pixel, in the order of execution"
         ));
         ui.label(RichText::new(hint).small().color(ACCENT));
     });

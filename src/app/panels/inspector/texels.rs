@@ -126,7 +126,7 @@ mod tests {
             column: 5,
             code: "return a2 / 0.0;".into(),
         };
-        let found = FirstNotFinite { first, value: "Inf", nan: None };
+        let found = FirstNotFinite { first, value: "Inf", components: vec!["Inf"], nan: None };
         let found = Some(NotFinite { mode: "final".into(), found: Ok(Some(found)) });
         let search = NotFiniteSearch { number: 1, mode: "final".into(), found };
         let show = move |ui: &mut Ui, commands: &mut Vec<Command>| {
