@@ -9,7 +9,7 @@ use super::host::Found;
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE, PASS_MODES};
 use crate::shader::annotation::pass::{Cull, Instances, MODEL, PassDesc, PassSize};
 use crate::shader::glsl::syntax::{functions, within};
-use crate::shader::glsl::{Code, Token, code, includes};
+use crate::shader::glsl::{Code, Token, color_of, includes, main_of, outputs};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::Module;
@@ -145,26 +145,6 @@ fn ending(expression: &Expression, line: u32, host: &PassDesc, color: &str, call
 fn resolved(stage: &TreePath, name: &str, snapshot: &Snapshot<'_>) -> String {
     let beside = stage.sibling(name).filter(|path| snapshot.read(path).is_ok());
     beside.map_or_else(|| name.to_owned(), |path| path.to_string())
-}
-
-/// The bytes of the name of the function `main` that a stage defines.
-fn main_of(tokens: &[Token<'_>]) -> Option<Range<usize>> {
-    let pair = tokens.windows(2).find(|pair| pair[0].text == "main" && pair[1].text == "(")?;
-    Some(pair[0].bytes.clone())
-}
-
-/// The outputs that a text declares, `out TYPE NAME;`: the places of these four tokens.
-fn outputs<'a>(tokens: &'a [Token<'_>]) -> impl Iterator<Item = usize> + 'a {
-    (0..tokens.len().saturating_sub(3)).filter(|at| tokens[*at].text == "out" && tokens[at + 3].text == ";")
-}
-
-/// The name of the color that a text declares: the output at location 0, or the first.
-fn color_of(text: &str) -> Option<String> {
-    let tokens = code(text);
-    let colors: Vec<usize> = outputs(&tokens).filter(|at| tokens[at + 1].text == "vec4").collect();
-    let is_first = |at: &&usize| **at >= 2 && tokens[**at - 2].text == "0";
-    let at = colors.iter().find(is_first).or(colors.first())?;
-    Some(tokens[at + 2].text.to_owned())
 }
 
 /// The bytes of `layout(...) out` of the other outputs, which become variables.

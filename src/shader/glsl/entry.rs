@@ -1,40 +1,27 @@
-//! The parts of a fragment stage that a stage made of it replaces: what runs, what it writes, and its first include.
+//! The parts of a fragment stage that a stage made of it replaces: what runs, and what it writes.
 
 use std::ops::Range;
 
-use super::include::{Include, includes};
-use super::syntax::functions;
 use super::token::{Token, code};
 
-/// The parts.
-#[derive(Debug)]
-pub struct StageMain<'a> {
-    /// The bytes of the name `main`.
-    pub main: Range<usize>,
-    /// The name of the color that the stage writes.
-    pub color: &'a str,
-    /// The first include.
-    pub include: Include<'a>,
+/// The bytes of the name of the function `main` that a stage defines.
+pub fn main_of(tokens: &[Token<'_>]) -> Option<Range<usize>> {
+    let pair = tokens.windows(2).find(|pair| pair[0].text == "main" && pair[1].text == "(")?;
+    Some(pair[0].bytes.clone())
 }
 
-impl<'a> StageMain<'a> {
-    /// Finds the parts in a text.
-    ///
-    /// # Errors
-    /// The part that the text lacks: the end of a message that begins with the file.
-    pub fn of(text: &'a str) -> Result<Self, &'static str> {
-        let tokens = code(text);
-        let functions = functions(&tokens);
-        let is_outside = |token: &Token<'_>| !functions.iter().any(|of| of.body.bytes.contains(&token.bytes.start));
-        let find = |words: [&str; 2]| {
-            let is_pair = |at: &usize| [&tokens[*at], &tokens[at + 1]].map(|token| token.text) == words;
-            (0..tokens.len().saturating_sub(2)).find(|at| is_pair(at) && is_outside(&tokens[*at]))
-        };
-        let main = find(["main", "("]).ok_or("has no main()")?;
-        let color = find(["out", "vec4"]).ok_or("has no `out vec4` color")?;
-        let include = includes(text).next().ok_or("includes no file")?;
-        Ok(Self { main: tokens[main].bytes.clone(), color: tokens[color + 2].text, include })
-    }
+/// The outputs that a text declares, `out TYPE NAME;`: the places of these four tokens.
+pub fn outputs<'a>(tokens: &'a [Token<'_>]) -> impl Iterator<Item = usize> + 'a {
+    (0..tokens.len().saturating_sub(3)).filter(|at| tokens[*at].text == "out" && tokens[at + 3].text == ";")
+}
+
+/// The name of the color that a text declares: the output at location 0, or the first.
+pub fn color_of(text: &str) -> Option<String> {
+    let tokens = code(text);
+    let colors: Vec<usize> = outputs(&tokens).filter(|at| tokens[at + 1].text == "vec4").collect();
+    let is_first = |at: &&usize| **at >= 2 && tokens[**at - 2].text == "0";
+    let at = colors.iter().find(is_first).or(colors.first())?;
+    Some(tokens[at + 2].text.to_owned())
 }
 
 #[cfg(test)]
@@ -42,12 +29,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_parts_are_outside_of_functions() {
-        let text = "#include \"a.glsl\"\n#include \"b.glsl\"\nvoid f() { main(); }\nout vec4 shown;\nvoid main() {}\n";
-        let entry = StageMain::of(text).unwrap();
-        assert_eq!((entry.main.start, entry.color, entry.include.name), (78, "shown", "a.glsl"));
-        assert_eq!(StageMain::of("void f() { main(); }").unwrap_err(), "has no main()");
-        assert_eq!(StageMain::of("void main() { }").unwrap_err(), "has no `out vec4` color");
-        assert_eq!(StageMain::of("out vec4 c; void main() { }").unwrap_err(), "includes no file");
+    fn the_color_is_the_output_at_location_0_or_the_first() {
+        let text = "layout(location = 1) out vec4 more;\nlayout(location = 0) out vec4 shown;\nvoid main() {}\n";
+        assert_eq!((color_of(text).as_deref(), main_of(&code(text)).unwrap().start), (Some("shown"), 78));
+        assert_eq!(color_of("out float depth; out vec4 color;").as_deref(), Some("color"));
+        assert_eq!((color_of("out vec3 color;"), main_of(&code("void f() {}"))), (None, None));
     }
 }

@@ -7,7 +7,7 @@ mod lines;
 pub mod syntax;
 mod token;
 
-pub use entry::StageMain;
+pub use entry::{color_of, main_of, outputs};
 pub use include::includes;
 pub use lines::{Code, Line, find_word, is_same_code, lines};
 pub use token::{Token, TokenKind, assigns, code, is_name, is_word, spelled, tokens};

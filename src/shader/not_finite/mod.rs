@@ -18,7 +18,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::contract::Texts;
-use super::glsl::StageMain;
+use super::glsl::{code, color_of, main_of};
 use super::library::Stage;
 use super::source::TreePath;
 use super::source::snapshot::Snapshot;
@@ -113,7 +113,8 @@ impl<'a> TracedShaders<'a> {
 
 /// The text of a stage that writes a place as its color. No line moves.
 fn traced(text: &str) -> Result<String, &'static str> {
-    let StageMain { main, color, .. } = StageMain::of(text)?;
+    let main = main_of(&code(text)).ok_or("has no main()")?;
+    let color = color_of(text).ok_or("has no `out vec4` color")?;
     let (before, after) = (&text[..main.start], &text[main.end..]);
     let library = TEXT.replace("SPECULA_MARK", &MARK.to_string());
     Ok(format!("{before}specula_main{after}\n{library}void main() {{ specula_main(); {color} = specula_traced(); }}\n"))
