@@ -47,13 +47,11 @@ use measured::ErrorMap;
 pub(super) use pixel::PixelUnderMouse;
 pub(super) use reference_view::Reference;
 use reference_view::ReferenceView;
+use request::FRAMES_IN_FLIGHT;
 pub(super) use request::{FrameRequest, OutlineRequest, TextureDraw};
 pub(super) use sets::RestingPicture;
 use texture::ShownTexture;
 use window_copy::WindowCopy;
-
-/// The CPU prepares a frame while the device draws the previous one.
-const FRAMES_IN_FLIGHT: usize = 2;
 
 /// The window on the device. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::FRAMES_IN_FLIGHT;
+use super::request::FRAMES_IN_FLIGHT;
 use crate::app::engine::last_complete::LastComplete;
 use crate::app::state::grid::PictureRect;
 use crate::gpu::{Encoder, Gpu, GpuError, Image, SetLayouts, Use};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::FRAMES_IN_FLIGHT;
+use super::request::FRAMES_IN_FLIGHT;
 use crate::frame::FrameState;
 use crate::gpu::Frames;
 

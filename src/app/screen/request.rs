@@ -7,6 +7,9 @@ use crate::gpu::Image;
 use crate::render::tools::{OutlineStyle, Tools};
 use crate::render::{BoundFrame, Redraw};
 
+/// The CPU prepares a frame while the device draws the previous one.
+pub(super) const FRAMES_IN_FLIGHT: usize = 2;
+
 /// Everything of a frame that has targets already: the picture, what lies over it, and the panels.
 pub(in crate::app) struct FrameRequest<'a> {
     pub(in crate::app) frame: Option<&'a BoundFrame>,
