@@ -3,8 +3,8 @@
 
 use std::time::{Duration, Instant};
 
-/// Panels run at least this often while the picture goes on. They show values that change with each frame, such as the time.
-const OLDEST: Duration = Duration::from_millis(100);
+/// Panels run at least this often while the picture goes on: they show numbers that change with each frame, such as the time, for reading.
+const OLDEST: Duration = Duration::from_millis(250);
 
 /// When the panels ran, and over what. `T`: what changes without an event and must show at once.
 pub(super) struct Freshness<T> {
@@ -61,6 +61,6 @@ mod tests {
         panels.outdate();
         assert!(!panels.is_fresh(&1, begin), "an event has come");
         panels.ran(1, begin, None);
-        assert!(panels.is_fresh(&1, begin + ms(99)) && !panels.is_fresh(&1, begin + ms(100)));
+        assert!(panels.is_fresh(&1, begin + ms(249)) && !panels.is_fresh(&1, begin + ms(250)));
     }
 }

@@ -40,6 +40,7 @@ pub(in crate::app) struct Timing {
     pictures: VecDeque<Sample>,
     /// The CPU's times of all frames.
     frames: VecDeque<CpuTimes>,
+    /// CPU time of panels, of the frames that have run them.
     ui_ms: VecDeque<f64>,
     /// CPU time of the window's thread for whole frames.
     cpu_ms: VecDeque<f64>,
@@ -59,7 +60,9 @@ impl Timing {
             self.submitted.pop_front();
         }
         push(&mut self.frames, cpu, FRAMES);
-        push(&mut self.ui_ms, cpu.ui_ms, SUMMARIZED);
+        if cpu.ui_ms > 0.0 {
+            push(&mut self.ui_ms, cpu.ui_ms, SUMMARIZED);
+        }
         self.drawn += 1;
         if self.drawn % SUMMARIZED_EVERY == 1 {
             self.summarized = self.summary();

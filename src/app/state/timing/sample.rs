@@ -28,7 +28,7 @@ impl Shown {
 /// CPU time of a frame, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::app) struct CpuTimes {
-    /// Running the panels and making triangles of them.
+    /// Running the panels and making triangles of them; 0 in a frame that shows them as they were.
     pub(in crate::app) ui_ms: f64,
     /// Recording the commands of picture and panels.
     pub(in crate::app) record_ms: f64,
