@@ -13,7 +13,7 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::PanelUi;
 use crate::app::state::captures::Captures;
 use crate::app::widgets::check_box;
-use crate::app::widgets::rows::{Row, elided, heading};
+use crate::app::widgets::rows::{Row, elided, heading, skips};
 use crate::app::widgets::theme::QUIET;
 use crate::capture::Turn;
 use crate::picture::numbered_as;
@@ -207,7 +207,9 @@ fn progress(ui: &mut Ui, captures: &Captures, folder: &str, commands: &mut Vec<C
 }
 
 fn row(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> Response) {
-    Row { name, doc, option: String::new(), is_changed: false, is_indented: false }.show(ui, control);
+    if !skips(ui) {
+        Row { name, doc, option: String::new(), is_changed: false, is_indented: false }.show(ui, control);
+    }
 }
 
 fn button(ui: &mut Ui, title: &str, about: &str) -> bool {

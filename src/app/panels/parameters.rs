@@ -147,6 +147,9 @@ fn setting(
     values: &mut Values,
     control: impl FnOnce(&mut Ui, Option<&ShaderValue>) -> (Option<ShaderValue>, Response),
 ) {
+    if rows::skips(ui) {
+        return;
+    }
     let About { name, label, choices, is_indented, .. } = *about;
     let value = values.get(name).cloned();
     let number = value.as_ref().and_then(|value| number(value, choices)).or(about.default.first().copied());

@@ -11,7 +11,7 @@ use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::playback::Playback;
 use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own, switches};
-use crate::app::widgets::rows::{Row, check, set_option};
+use crate::app::widgets::rows::{INITIAL, Row, check, set_option, skips};
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
@@ -108,8 +108,11 @@ impl<'a> Found<'a> {
 fn show_switch(ui: &mut Ui, pass: &GraphPass, settings: &mut Settings) -> bool {
     let name = pass.name();
     let before = pass.is_wanted(&settings.passes);
+    if skips(ui) {
+        return before;
+    }
     let mut on = before;
-    let default = Settings::of_window().passes.get(name).copied().unwrap_or(pass.desc.on);
+    let default = INITIAL.passes.get(name).copied().unwrap_or(pass.desc.on);
     let doc = format!("{}\n{}", pass.desc.doc, pass.desc.stage);
     let option = set_option(&format!("passes.{name}"), &on.to_string());
     let row =

@@ -1,8 +1,10 @@
 //! The parts that all panels share: rows of a name and its control, the search of lists, check boxes, the theme, and words for screen readers.
 
 pub(in crate::app) mod check_box;
+mod controls;
 pub(in crate::app) mod rows;
 pub(in crate::app) mod search;
+mod sight;
 pub(in crate::app) mod spoken;
 pub(in crate::app) mod theme;
 

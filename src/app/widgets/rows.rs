@@ -2,21 +2,17 @@
 //! column. The name of a changed setting has another color. A double click on it resets the setting; its menu copies the option of
 //! the command line.
 
-use std::cell::RefCell;
 use std::sync::LazyLock;
 
-use egui::{
-    Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
-};
+use egui::{Button, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
-use super::check_box;
-use super::spoken::named;
+use super::controls::HEIGHT;
+pub(in crate::app) use super::controls::{check, choose, color, drag, edit_number};
+use super::sight;
 use super::theme::{ACCENT, QUIET, small_mono};
-use crate::app::numbers::{Number, Scale};
-use crate::settings::{Curve, Setting, Settings, Valid, Value, catalog};
+use crate::app::numbers::Number;
+use crate::settings::{Setting, Settings, Valid, Value, catalog};
 
-/// Height of a row, in points.
-const HEIGHT: f32 = 18.0;
 /// Smallest width of the names, in points. Names become narrower before the controls do.
 const NAME: f32 = 84.0;
 /// Largest share of a row that its name takes.
@@ -25,12 +21,6 @@ const SHARE: f32 = 0.45;
 const INDENT: f32 = 10.0;
 /// Points that names leave to the controls while they can.
 const CONTROL: f32 = 150.0;
-/// Width of the number at the right of a slider, with its unit.
-const VALUE: f32 = 72.0;
-/// Seconds for which a row shows why a text was rejected.
-const REFUSAL_S: f64 = 4.0;
-/// A slider shorter than this is left out: the number is dragged instead.
-const SHORTEST: f32 = 36.0;
 
 /// A row without its control.
 pub(in crate::app) struct Row<'a> {
@@ -43,6 +33,11 @@ pub(in crate::app) struct Row<'a> {
     pub(in crate::app) is_changed: bool,
     /// Whether it belongs to the row above.
     pub(in crate::app) is_indented: bool,
+}
+
+/// Leaves room for the next row if it is out of sight. Returns whether it has.
+pub(in crate::app) fn skips(ui: &mut Ui) -> bool {
+    sight::skips(ui)
 }
 
 impl Row<'_> {
@@ -58,7 +53,7 @@ impl Row<'_> {
         control: impl FnOnce(&mut Ui) -> Response,
         more: impl FnOnce(&mut Ui),
     ) -> bool {
-        ui.horizontal(|ui| {
+        sight::show(ui, |ui| {
             let title = self.title(ui);
             // So that screen readers can read the control's name.
             let response = control(ui).labelled_by(title.id);
@@ -73,7 +68,6 @@ impl Row<'_> {
             title.on_hover_ui(|ui| self.about(ui));
             resets
         })
-        .inner
     }
 
     fn title(&self, ui: &mut Ui) -> Response {
@@ -156,7 +150,7 @@ pub(in crate::app) fn set_option(path: &str, value: &str) -> String {
 }
 
 /// Initial settings of the window. The name of a row has another color when its setting differs from them.
-static INITIAL: LazyLock<Settings> = LazyLock::new(Settings::of_window);
+pub(in crate::app) static INITIAL: LazyLock<Settings> = LazyLock::new(Settings::of_window);
 
 /// Shows the rows of the settings in a group, in the order of their declaration. `special` shows those that need more than the control of
 /// their type; it returns whether it has.
@@ -212,7 +206,7 @@ pub(in crate::app) fn special(
     path: &str,
     control: impl FnOnce(&mut Ui, &mut Settings) -> Response,
 ) {
-    let Some(setting) = crate::settings::setting(path) else { return };
+    let Some(setting) = crate::settings::setting(path).filter(|_| !skips(ui)) else { return };
     let (value, initial) = (settings.value(path).unwrap_or(Value::Unset), INITIAL.value(path).unwrap_or(Value::Unset));
     let row = Row {
         name: setting.entry.label,
@@ -237,6 +231,9 @@ pub(in crate::app) fn option_value(value: &Value) -> String {
 
 /// Shows the row of a number of the settings.
 fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
+    if skips(ui) {
+        return;
+    }
     let (before, initial) = (number.get(settings), number.get(&INITIAL));
     let (name, scale) = (number.name(), number.scale());
     let row = Row {
@@ -254,97 +251,6 @@ fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
     if now != before {
         number.set(settings, now);
     }
-}
-
-/// A slider with its number, or the number alone where there is no room or no range.
-pub(in crate::app) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, scale: &Scale) -> Response {
-    let gap = ui.spacing().item_spacing.x;
-    let rail = ui.available_width() - VALUE - gap;
-    let Some((low, high)) = scale.slider.filter(|_| rail >= SHORTEST) else {
-        let width = ui.available_width();
-        return drag(ui, number, scale, width);
-    };
-    ui.spacing_mut().slider_width = rail;
-    let is_squared = scale.curve == Curve::Squared;
-    let (mut place, ends) = match is_squared {
-        true => (number.max(0.0).sqrt(), low.max(0.0).sqrt()..=high.max(0.0).sqrt()),
-        false => (*number, low..=high),
-    };
-    let slider = Slider::new(&mut place, ends).show_value(false).clamping(SliderClamping::Edits);
-    let slider = slider.logarithmic(scale.curve == Curve::Logarithmic);
-    let slider = if is_squared { slider } else { slider.fixed_decimals(scale.decimals) };
-    let response = ui.scope(|ui| {
-        // The fill of the rail has no color of its own.
-        ui.visuals_mut().selection.bg_fill = ACCENT.color();
-        ui.add(slider.trailing_fill(true))
-    });
-    let response = response.inner;
-    if response.changed() {
-        let digits = 10_f64.powi(scale.decimals as i32);
-        *number = if is_squared { (place * place * digits).round() / digits } else { place };
-    }
-    response.union(named(drag(ui, number, scale, VALUE), &format!("{name}, value")))
-}
-
-/// A number that is dragged or typed, of this width in points.
-pub(in crate::app) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: f32) -> Response {
-    let (low, high) = scale.limits;
-    // A drag over 200 points covers the range of the slider.
-    let speed = scale.slider.map_or(0.01, |(low, high)| (high - low) / 200.0);
-    let value = DragValue::new(number).range(low..=high).clamp_existing_to_range(false).speed(speed);
-    let value = value.fixed_decimals(scale.decimals);
-    let refused = RefCell::new(None);
-    let parse = |text: &str| scale.parse(text).map_err(|message| refused.replace(Some(message))).ok();
-    let value = value.custom_formatter(|number, _| scale.text(number)).custom_parser(parse);
-    let response = ui.add_sized(vec2(width, HEIGHT), value);
-    refusal(&response, refused.take());
-    response
-}
-
-/// Shows beside the number, for a while, why a text was rejected.
-fn refusal(response: &Response, refused: Option<String>) {
-    let (egui, id) = (&response.ctx, response.id.with("refused"));
-    let now = egui.input(|input| input.time);
-    if let Some(message) = refused {
-        egui.data_mut(|data| data.insert_temp(id, (message, now + REFUSAL_S)));
-    }
-    let Some((message, end)) = egui.data(|data| data.get_temp::<(String, f64)>(id)) else { return };
-    if now < end {
-        response.show_tooltip_text(message);
-        egui.request_repaint_after(std::time::Duration::from_secs_f64(end - now));
-    } else {
-        egui.data_mut(|data| data.remove::<(String, f64)>(id));
-    }
-}
-
-/// A list of choices as wide as the rest of the row.
-pub(in crate::app) fn choose(
-    ui: &mut Ui,
-    id: &str,
-    shown: impl Into<egui::WidgetText>,
-    list: impl FnOnce(&mut Ui),
-) -> Response {
-    let list_of = ComboBox::from_id_salt(id).selected_text(shown).width(ui.available_width()).truncate();
-    list_of.show_ui(ui, list).response
-}
-
-/// A check box.
-pub(in crate::app) fn check(ui: &mut Ui, on: &mut bool) -> Response {
-    let response = check_box::show(ui, Checkbox::without_text(on));
-    // egui gives a box without text an empty name, which would hide that of the row.
-    ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
-    response
-}
-
-/// A color picker for linear RGB.
-pub(in crate::app) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
-    // The picker rounds its color even while it is not used.
-    let mut edited = *linear;
-    let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
-    if response.changed() {
-        *linear = edited;
-    }
-    response
 }
 
 #[cfg(test)]
