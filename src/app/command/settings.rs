@@ -14,6 +14,7 @@ use crate::app::control::short;
 use crate::app::state::State;
 use crate::message::did_you_mean;
 use crate::settings::{Setting, Settings, ShaderValue, catalog};
+use crate::shader::{Diagnostic, expression};
 
 pub(in crate::app) static SET: Spec<Vec<String>> = Spec::new("set", |state, _, assignments: Vec<String>| {
     let mut settings = state.session.settings.clone();
@@ -105,6 +106,12 @@ pub(super) fn adopt(state: &mut State, settings: Settings) -> Result<(), String>
     let mut problems = state.session.problems(is_complete).into_iter().filter(|problem| !before.contains(problem));
     let problem = problems.next().or_else(|| {
         let (shaders, mode) = (shaders.filter(|_| is_complete)?, &state.session.settings.mode);
+        let expression = &state.session.settings.expression;
+        if *mode == expression::MODE && !expression.at.is_empty() {
+            // Another expression is compiled first.
+            let error = shaders.expression_error().filter(|_| *expression == old.expression);
+            return error.map(Diagnostic::one_line);
+        }
         let is_unknown = state.session.mode().is_none() && *mode != old.mode;
         let hint = did_you_mean(mode, shaders.modes.iter().map(|mode| mode.slug.as_str()));
         is_unknown.then(|| format!("there is no mode `{mode}`.{hint} `modes` lists them all"))

@@ -14,12 +14,12 @@ use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 use super::command::registry::REGISTRY;
 use super::command::settings::change;
 use super::command::spec::Command;
-use super::source_line::watch;
+use super::source_line::{SourceLine, watch};
 use super::widgets::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
 use crate::app::state::State;
 use crate::scene::Model;
 use crate::settings::Settings;
-use crate::shader::Expression;
+use crate::shader::{Expression, ShaderSet};
 use entries::entries;
 use entry::{Action, Ask, Entry};
 use search::{Found, find};
@@ -43,6 +43,8 @@ pub(super) struct Palette {
     /// Whether it has been shown. The click that opens it does not close it.
     is_shown: bool,
     entries: Vec<Entry>,
+    /// The shaders whose expressions can be watched.
+    shaders: Option<Arc<ShaderSet>>,
     /// The state that the entries describe.
     listed: Option<Revision>,
 }
@@ -104,6 +106,7 @@ pub(super) fn show(
     let revision = Revision::of(state);
     if !palette.listed.as_ref().is_some_and(|listed| listed.is(&revision)) {
         (palette.listed, palette.entries) = (Some(revision), entries(state, REGISTRY));
+        palette.shaders = state.session.shaders.clone();
     }
     let chosen = window(egui, palette, area);
     if chosen.is_some() {
@@ -167,7 +170,7 @@ fn list(ui: &mut Ui, palette: &mut Palette, rows: usize) -> Option<Command> {
     }
     let query = palette.query.clone();
     // The text and the Enter behind it may come in one frame, so the entry is made from the text as it is now.
-    let expression = expression(&query);
+    let expression = expression(&query, palette.shaders.as_deref());
     let found = find(expression.iter().chain(&palette.entries), &query);
     palette.row = palette.row.saturating_add_signed(step).min(found.len().saturating_sub(1));
     if found.is_empty() {
@@ -202,9 +205,13 @@ fn list(ui: &mut Ui, palette: &mut Palette, rows: usize) -> Option<Command> {
     }
 }
 
-/// The entry that watches the expression which the query names.
-fn expression(query: &str) -> Option<Entry> {
+/// The entry that watches the expression which the query names, unless no pixel shows values of its file.
+fn expression(query: &str, shaders: Option<&ShaderSet>) -> Option<Entry> {
     let expression = Expression::parse(query, 0).ok()?;
+    let place = shaders.and_then(|shaders| Some((shaders, SourceLine::place(shaders, query)?.0)));
+    if place.is_some_and(|(shaders, path)| !shaders.can_watch(path)) {
+        return None;
+    }
     let at = expression.to_string();
     let command = change(format!("watch {at}"), move |settings| watch(settings, at.clone()));
     let entry = Entry::new("Expression", format!("Watch {}", query.trim()), command);
@@ -237,4 +244,21 @@ fn number(ui: &mut Ui, ask: &Ask, text: &mut String) -> Option<Command> {
     }
     let value = value.ok().filter(|_| ui.input(|input| input.key_pressed(Key::Enter)))?;
     Some(ask.command(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::shader::TreePath;
+
+    #[test]
+    fn only_expressions_that_a_pixel_shows_are_offered() {
+        let texts = BTreeMap::from([(TreePath::from("pbr.vert"), Arc::<str>::from("void main() {}\n"))]);
+        let shaders = ShaderSet { texts, ..ShaderSet::default() };
+        assert!(expression("pbr.vert:1:x", Some(&shaders)).is_none());
+        assert!(expression("other.glsl:1:x", Some(&shaders)).is_some(), "the compiler says why it cannot be watched");
+        assert!(expression("pbr.vert:1:x", None).is_some(), "nothing is known before the first shaders");
+    }
 }

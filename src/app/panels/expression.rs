@@ -72,7 +72,8 @@ fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Co
     field(ui, settings, own);
     let unparsed = own.error.as_deref();
     // The error of an expression that is no longer watched is not told.
-    let shaders = state.session.shaders.as_ref().filter(|_| own.field == settings.expression.at);
+    let shaders =
+        state.session.shaders.as_ref().filter(|_| !own.field.is_empty() && own.field == settings.expression.at);
     let compiled = shaders.and_then(|shaders| shaders.expression_error()).map(|error| error.message.as_str());
     if let Some(error) = unparsed.or(compiled) {
         ui.add(Label::new(RichText::new(error).small().color(ERROR)).wrap());

@@ -139,7 +139,7 @@ impl Overlay {
                     "this line is outside any function, so only global declarations are in scope".to_owned()
                 }
                 [] => "no number or vector is in scope on this line".to_owned(),
-                names => format!("in scope on this line: {}", names.join(", ")),
+                names => format!("in scope on this line: {}", listed(names)),
             };
             let hint = hint.trim().trim_end_matches('?').replacen("Did", "did", 1);
             let (first, rest) = names.split_at(1);
@@ -160,6 +160,18 @@ impl Overlay {
         }
         diagnostic
     }
+}
+
+/// The names, with those of members as one: `a2, members of s`.
+fn listed(names: &[String]) -> String {
+    let mut out: Vec<String> = Vec::new();
+    for name in names {
+        let name = name.split_once('.').map_or_else(|| name.clone(), |(of, _)| format!("members of {of}"));
+        if !out.contains(&name) {
+            out.push(name);
+        }
+    }
+    out.join(", ")
 }
 
 #[cfg(test)]
