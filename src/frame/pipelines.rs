@@ -147,7 +147,9 @@ impl PipelineRequest {
         let mut passes = active(true);
         let own = || passes.iter().filter(|pass| !pass.desc.is_built_in());
         let reads = |input: &Input| own().any(|pass| pass.inputs.values().any(|other| other == input));
-        let draws_model = !own().any(|pass| pass.covers()) || reads(&Input::Picture) || reads(&Input::Depth);
+        // The picture is not drawn for the image of a pass alone, if it shows no model either.
+        let is_covered = own().any(|pass| pass.covers()) || (shown_pass.is_some() && graph.is_covered(is_on));
+        let draws_model = !is_covered || reads(&Input::Picture) || reads(&Input::Depth);
         if !draws_model {
             passes = active(false);
         }

@@ -9,7 +9,8 @@ use crate::shader::{Mode, PixelValue};
 pub(super) fn readout(pixel: &PixelUnderMouse<'_>, sides: Option<[String; 2]>) -> Option<Readout> {
     let PixelAt { at, value, .. } = &pixel.pixel;
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
-    let mode = pixel.state.mode().filter(|_| covered)?;
+    // Alpha of a pass is a number as the others.
+    let mode = pixel.state.mode().filter(|mode| covered || mode.pass.is_some())?;
     let [value, unit] = texts(mode, value, pixel.exact);
     let side = sides.map(|[earlier, now]| if pixel.is_of_reference { earlier } else { now });
     Some(Readout { side, value: value.trim_start().to_owned(), unit, at: *at })

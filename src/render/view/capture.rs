@@ -100,12 +100,14 @@ pub(super) struct PixelReadback {
     buffer: Arc<Buffer>,
     /// Pixel position, the image's format, and the picture's number.
     copied: Option<((u32, u32), vk::Format, u64)>,
+    /// Whether alpha is a number of a pass, without flags.
+    pub(super) is_plain: bool,
 }
 
 impl PixelReadback {
     pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         let buffer = Buffer::new(gpu, "pixel readback", 16, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
-        Ok(Self { buffer, copied: None })
+        Ok(Self { buffer, copied: None, is_plain: false })
     }
 
     /// Records the copy of a pixel of an HDR image, or of the LDR output. The image is in [`Use::Sampled`] before and after.
@@ -130,7 +132,14 @@ impl PixelReadback {
                 let value = [red, green, blue, alpha].map(|byte| f32::from(*byte) / 255.0);
                 PixelValue { value, ..PixelValue::default() }
             }
-            (format, bytes) => PixelValue::decode(texels(bytes, format == vk::Format::R16G16B16A16_SFLOAT).next()?),
+            (format, bytes) => {
+                let value = texels(bytes, format == vk::Format::R16G16B16A16_SFLOAT).next()?;
+                let not_finite = !value.iter().all(|number| number.is_finite());
+                match self.is_plain {
+                    true => PixelValue { value, not_finite, no_data: false },
+                    false => PixelValue::decode(value),
+                }
+            }
         };
         Some(PixelAt { at, value, picture })
     }

@@ -161,17 +161,15 @@ impl DeclaredPasses {
         let images = passes.flat_map(|pass| pass.desc.images().map(move |(name, format)| (pass, name, format)));
         let read = images.filter(|(.., format)| matches!(format, PassFormat::Rgba16f | PassFormat::Rgba32f));
         let read: Vec<_> = read.filter_map(|(pass, name, _)| Some((pass, name, self.images.current(name)?))).collect();
-        pixels.retain(|(name, _)| read.iter().any(|(_, read, _)| read == name));
+        pixels.clear();
         for (pass, name, image) in read {
             let of = image.desc();
             let row = y * of.height / height;
             let row = if pass.desc.rows_up { of.height.saturating_sub(row + 1) } else { row };
-            if pixels.iter().all(|(known, _)| known != name) {
-                pixels.push((name.to_owned(), PixelReadback::new(&self.gpu)?));
-            }
-            if let Some((_, pixel)) = pixels.iter_mut().find(|(known, _)| known == name) {
-                pixel.record(encoder, image, Some((x * of.width / width, row)), picture);
-            }
+            let mut pixel = PixelReadback::new(&self.gpu)?;
+            pixel.is_plain = true;
+            pixel.record(encoder, image, Some((x * of.width / width, row)), picture);
+            pixels.push((format!("pass:{name}"), pixel));
         }
         Ok(())
     }

@@ -52,6 +52,7 @@ use crate::frame::{Display, Limits, TargetFormat};
 use crate::gpu::{
     DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
+use crate::shader::annotation::pass::PassTarget;
 use crate::shader::graph::Input;
 
 /// How much of a frame [`View::draw`] draws.
@@ -72,7 +73,7 @@ struct InFlight {
     uniforms: Uniforms,
     blocks: Blocks,
     pixel: PixelReadback,
-    /// The pixel in the images of passes, by their names.
+    /// The pixel in the images of passes, by the slugs of their modes.
     pass_pixels: Vec<(String, PixelReadback)>,
     scan: Option<Scan>,
     range_sample: RangeSampleReadback,
@@ -259,6 +260,9 @@ impl View {
         let is_on_display = frame.state.pipelines.shows_display();
         let values = self.declared.values_on_display(frame).cloned();
         let in_light = self.probe.filter(|_| !is_on_display);
+        let shown = frame.state.pipelines.shown().map(|pass| &pass.desc);
+        let is_plain = shown.is_some_and(|pass| pass.to == PassTarget::Image && pass.watches.is_none());
+        (in_flight.pixel.is_plain, in_flight.range_sample.is_plain) = (is_plain, is_plain);
         in_flight.pixel.record(encoder, &picture, in_light, self.picture);
         self.declared.record_pixels(encoder, frame, self.probe_passes, &mut in_flight.pass_pixels, self.picture)?;
         if std::mem::take(&mut self.scans) {
@@ -302,6 +306,11 @@ impl View {
         if let Some(display) = display {
             if is_on_display {
                 in_flight.pixel.record(encoder, &display, self.probe, self.picture);
+                if let Some(at) = self.probe_passes {
+                    let mut pixel = PixelReadback::new(&self.gpu)?;
+                    pixel.record(encoder, &display, Some(at), self.picture);
+                    in_flight.pass_pixels.push(("final".to_owned(), pixel));
+                }
             }
             passes::copy(encoder, &display, output);
         }
@@ -386,7 +395,7 @@ impl View {
         self.in_flight.get(slot).and_then(|in_flight| in_flight.pixel.read())
     }
 
-    /// The values of [`View::probe_passes`] in the last frame of slot `slot`, by the names of the images. SYNC: after that frame's fence.
+    /// The values of [`View::probe_passes`] in the last frame of slot `slot`, by the slugs of the modes that show them. SYNC: after that frame's fence.
     pub fn pass_pixels(&self, slot: usize) -> Vec<(String, PixelAt)> {
         let pixels = self.in_flight.get(slot).into_iter().flat_map(|in_flight| &in_flight.pass_pixels);
         pixels.filter_map(|(name, pixel)| Some((name.clone(), pixel.read()?))).collect()

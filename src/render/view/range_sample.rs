@@ -56,6 +56,8 @@ pub(super) struct RangeSampleReadback {
     image: Option<(Arc<Image>, Arc<Buffer>)>,
     /// The picture whose samples the buffer holds.
     copied: Option<u64>,
+    /// Whether alpha is a number of a pass, without flags.
+    pub(super) is_plain: bool,
 }
 
 impl RangeSampleReadback {
@@ -104,7 +106,13 @@ impl RangeSampleReadback {
         let picture = self.copied.take()?;
         let (image, buffer) = self.image.as_ref()?;
         let content = buffer.read();
-        let decoded = texels(&content, is_half(image.desc().format)).map(PixelValue::decode);
+        let plain = |[r, g, b, alpha]: [f32; 4]| PixelValue {
+            value: [r, g, b, 1.0],
+            no_data: false,
+            not_finite: ![r, g, b, alpha].iter().all(|number| number.is_finite()),
+        };
+        let decode = |texel| if self.is_plain { plain(texel) } else { PixelValue::decode(texel) };
+        let decoded = texels(&content, is_half(image.desc().format)).map(decode);
         let known = decoded.filter(|pixel| !pixel.no_data && !pixel.not_finite && pixel.value[3] > 0.5);
         let values =
             known.map(|PixelValue { value: [r, g, b, coverage], .. }| [r, g, b].map(|c| c / coverage)).collect();

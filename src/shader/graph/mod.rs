@@ -241,6 +241,11 @@ impl Graph {
         (0..self.passes.len()).rev().find(|index| self.passes[*index].covers() && is_on(*index))
     }
 
+    /// Whether a pass for whose index `is_on` returns true covers the picture, so that it shows no model.
+    pub fn is_covered(&self, is_on: impl Fn(usize) -> bool) -> bool {
+        self.cover(is_on).is_some()
+    }
+
     /// See [`Graph::internal`].
     fn find_internal(&self) -> BTreeSet<String> {
         let mut needed = BTreeSet::new();

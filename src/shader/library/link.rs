@@ -93,6 +93,9 @@ impl Library {
             // No model is drawn whose values they could show.
             let is_of_toy = |mode: &Mode| mode.id == MODE_FINAL || mode.slug == expression::MODE;
             annotations.modes.retain(is_of_toy);
+            for mode in annotations.modes.iter_mut().filter(|mode| mode.id == MODE_FINAL) {
+                (mode.is_displayed, mode.unit) = (true, String::new());
+            }
         }
         // A pass that has never compiled has a name, which other stages may read already.
         let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::support::process::{Finished, run};
 use crate::support::{Tree, compiler, line_of, settings};
-use serde_json::Value;
+use serde_json::{Value, json};
 use specula::settings::ShaderValue;
 use specula::shader::rewrite::defaults;
 use specula::shader::{Change, Library, Source, TreePath, Update};
@@ -167,7 +167,7 @@ fn values_of_a_toy_and_of_its_buffers_are_shown() {
          void mainImage(out vec4 c, in vec2 p) {\n    vec2 q = p;\n    \
          c = vec4(lifted(q.x), texture(iChannel0, q / iResolution.xy).xy, 1.0);\n}\n",
     );
-    write("buffer_a.glsl", "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(p, 0.0, 1.0);\n}\n");
+    write("buffer_a.glsl", "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(p, 0.0, 300.0);\n}\n");
     let value = |expression: &str| {
         let args = ["probe", "--json", "--shaders", "toy.glsl", "--size", "96x64", "--at", "48,30"];
         let found = run(folder.path(), &[&args[..], &["--watch-expr", expression]].concat());
@@ -183,7 +183,8 @@ fn values_of_a_toy_and_of_its_buffers_are_shown() {
     assert_eq!((p[0].as_f64(), p[1].as_f64()), (Some(48.5), Some(33.5)));
     let image = run(folder.path(), &["probe", "--json", "--shaders", "toy.glsl", "--size", "96x64", "--at", "48,30"]);
     let modes = image.expect(0, &[]).json()["modes"].clone();
-    assert_eq!(modes["pass:buffer_a"][1].as_f64(), Some(33.5), "{modes}");
+    // Alpha of a pass is a number as the others.
+    assert_eq!(modes["pass:buffer_a"], json!([48.5, 33.5, 0.0, 300.0]), "{modes}");
     assert!(modes["pass:image"][2].as_f64().is_some_and(|blue| blue > 0.0), "{modes}");
 }
 
