@@ -63,6 +63,7 @@ pub(in crate::app) fn begin_values(
         values,
         picture,
         is_complete: false,
+        is_of_toy: false,
         exposure: frame_state.exposure(),
         camera: frame_state.camera,
         lights: frame_state.lights.clone(),

@@ -78,7 +78,7 @@ impl Drawing {
         let is_safe_mode = engine.recorder.is_safe_mode();
         let sight = if is_safe_mode { &sees_nothing } else { &state.workspace.sight };
         let inspection = &state.inspection;
-        let inspector = sight.inspector.then(|| InspectorRequest {
+        let inspector = (sight.inspector && !state.shader.is_single_file).then(|| InspectorRequest {
             pin: inspection.pin,
             mouse: screen.mouse_pixel(),
             size: screen.rect.size,

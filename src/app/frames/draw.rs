@@ -16,7 +16,9 @@ use super::recording::record;
 use super::reference::reference;
 use super::request::frame_request;
 use super::results::{finished, take_background, take_ended, take_measurement, take_results, take_times, timed};
+use super::scan::{plan_scan, take_scan};
 use super::stages::update_stages;
+use super::toy_pixel::{take_toy_pixel, toy_pixel};
 use crate::app::actions::select::selected_instances;
 use crate::app::actions::sessions::update_offer;
 use crate::app::actions::watch::watch_files;
@@ -145,6 +147,8 @@ impl Drawing {
         prepare_grid(state, engine, screen, &cells)?;
         screen.view.samples_range = state.workspace.shows_histogram && self.interface.panels.visible;
         screen.place_probe();
+        screen.view.probe_passes = toy_pixel(state, screen.mouse_pixel());
+        let scan = plan_scan(state, engine, &mut screen.view);
         let measurement = screen.measure_error(state.compare.is_on() && !state.compare.is_held, frame)?;
         take_ended(state, engine, screen);
         let measures = take_measurement(state, measurement);
@@ -197,6 +201,7 @@ impl Drawing {
             return Ok(Some(Duration::ZERO));
         }
         let delay = self.interface.shown.delay.filter(|delay| *delay < NEVER);
+        let delay = delay.into_iter().chain(scan).min();
         self.due = delay.map(|delay| Instant::now() + delay);
         Ok(wait.into_iter().chain(delay).min())
     }
@@ -208,6 +213,9 @@ impl Drawing {
         screen.pointer = interface.mouse.over.then_some(interface.mouse.at);
         screen.read_finished();
         if take_background(state, engine, screen) || screen.between.is_unseen() {
+            interface.outdate();
+        }
+        if take_scan(state, screen) || take_toy_pixel(state, screen) {
             interface.outdate();
         }
         screen.between.set_unseen(false);

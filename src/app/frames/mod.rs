@@ -13,5 +13,7 @@ mod recording;
 pub(super) mod reference;
 mod request;
 mod results;
+mod scan;
 mod stages;
 mod title;
+mod toy_pixel;

@@ -45,7 +45,8 @@ fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands
     let State { session, shader, inspection: own, .. } = context.state;
     let Commands { settings, list: commands, .. } = commands;
     let shaders = &context.shaders;
-    header(ui, own, &shaders.modes, commands);
+    let is_toy = shader.is_single_file;
+    header(ui, own, (&shaders.modes, is_toy), commands);
     let Some(reading) = &own.reading else {
         let hint = match own.is_pinned() {
             true => "Reading the pixel…",
@@ -56,16 +57,19 @@ fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands
         ui.label(RichText::new(hint).small().color(QUIET));
         return;
     };
-    ui.horizontal(|ui| {
-        for page in Page::ALL {
-            let (name, doc) = page.words();
-            if ui.selectable_label(own.page == page, name).on_hover_text(doc).clicked() {
-                commands.push(OPEN_INSPECTOR.with(page));
+    if !is_toy {
+        ui.horizontal(|ui| {
+            for page in Page::ALL {
+                let (name, doc) = page.words();
+                if ui.selectable_label(own.page == page, name).on_hover_text(doc).clicked() {
+                    commands.push(OPEN_INSPECTOR.with(page));
+                }
             }
-        }
-        light(ui, &mut settings.lights.chosen, reading.lights.len());
-    });
-    match own.page {
+            light(ui, &mut settings.lights.chosen, reading.lights.len());
+        });
+    }
+    // A toy has no material.
+    match if is_toy { Page::Values } else { own.page } {
         Page::Values => {
             search::field(ui, &mut panel.search, "values", 0.0);
             let words = Words::new(&panel.search);
@@ -88,7 +92,7 @@ fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands
 }
 
 /// The pixel, what it shows, and what can be done with it.
-fn header(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode], commands: &mut Vec<Command>) {
+fn header(ui: &mut Ui, own: &Inspection, (modes, is_toy): (&[crate::shader::Mode], bool), commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let at = own.pin.or(own.reading.as_ref().filter(|_| own.follows).map(|reading| reading.at));
         match at {
@@ -115,6 +119,7 @@ fn header(ui: &mut Ui, own: &Inspection, modes: &[crate::shader::Mode], commands
     let about = match &reading.names {
         Some([node, material]) if node == material => node.clone(),
         Some([node, material]) => format!("{node} · {material}"),
+        None if is_toy => "Colors as displayed, and the images of the passes".to_owned(),
         None if reading.is_complete => "The model does not cover this pixel".to_owned(),
         None => String::new(),
     };

@@ -105,3 +105,49 @@ fn dot(ui: &mut Ui, color: Tone) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(rect.center(), 4.0, color);
 }
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+
+    fn status(shader: &ShaderStatus) -> Status<'_> {
+        Status {
+            shader,
+            waits: None,
+            progress: None,
+            not_finite: None,
+            generation: 1,
+            diagnostics: &[],
+            frame_ms: None,
+            stage: None,
+            device: "",
+        }
+    }
+
+    #[test]
+    fn old_light_is_told_with_its_time_and_progress() {
+        let waits = Some((Waits::Light { of_edit: true }, Duration::from_millis(1240)));
+        let show_bar = move |ui: &mut Ui, commands: &mut Vec<Command>| {
+            let shader = ShaderStatus::default();
+            show(ui, &Status { waits, progress: Some(0.43), ..status(&shader) }, commands);
+        };
+        let harness = Harness::new_ui_state(show_bar, Vec::new());
+        harness.get_by_label("light of the edit is being baked, 1.2 s, 43 %");
+    }
+
+    #[test]
+    fn pixels_with_nan_lead_to_the_inspector() {
+        let not_finite = Some(NotFinitePixels { picture: 7, count: 12, at: (30, 40) });
+        let show_bar = move |ui: &mut Ui, commands: &mut Vec<Command>| {
+            let shader = ShaderStatus::default();
+            show(ui, &Status { not_finite, ..status(&shader) }, commands);
+        };
+        let mut harness = Harness::new_ui_state(show_bar, Vec::new());
+        harness.get_by_label("NaN in 12 pixels").click();
+        harness.run();
+        assert_eq!(harness.state().last(), Some(&INSPECT_PIXEL.with([30, 40])));
+    }
+}

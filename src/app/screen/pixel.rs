@@ -5,7 +5,7 @@ use glam::Vec2;
 use super::pointed::Pointed;
 use super::{FRAMES_IN_FLIGHT, Screen};
 use crate::frame::FrameState;
-use crate::render::{PixelAt, View};
+use crate::render::{NotFinitePixels, PixelAt, View};
 use crate::shader::PixelValue;
 
 /// The pixel under the mouse in the newest finished frame.
@@ -42,12 +42,27 @@ impl Screen {
         self.cells.at(at).map(|(index, _)| self.cells.0[index].mode.clone())
     }
 
+    /// The slot of the newest finished frame.
+    fn newest_finished(&self) -> Option<usize> {
+        let mut newest_first =
+            (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
+        newest_first.find(|slot| self.frames.is_finished(*slot))
+    }
+
+    /// The values in the images of passes that the newest finished frame reports.
+    pub(in crate::app) fn pass_pixels(&self) -> Vec<(String, PixelAt)> {
+        self.newest_finished().map(|slot| self.view.pass_pixels(slot)).unwrap_or_default()
+    }
+
+    /// The pixels with NaN in a finished frame that has looked for them.
+    pub(in crate::app) fn take_scan(&mut self) -> Option<NotFinitePixels> {
+        let mut finished = (0..FRAMES_IN_FLIGHT).filter(|slot| self.frames.is_finished(*slot));
+        finished.find_map(|slot| self.view.take_scan(slot))
+    }
+
     /// Reads the probed pixel of the newest finished frame.
     pub(super) fn read_pixel(&mut self) {
-        let newest_first =
-            (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
-        let finished = newest_first.into_iter().find(|slot| self.frames.is_finished(*slot));
-        if let Some(slot) = finished {
+        if let Some(slot) = self.newest_finished() {
             let cell = self.cells.probed();
             self.pixel = match &self.reference {
                 _ if cell.is_some() => cell.and_then(|cell| cell.view.pixel(slot)).map(|pixel| (pixel, false)),

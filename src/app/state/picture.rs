@@ -19,6 +19,19 @@ pub(in crate::app) struct ShownPicture {
     pub(in crate::app) reads_keys: bool,
 }
 
+/// How far the search for NaN in the picture is. Pictures have numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::app) enum Scan {
+    /// The picture may change with the next frame.
+    #[default]
+    Moves,
+    /// The picture has been the same since this time.
+    Rests(u64, Instant),
+    /// A frame copies its pixels.
+    Asked(u64),
+    Done(u64),
+}
+
 /// The picture on screen, and what it lacks of the settings.
 #[derive(Default)]
 pub(in crate::app) struct Picture {
@@ -34,6 +47,7 @@ pub(in crate::app) struct Picture {
     pub(in crate::app) settled: Option<u64>,
     /// The pixels with NaN or infinity in the last picture that has come to rest, and the generation of its shaders.
     pub(in crate::app) not_finite: Option<(u64, NotFinitePixels)>,
+    pub(in crate::app) scan: Scan,
     /// The work that the picture waits for, and since when; `None` when it has everything.
     waits: Option<(Waits, Instant)>,
 }

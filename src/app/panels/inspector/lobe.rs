@@ -168,6 +168,7 @@ mod tests {
             values,
             picture: 1,
             is_complete: true,
+            is_of_toy: false,
             exposure: 1.0,
             camera,
             lights: Vec::new(),

@@ -45,7 +45,9 @@ pub(super) fn show(
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut more = Some(more);
         for modes in found.chunk_by(|a, b| a.group == b.group) {
-            let has_data = |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| has_data(&value));
+            // Alpha of a pass is a number as the others.
+            let has_data =
+                |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| reading.is_of_toy || has_data(&value));
             let (shown, folded): (Vec<&Mode>, Vec<&Mode>) = modes.iter().copied().partition(has_data);
             ui.add_space(6.0);
             let group = &modes[0].group;
@@ -73,7 +75,7 @@ pub(super) fn show(
             more(ui);
         }
         let left = unread.iter().filter(|mode| is_found(mode)).count();
-        if left > 0 && reading.is_complete {
+        if left > 0 && reading.is_complete && !reading.is_of_toy {
             ui.add_space(8.0);
             let text = format!("{left} modes of random paths and passes are not listed here");
             let names = unread.iter().map(|mode| mode.name.as_str()).collect::<Vec<_>>().join(", ");

@@ -120,6 +120,8 @@ pub(in crate::app) struct Reading {
     pub(in crate::app) picture: u64,
     /// Whether all modes were read from that picture.
     pub(in crate::app) is_complete: bool,
+    /// Whether the picture is that of a single shader file, so that the values are displayed colors and those of passes.
+    pub(in crate::app) is_of_toy: bool,
     /// Factor from a value before exposure to one after it.
     pub(in crate::app) exposure: f32,
     /// The camera and the lights of the picture, world space.

@@ -123,6 +123,7 @@ mod tests {
             values: values.into_iter().map(|(slug, value)| (slug.to_owned(), (value, 1))).collect::<BTreeMap<_, _>>(),
             picture: 1,
             is_complete: true,
+            is_of_toy: false,
             exposure: 1.0,
             camera: CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds),
             lights: Vec::new(),
