@@ -15,7 +15,7 @@ use super::command::spec::Command;
 use super::commands::Commands;
 use super::context::Context;
 use super::mouse::Mouse;
-use super::panels::{self, Panels, PictureArea};
+use super::panels::all::{self, Panels, PictureArea};
 use super::readings::Readings;
 use super::state::State;
 use super::state::waits::Waits;
@@ -157,7 +157,7 @@ impl Interface {
         let begin = Instant::now();
         let (context, mut commands) = (Context::new(state, readings), Commands::new(&state.session.settings));
         let (mut picture, panels) = (None, &mut self.panels);
-        let output = self.egui.run_ui(input, |ui| picture = Some(panels::show(ui, &context, panels, &mut commands)));
+        let output = self.egui.run_ui(input, |ui| picture = Some(all::show(ui, &context, panels, &mut commands)));
         let pixels_per_point = output.pixels_per_point;
         let primitives = self.egui.tessellate(output.shapes, pixels_per_point);
         let ms = begin.elapsed().as_secs_f64() * 1e3;

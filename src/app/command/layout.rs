@@ -20,7 +20,7 @@ pub(in crate::app) static OPEN_PANEL: Spec<Panel> =
 /// Opens the inspector at a page.
 pub(in crate::app) static OPEN_INSPECTOR: Spec<Page> = Spec::act("inspector", |state, _, page| {
     state.inspection.page = page;
-    state.workspace.request_in_sight(PanelRequest::Open(Panel::Inspector));
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::INSPECTOR));
 });
 
 pub(in crate::app) static ARRANGE: Spec<Preset> =

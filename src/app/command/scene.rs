@@ -36,7 +36,7 @@ pub(in crate::app) static CLICK: Spec<[u32; 2]> = Spec::act("click", |state, _, 
 /// Pins a pixel and opens the inspector, which finds the line that makes NaN there.
 pub(in crate::app) static INSPECT_PIXEL: Spec<[u32; 2]> = Spec::act("inspect-pixel", |state, _, at| {
     (state.inspection.pin, state.inspection.page) = (Some(at), Page::Values);
-    state.workspace.request_in_sight(PanelRequest::Open(Panel::Inspector));
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::INSPECTOR));
 });
 
 /// Forgets the pixel that the inspector reads.

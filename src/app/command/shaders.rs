@@ -73,12 +73,12 @@ pub(in crate::app) static VERSIONS: Spec<VersionsRequest> = Spec::new("versions"
 
 /// Asks in the timeline whether to write a version to the files.
 pub(in crate::app) static ASK_VERSION: Spec<u64> = Spec::act("ask-version", |state, _, number| {
-    state.workspace.request_in_sight(PanelRequest::Open(Panel::Timeline));
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::TIMELINE));
     state.workspace.request(PanelRequest::AskVersion(number));
 });
 
 pub(in crate::app) static ASK_EXPRESSION: Spec<()> = Spec::plain("ask-expression", |state, _, ()| {
-    state.workspace.request_in_sight(PanelRequest::Open(Panel::Expression));
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::EXPRESSION));
     state.workspace.request(PanelRequest::FocusExpression);
 })
 .label("Watch an expression of the shaders…", "variable value debug line");

@@ -2,7 +2,7 @@
 
 use super::picture::frame_of_mode;
 use crate::app::engine::Engine;
-use crate::app::panels::PictureArea;
+use crate::app::panels::all::PictureArea;
 use crate::app::screen::Screen;
 use crate::app::state::State;
 use crate::app::state::grid::{PictureRect, cells};

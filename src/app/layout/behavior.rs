@@ -112,7 +112,7 @@ fn widest(mut widths: Vec<f32>, mut room: f32) -> f32 {
 /// The titles of the panels in a tile.
 fn titles(tiles: &Tiles<Panel>, id: TileId) -> Vec<&'static str> {
     match tiles.get(id) {
-        Some(Tile::Pane(panel)) => vec![panel.title()],
+        Some(Tile::Pane(panel)) => vec![panel.0],
         Some(Tile::Container(container)) => container.children().flat_map(|child| titles(tiles, *child)).collect(),
         None => Vec::new(),
     }
@@ -121,24 +121,23 @@ fn titles(tiles: &Tiles<Panel>, id: TileId) -> Vec<&'static str> {
 impl Behavior<Panel> for Dock<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, panel: &mut Panel) -> UiResponse {
         let area = ui.max_rect();
-        if *panel == Panel::Viewport {
+        if *panel == Panel::VIEWPORT {
             self.picture = Some(area);
             return UiResponse::None;
         }
         ui.painter().rect_filled(area, 0.0, PANEL);
         egui::Frame::new().inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-            // These have rows above their lists, or may run from left to right: they scroll by themselves.
-            if matches!(*panel, Panel::Modes | Panel::Shaders | Panel::Timeline | Panel::Inspector) {
+            if panel.scrolls_itself() {
                 return (self.panels)(ui, *panel);
             }
-            let scroll = egui::ScrollArea::vertical().id_salt(panel.title()).auto_shrink(false);
+            let scroll = egui::ScrollArea::vertical().id_salt(panel.0).auto_shrink(false);
             scroll.show(ui, |ui| (self.panels)(ui, *panel));
         });
         UiResponse::None
     }
 
     fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
-        panel.title().into()
+        panel.0.into()
     }
 
     fn tab_title_for_tile(&mut self, tiles: &Tiles<Panel>, id: TileId) -> WidgetText {
@@ -159,7 +158,7 @@ impl Behavior<Panel> for Dock<'_> {
 
     fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, id: TileId, tab: Response) -> Response {
         let Some(Tile::Pane(panel)) = tiles.get(id) else { return tab };
-        if *panel == Panel::Viewport {
+        if *panel == Panel::VIEWPORT {
             return tab;
         }
         let mut closes = tab.middle_clicked();
@@ -174,7 +173,7 @@ impl Behavior<Panel> for Dock<'_> {
         }
         let hint = "Drag to dock elsewhere; middle-click to close";
         match self.tabs.cut(id) {
-            Some(_) => tab.on_hover_text(format!("{}\n{hint}", panel.title())),
+            Some(_) => tab.on_hover_text(format!("{}\n{hint}", panel.0)),
             None => tab.on_hover_text(hint),
         }
     }

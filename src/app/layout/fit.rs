@@ -156,7 +156,7 @@ pub(super) fn without_handles(picture: Rect, area: Rect, grab: f32) -> Rect {
 /// Each container that holds the picture with its child that does, the root first.
 pub(super) fn path_to_picture(tiles: &Tiles<Panel>) -> Vec<[TileId; 2]> {
     let mut steps = Vec::new();
-    let mut child = tiles.find_pane(&Panel::Viewport);
+    let mut child = tiles.find_pane(&Panel::VIEWPORT);
     while let Some((parent, of)) = child.and_then(|child| Some((tiles.parent_of(child)?, child))) {
         steps.push([parent, of]);
         child = Some(parent);

@@ -174,10 +174,10 @@ impl Layout {
     }
 
     fn insert(&mut self, panel: Panel) {
-        let group = Panel::GROUPS.into_iter().find(|group| group.contains(&panel)).unwrap_or_default();
+        let group = Panel::groups().into_iter().find(|group| group.contains(&panel)).unwrap_or_default();
         let (root, tiles) = (self.tree.root(), &mut self.tree.tiles);
         let with = |other: &Panel| tiles.parent_of(tiles.find_pane(other)?);
-        let all = Panel::GROUPS.concat();
+        let all = Panel::groups().concat();
         let beside = group.iter().find_map(with).or_else(|| all.iter().rev().find_map(with));
         let pane = tiles.insert_pane(panel);
         if let Some(Tile::Container(Container::Tabs(tabs))) = beside.and_then(|id| tiles.get_mut(id)) {

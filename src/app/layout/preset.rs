@@ -16,8 +16,9 @@ impl Preset {
     /// The tiles of the arrangement.
     pub(super) fn tree(self) -> Tree<Panel> {
         let tiles = &mut Tiles::default();
-        let [modes, shaders, parameters, settings] = Panel::GROUPS;
-        let picture = tiles.insert_pane(Panel::Viewport);
+        let groups = Panel::groups();
+        let [modes, shaders, parameters, settings] = groups.each_ref().map(Vec::as_slice);
+        let picture = tiles.insert_pane(Panel::VIEWPORT);
         let columns = match self {
             Self::Debug => {
                 let left = [(modes, 3.0), (shaders, 1.0)];
@@ -30,21 +31,21 @@ impl Preset {
             }
             Self::Compare => {
                 let right = [(parameters, 1.0), (settings, 1.0)];
-                let below = [Panel::Timeline, Panel::Shaders, Panel::Timing];
+                let below = [Panel::TIMELINE, Panel::SHADERS, Panel::TIMING];
                 let below = below.map(|panel| tiles.insert_pane(panel)).to_vec();
                 let below = tiles.insert_tab_tile(below);
                 let left = linear(tiles, LinearDir::Vertical, vec![(picture, 1.0), (below, BELOW)]);
                 vec![(left, 1.0), (column(tiles, &right), RIGHT)]
             }
             Self::Toy => {
-                let above = [Panel::Passes, Panel::Parameters, Panel::Output, Panel::Capture];
-                let below = [Panel::Shaders, Panel::Timeline, Panel::Timing, Panel::Modes];
+                let above = [Panel::PASSES, Panel::PARAMETERS, Panel::OUTPUT, Panel::CAPTURE];
+                let below = [Panel::SHADERS, Panel::TIMELINE, Panel::TIMING, Panel::MODES];
                 let right: [(&[Panel], f32); 2] = [(&above, 1.0), (&below, 1.0)];
                 vec![(picture, 1.0), (column(tiles, &right), RIGHT)]
             }
             Self::Learn => {
                 let below: [(&[Panel], f32); 2] =
-                    [(&[Panel::Learn], 3.0), (&[Panel::Parameters, Panel::Modes, Panel::Shaders], 1.0)];
+                    [(&[Panel::LEARN], 3.0), (&[Panel::PARAMETERS, Panel::MODES, Panel::SHADERS], 1.0)];
                 vec![(picture, 1.0), (column(tiles, &below), LESSON)]
             }
         };
@@ -57,7 +58,7 @@ impl Preset {
 fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
     let rows = groups.iter().map(|(panels, share)| {
         // An exercise needs a column of its own.
-        let is_shown = |panel: &&Panel| **panel != Panel::Learn || panels.len() == 1;
+        let is_shown = |panel: &&Panel| **panel != Panel::LEARN || panels.len() == 1;
         let shown = panels.iter().filter(is_shown).filter(|panel| panel.is_in_presets());
         let panes = shown.map(|panel| tiles.insert_pane(*panel)).collect();
         (tiles.insert_tab_tile(panes), *share)

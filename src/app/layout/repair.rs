@@ -62,7 +62,7 @@ fn give_tabs(tree: &mut Tree<Panel>) {
     let tiles = &tree.tiles;
     let is_bare = |id: &TileId| {
         let parent = tiles.parent_of(*id).and_then(|parent| tiles.get_container(parent));
-        matches!(tiles.get(*id), Some(Tile::Pane(panel)) if *panel != Panel::Viewport)
+        matches!(tiles.get(*id), Some(Tile::Pane(panel)) if *panel != Panel::VIEWPORT)
             && parent.is_none_or(|parent| !matches!(parent, Container::Tabs(_)))
     };
     let bare: Vec<TileId> = tiles.tile_ids().filter(is_bare).collect();

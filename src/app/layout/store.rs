@@ -41,12 +41,12 @@ fn parse(text: &str) -> Option<Stored> {
 fn is_whole(tree: &Tree<Panel>) -> bool {
     let panels =
         |panel: &Panel| tree.tiles.tiles().filter(|tile| matches!(tile, Tile::Pane(other) if other == panel)).count();
-    let viewport = tree.tiles.find_pane(&Panel::Viewport);
+    let viewport = tree.tiles.find_pane(&Panel::VIEWPORT);
     let top = std::iter::successors(viewport, |id| tree.tiles.parent_of(*id)).last();
     top.is_some()
         && top == tree.root()
-        && panels(&Panel::Viewport) == 1
-        && Panel::GROUPS.concat().iter().all(|panel| panels(panel) <= 1)
+        && panels(&Panel::VIEWPORT) == 1
+        && Panel::groups().concat().iter().all(|panel| panels(panel) <= 1)
 }
 
 /// Stores an arrangement.

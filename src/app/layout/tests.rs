@@ -44,14 +44,14 @@ fn every_panel_closes_and_opens_again() {
         let size = Vec2::new(1280.0, 720.0);
         let first = shown(&mut layout, &egui, size);
         layout.is_changed = false;
-        for panel in Panel::GROUPS.concat() {
+        for panel in Panel::groups().concat() {
             layout.close(panel);
             layout.is_changed = false;
             shown(&mut layout, &egui, size);
             assert!(!layout.is_open(panel));
         }
         assert!(shown(&mut layout, &egui, size).width() > 1270.0, "a column without panels is left");
-        for panel in Panel::GROUPS.concat() {
+        for panel in Panel::groups().concat() {
             layout.open(panel);
             layout.is_changed = false;
             shown(&mut layout, &egui, size);
@@ -83,7 +83,7 @@ fn a_panel_that_a_narrow_window_hides_can_be_opened() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
     let size = Vec2::new(640.0, 480.0);
     let left_of_picture = shown(&mut layout, &egui, size).min.x;
-    layout.open(Panel::Modes);
+    layout.open(Panel::MODES);
     layout.is_changed = false;
     let picture = shown(&mut layout, &egui, size);
     assert!(left_of_picture == 0.0 && picture.min.x > 100.0 && picture.max.x > 638.0, "{picture:?}");
@@ -93,15 +93,15 @@ fn a_panel_that_a_narrow_window_hides_can_be_opened() {
 fn a_preset_keeps_the_arrangement_that_the_user_made() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
     shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
-    layout.close(Panel::Lights);
+    layout.close(Panel("Lights"));
     for preset in [Preset::Look, Preset::Debug] {
         layout.arrange(preset);
-        assert!(layout.is_open(Panel::Lights) && layout.has_own());
+        assert!(layout.is_open(Panel("Lights")) && layout.has_own());
         // A change of the preset keeps the own arrangement.
-        layout.close(Panel::Output);
+        layout.close(Panel::OUTPUT);
     }
     layout.arrange_own();
-    assert!(!layout.is_open(Panel::Lights) && layout.is_open(Panel::Modes) && !layout.has_own());
+    assert!(!layout.is_open(Panel("Lights")) && layout.is_open(Panel::MODES) && !layout.has_own());
 }
 
 #[test]
@@ -109,18 +109,18 @@ fn a_reset_shows_the_preset_that_was_chosen_last() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
     let size = Vec2::new(1280.0, 720.0);
     shown(&mut layout, &egui, size);
-    layout.close(Panel::Modes);
+    layout.close(Panel::MODES);
     layout.reset();
-    assert!(layout.is_open(Panel::Modes) && layout.has_own(), "the first preset, and a way back");
+    assert!(layout.is_open(Panel::MODES) && layout.has_own(), "the first preset, and a way back");
     layout.arrange(Preset::Compare);
-    layout.close(Panel::Timeline);
+    layout.close(Panel::TIMELINE);
     layout.reset();
-    assert!(layout.is_open(Panel::Timeline));
+    assert!(layout.is_open(Panel::TIMELINE));
     // A reset of a temporary arrangement leaves it temporary.
     layout.arrange_temporarily(Preset::Toy);
     layout.reset();
     layout.arrange_as_before();
-    assert!(layout.is_open(Panel::Timeline));
+    assert!(layout.is_open(Panel::TIMELINE));
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_panel_on_the_picture_moves_beside_it() {
     let size = Vec2::new(1280.0, 720.0);
     shown(&mut layout, &egui, size);
     let tiles = &mut layout.tree.tiles;
-    let (picture, lights) = (tiles.find_pane(&Panel::Viewport).unwrap(), tiles.find_pane(&Panel::Lights).unwrap());
+    let (picture, lights) = (tiles.find_pane(&Panel::VIEWPORT).unwrap(), tiles.find_pane(&Panel("Lights")).unwrap());
     let (tabs, root) = (tiles.parent_of(lights).unwrap(), tiles.parent_of(picture).unwrap());
     let container = |tiles: &mut Tiles<Panel>, id, change: &dyn Fn(&mut Container)| match tiles.get_mut(id) {
         Some(Tile::Container(container)) => change(container),
@@ -142,7 +142,7 @@ fn a_panel_on_the_picture_moves_beside_it() {
     repair(&mut layout.tree);
     layout.fit.invalidate();
     let picture = shown(&mut layout, &egui, size);
-    assert!(picture.width() > 200.0 && layout.is_open(Panel::Lights), "{picture:?}");
+    assert!(picture.width() > 200.0 && layout.is_open(Panel("Lights")), "{picture:?}");
     assert!(
         fit::path_to_picture(&layout.tree.tiles)
             .into_iter()
@@ -162,7 +162,7 @@ fn handles_lie_only_between_the_picture_and_panels() {
 fn the_active_tab_shows_its_whole_title() {
     let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
     crate::app::widgets::theme::apply(&egui);
-    for panel in Panel::GROUPS.concat() {
+    for panel in Panel::groups().concat() {
         layout.open(panel);
         // The second frame has the widths of the first.
         for _ in 0..2 {
@@ -174,7 +174,7 @@ fn the_active_tab_shows_its_whole_title() {
         let tile = tiles.rect(tiles.parent_of(pane).unwrap()).unwrap();
         let tab = egui.read_response(pane.egui_id(layout.tree.id())).unwrap().rect;
         let font = egui::TextStyle::Button.resolve(&egui.global_style());
-        let title = panel.title().to_owned();
+        let title = panel.0.to_owned();
         let width = egui.fonts_mut(|fonts| fonts.layout_no_wrap(title, font, egui::Color32::WHITE).size().x);
         assert!(tab.width() >= width && tile.x_range().contains(tab.max.x), "{panel:?}: {tab:?} in {tile:?}");
     }

@@ -85,15 +85,14 @@ pub(super) fn of_layout() -> impl Iterator<Item = Entry> {
     let preset = |preset: Preset| {
         Entry::new("Layout", format!("Layout: {}", preset.title()), ARRANGE.with(preset)).words(preset.doc())
     };
-    let panel = |panel: Panel| {
-        Entry::new("Panel", format!("Panel: {}", panel.title()), OPEN_PANEL.with(panel)).words(panel.words())
-    };
+    let panel =
+        |panel: Panel| Entry::new("Panel", format!("Panel: {}", panel.0), OPEN_PANEL.with(panel)).words(panel.words());
     let page = |page: Page| {
         let (name, doc) = page.words();
         let entry = Entry::new("Panel", format!("Panel: Inspector, {name}"), OPEN_INSPECTOR.with(page));
         entry.words(format!("polar plot curves {doc}"))
     };
-    let panels = Panel::GROUPS.concat().into_iter().map(panel).chain(Page::ALL.map(page));
+    let panels = Panel::groups().concat().into_iter().map(panel).chain(Page::ALL.map(page));
     Preset::ALL.into_iter().map(preset).chain(panels)
 }
 
@@ -258,7 +257,7 @@ fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings
             entries.push(Ask { title, group, doc, scale, now, target }.entry());
         } else if parameter.choices.is_empty() {
             // Colors and vectors have no single number to type.
-            let panel = if is_of_pass { Panel::Passes } else { Panel::Parameters };
+            let panel = if is_of_pass { Panel::PASSES } else { Panel::PARAMETERS };
             entries.push(Entry::new(group, label.clone(), OPEN_PANEL.with(panel)).words(name.clone()));
         }
         entries.extend(choices(group, label, name, &parameter.choices, now));

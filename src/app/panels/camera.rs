@@ -7,11 +7,16 @@ use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::numbers::Scale;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::widgets::rows::{Row, drag, group, heading, option_text, option_value, set_option};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::scene::{CameraView, Model};
 use crate::settings::{CameraSettings, Curve, Settings, Value, setting};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Camera", Group::Settings, "field of view bookmarks", || Box::new(ui));
 
 /// Farthest position that the panel sets, meters.
 const FARTHEST: f64 = 1e6;

@@ -10,13 +10,19 @@ use crate::app::command::capture::{
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::captures::Captures;
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{Row, elided, heading, skips};
 use crate::app::widgets::theme::QUIET;
 use crate::capture::Turn;
 use crate::picture::numbered_as;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Capture", Group::Settings, "contact sheet turntable video timeline GIF WebP MP4 EXR size", || {
+        Box::<CaptureState>::default()
+    });
 
 /// Largest width and height that the panel offers, pixels. The device may allow less, and says so then.
 const LARGEST: u32 = 16_384;

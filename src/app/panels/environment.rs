@@ -6,12 +6,17 @@ use egui::{RichText, Ui};
 
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{Row, check, choose, group, set_option, special};
 use crate::app::widgets::theme::QUIET;
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{Settings, ViewSettings};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Environment", Group::Settings, "HDR map rotation background blur suns", || Box::new(ui));
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

@@ -10,7 +10,7 @@ use crate::app::command::shaders::{DRAFT, WRITE_EDITS};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::source_line::{SourceLine, stop, watch};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
@@ -23,6 +23,12 @@ use crate::settings::Settings;
 use crate::shader::Expression;
 use crate::shader::expression::{MODE, Variable};
 use crate::shader::rewrite::Edit;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Expression", Group::Shaders, "watch variable numbers of a line sliders", || {
+        Box::<ExpressionState>::default()
+    });
 
 /// Height of a menu of members, points.
 const MENU: f32 = 320.0;

@@ -14,13 +14,20 @@ use crate::app::command::scene::{FOLLOW_MOUSE, UNPIN};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::State;
 use crate::app::state::inspection::{Inspection, Page, text};
 use crate::app::widgets::check_box;
 use crate::app::widgets::rows::{choose, elided};
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, QUIET};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Inspector", Group::Parameters, "pixel values texels BRDF lobe albedo furnace plot", || {
+        Box::<InspectorState>::default()
+    })
+    .scrolls_itself();
 
 /// Radius of the marker of the pinned pixel, points.
 const MARKER: f32 = 5.0;

@@ -10,11 +10,15 @@ use crate::app::command::program::LEARN;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::exercise::{LearnCommand, Learning};
 use crate::shader::{Diagnostic, Severity};
 
 use crate::app::widgets::theme::{ACCENT, GOOD, QUIET};
 use crate::learn::exercises;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec = PanelSpec::new("Learn", Group::Modes, "exercises lessons", || Box::new(ui));
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

@@ -6,10 +6,15 @@ use crate::app::command::scene::{PLACE_RECTANGLE, SELECT};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::selection::{LightId, Selected};
 use crate::app::widgets::rows::{choose, group, heading, special};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::{LightSource, Settings};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Lights", Group::Settings, "color orbit rectangle ambient", || Box::new(ui));
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

@@ -1,6 +1,7 @@
 //! Bars, panels and messages around and over the picture. Each panel has a file of its own and receives only
-//! what it shows and sets. `crate::app::layout` arranges them.
+//! what it shows and sets. `crate::app::layout` arranges them; `all` shows them.
 
+pub(super) mod all;
 mod baking;
 mod camera;
 mod capture;
@@ -28,159 +29,64 @@ pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
-use egui::{Ui, Vec2};
+use serde::{Deserialize, Deserializer, de::Error};
 
-use super::commands::Commands;
-use super::context::Context;
-use super::layout::Layout;
-use super::palette::{self, Palette};
-use super::state::arrangement::{Panel, Preset};
-use super::state::workspace::PanelRequest;
-use super::widgets::theme;
-use crate::app::command::spec::Command;
-use panel_ui::PanelUi;
+use super::state::arrangement::Panel;
+use panel_ui::{Group, PanelSpec};
 
-/// A window smaller than this, in points, shows only the picture.
-const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
-
-/// Makes a panel for a new window.
-type Make = fn() -> Box<dyn PanelUi>;
-
-/// All panels that tiles show. [`Panel`] has their names, groups and words.
-const PANELS: [(Panel, Make); 17] = [
-    (Panel::Modes, || Box::<modes::Modes>::default()),
-    (Panel::Scene, || Box::<scene::SceneState>::default()),
-    (Panel::Model, || Box::new(model::ui)),
-    (Panel::Texture, || Box::<texture::TextureState>::default()),
-    (Panel::Learn, || Box::new(learn::ui)),
-    (Panel::Shaders, || Box::<shaders::ShadersState>::default()),
-    (Panel::Timeline, || Box::<timeline::TimelineState>::default()),
-    (Panel::Timing, || Box::new(timing::ui)),
-    (Panel::Expression, || Box::<expression::ExpressionState>::default()),
-    (Panel::Parameters, || Box::new(parameters::ui)),
-    (Panel::Passes, || Box::new(passes::ui)),
-    (Panel::Inspector, || Box::<inspector::InspectorState>::default()),
-    (Panel::Environment, || Box::new(environment::ui)),
-    (Panel::Lights, || Box::new(lights::ui)),
-    (Panel::Output, || Box::new(output::ui)),
-    (Panel::Camera, || Box::new(camera::ui)),
-    (Panel::Capture, || Box::<capture::CaptureState>::default()),
+/// All panels that can be closed, in the order of the menu. Those of a group share a tile at first.
+static PANELS: &[&PanelSpec] = &[
+    &modes::PANEL,
+    &scene::PANEL,
+    &model::PANEL,
+    &texture::PANEL,
+    &learn::PANEL,
+    &shaders::PANEL,
+    &timeline::PANEL,
+    &timing::PANEL,
+    &expression::PANEL,
+    &parameters::PANEL,
+    &passes::PANEL,
+    &inspector::PANEL,
+    &environment::PANEL,
+    &lights::PANEL,
+    &output::PANEL,
+    &camera::PANEL,
+    &capture::PANEL,
 ];
 
-/// The user interface between frames.
-pub(super) struct Panels {
-    /// Whether the panels are shown (H).
-    pub(super) visible: bool,
-    layout: Layout,
-    docked: Vec<(Panel, Box<dyn PanelUi>)>,
-    pub(super) palette: Palette,
-    /// Whether the list of keys is shown (F1).
-    pub(super) show_keys: bool,
-    key_list: keys::KeyList,
-    pub(super) open_gallery: open_gallery::OpenGallery,
-    pub(super) defaults: parameters::defaults::Asked,
-    overlay: overlay::Overlay,
-}
-
-impl Panels {
-    /// The panels as they were arranged in the last run.
-    pub(super) fn restored() -> Self {
-        Self::of_layout(Layout::restored())
+impl Panel {
+    /// All panels that can be closed, by their groups.
+    pub(in crate::app) fn groups() -> [Vec<Self>; 4] {
+        [Group::Modes, Group::Shaders, Group::Parameters, Group::Settings]
+            .map(|group| PANELS.iter().filter(|spec| spec.group == group).map(|spec| spec.panel).collect())
     }
 
-    fn of_layout(layout: Layout) -> Self {
-        Self {
-            visible: true,
-            layout,
-            docked: PANELS.into_iter().map(|(panel, make)| (panel, make())).collect(),
-            palette: Palette::default(),
-            show_keys: false,
-            key_list: keys::KeyList::default(),
-            open_gallery: open_gallery::OpenGallery::default(),
-            defaults: parameters::defaults::Asked::default(),
-            overlay: overlay::Overlay::default(),
-        }
+    fn spec(self) -> Option<&'static PanelSpec> {
+        PANELS.iter().find(|spec| spec.panel == self).copied()
     }
 
-    /// Closes the list of keys or the gallery. Returns whether one was open.
-    pub(super) fn close_list(&mut self) -> bool {
-        std::mem::take(&mut self.show_keys) || std::mem::take(&mut self.open_gallery.is_open)
+    /// Whether a preset opens the panel. The others open on request.
+    pub(in crate::app) fn is_in_presets(self) -> bool {
+        self.spec().is_some_and(|spec| spec.is_in_presets)
     }
 
-    /// Does what the rest of the window has asked for since the last frame.
-    pub(super) fn carry_out(&mut self, request: &PanelRequest) {
-        match *request {
-            PanelRequest::Toggle => self.visible ^= true,
-            PanelRequest::Unhide => self.visible = true,
-            PanelRequest::Open(panel) => self.layout.open(panel),
-            PanelRequest::Arrange(preset) => self.layout.arrange(preset),
-            PanelRequest::ArrangeTemporarily(preset) => self.layout.arrange_temporarily(preset),
-            PanelRequest::ArrangeAsBefore => self.layout.arrange_as_before(),
-            PanelRequest::ArrangeOwn => self.layout.arrange_own(),
-            PanelRequest::ResetArrangement => self.layout.reset(),
-            PanelRequest::ShowExercise if self.layout.is_in_sight(Panel::Learn) => {}
-            PanelRequest::ShowExercise => self.layout.arrange_temporarily(Preset::Learn),
-            PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
-            PanelRequest::ToggleKeys => self.show_keys ^= true,
-            PanelRequest::TogglePalette => self.palette.toggle(),
-            PanelRequest::ShowGallery => self.open_gallery.is_open = true,
-            PanelRequest::AskDefaults => self.defaults.ask(None),
-            _ => self.docked.iter_mut().for_each(|(_, panel)| panel.on_request(request)),
-        }
+    /// Whether its tile leaves scrolling to the panel.
+    pub(in crate::app) fn scrolls_itself(self) -> bool {
+        self.spec().is_some_and(|spec| spec.scrolls_itself)
+    }
+
+    /// Keywords for the search.
+    pub(in crate::app) fn words(self) -> &'static str {
+        self.spec().map_or("", |spec| spec.words)
     }
 }
 
-/// Where the picture is, in points.
-#[derive(Clone, Copy)]
-pub(super) struct PictureArea {
-    pub(super) rect: egui::Rect,
-    /// The part of it that no handle between it and a panel covers.
-    pub(super) free: egui::Rect,
-}
-
-/// Shows bars, panels and messages. Returns what is left for the picture.
-pub(super) fn show(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut Commands) -> PictureArea {
-    let whole = ui.max_rect();
-    theme::choose(ui.ctx(), panels.layout.is_light());
-    let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
-    let picture = if panels.visible && has_room {
-        bars(ui, context, panels, &mut commands.list);
-        let Panels { layout, docked, .. } = &mut *panels;
-        let picture = layout.show(ui, &mut |ui, shown| {
-            if let Some((_, panel)) = docked.iter_mut().find(|(panel, _)| *panel == shown) {
-                panel.ui(ui, context, commands);
-            }
-        });
-        PictureArea { rect: picture, free: layout.free_of_handles() }
-    } else {
-        PictureArea { rect: whole, free: whole }
-    };
-    let egui = ui.ctx();
-    overlay::show(egui, context, &mut panels.overlay, panels.visible, picture.rect, commands);
-    keys::show(egui, &mut panels.key_list, &mut panels.show_keys, !panels.palette.is_open());
-    open_gallery::show(egui, context.state, &mut panels.open_gallery, &mut commands.list);
-    palette::show(egui, context.state, &mut panels.palette, whole, &mut commands.list);
-    parameters::defaults::show(egui, context.state, &mut panels.defaults, &mut commands.list);
-    commands.sight.learn = panels.layout.is_in_sight(Panel::Learn);
-    commands.sight.has_own_arrangement = panels.layout.has_own();
-    picture
-}
-
-/// The bars above and below the tiles.
-fn bars(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut Vec<Command>) {
-    let state = context.state;
-    let Panels { layout, palette, show_keys, .. } = panels;
-    top_bar::show(ui, (layout, palette, show_keys), (&state.recent, &state.last_sessions), commands);
-    let status = status_bar::Status {
-        shader: &state.shader,
-        waits: baking::long_wait(ui.ctx(), context),
-        not_finite: state.shown_not_finite(),
-        progress: context.readings.baking.map(|(done, _)| *done),
-        generation: context.shaders.generation,
-        diagnostics: &state.session.diagnostics,
-        frame_ms: state.timing.frame_ms(),
-        stage: state.stages.main(),
-        device: &state.device,
-    };
-    status_bar::show(ui, &status, commands);
+/// A stored arrangement that names an unknown panel is of another version.
+impl<'de> Deserialize<'de> for Panel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let title = String::deserialize(deserializer)?;
+        let mut all = PANELS.iter().map(|spec| spec.panel).chain([Self::VIEWPORT]);
+        all.find(|panel| panel.0 == title).ok_or_else(|| D::Error::custom(format!("there is no panel {title}")))
+    }
 }

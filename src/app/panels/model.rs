@@ -8,6 +8,7 @@ use crate::app::command::file::{OPEN, Open};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::model::ModelStatus;
 use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
@@ -15,6 +16,12 @@ use crate::app::widgets::theme::{QUIET, WARNING};
 use crate::app::widgets::{check_box, plural};
 use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialChannel, ModelSettings, Settings, setting};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Model", Group::Modes, "variant statistics transform rotation scale material override", || {
+        Box::new(ui)
+    });
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use egui::{RichText, Ui, vec2};
 
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 
 use crate::app::command::modes::{GRID, GridModes};
 use crate::app::command::program::SAY;
@@ -19,6 +19,11 @@ use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono};
 use crate::shader::annotation::{Mode, listed};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Modes", Group::Modes, "debug gallery thumbnails side by side grid", || Box::<Modes>::default())
+        .scrolls_itself();
 
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;

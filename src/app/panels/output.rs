@@ -9,10 +9,15 @@ use crate::app::command::program::SAY;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::{Row, check, group, special};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Output", Group::Settings, "exposure tone map range channels colors samples", || Box::new(ui));
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

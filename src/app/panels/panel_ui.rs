@@ -4,6 +4,7 @@ use egui::Ui;
 
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::state::arrangement::Panel;
 use crate::app::state::workspace::PanelRequest;
 
 /// A panel in a tile. It owns what it needs between frames, and changes nothing else but by commands.
@@ -18,5 +19,52 @@ pub(in crate::app) trait PanelUi {
 impl<F: FnMut(&mut Ui, &Context<'_>, &mut Commands)> PanelUi for F {
     fn ui(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
         self(ui, context, commands);
+    }
+}
+
+/// Panels of a group share a tile at first.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::app) enum Group {
+    /// Modes and the parts of the model.
+    Modes,
+    /// The shaders, their versions and times.
+    Shaders,
+    /// Parameters, passes and values of a pixel.
+    Parameters,
+    /// Light, output and camera.
+    Settings,
+}
+
+/// All that menu, palette, arrangements and tiles know of a panel.
+pub(super) struct PanelSpec {
+    pub(super) panel: Panel,
+    pub(super) group: Group,
+    pub(super) words: &'static str,
+    pub(super) make: fn() -> Box<dyn PanelUi>,
+    pub(super) is_in_presets: bool,
+    pub(super) scrolls_itself: bool,
+}
+
+impl PanelSpec {
+    /// `words` are keywords for the search, and `make` makes the panel for a new window.
+    pub(super) const fn new(
+        title: &'static str,
+        group: Group,
+        words: &'static str,
+        make: fn() -> Box<dyn PanelUi>,
+    ) -> Self {
+        Self { panel: Panel(title), group, words, make, is_in_presets: true, scrolls_itself: false }
+    }
+
+    /// No preset opens the panel.
+    pub(super) const fn opens_on_request(mut self) -> Self {
+        self.is_in_presets = false;
+        self
+    }
+
+    /// The panel has rows above its list, or may run from left to right, so its tile does not scroll it.
+    pub(super) const fn scrolls_itself(mut self) -> Self {
+        self.scrolls_itself = true;
+        self
     }
 }

@@ -9,6 +9,7 @@ use egui::{Response, RichText, Ui};
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::numbers::{component, default_of, of_constant, of_parameter};
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::shaders::effects::{is_of_pass, switches};
 use crate::app::widgets::rows::{self, Row, edit_number, heading, set_option, short};
 use crate::app::widgets::search;
@@ -18,6 +19,10 @@ use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Parameters", Group::Parameters, "sliders values defaults", || Box::new(ui));
 
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;

@@ -9,6 +9,7 @@ use super::parameters::{is_true, show_constant, show_parameter};
 use crate::app::command::playback::{PLAYBACK, PlaybackFields};
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::playback::Playback;
 use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own, switches};
 use crate::app::widgets::rows::{INITIAL, Row, check, set_option, skips};
@@ -16,6 +17,10 @@ use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Passes", Group::Parameters, "clock time effects switch", || Box::new(ui));
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {

@@ -14,7 +14,7 @@ use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::editor::Place;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::State;
 use crate::app::state::shaders::status::ShaderStatus;
 use crate::app::widgets::plural;
@@ -22,6 +22,13 @@ use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 use crate::shader::{Diagnostic, Severity};
 pub(super) use stages::short_figures;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Shaders", Group::Shaders, "files includes stages problems driver registers", || {
+        Box::<ShadersState>::default()
+    })
+    .scrolls_itself();
 
 /// Tab that the lower part of the panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
+use super::panel_ui::PanelSpec;
 use super::timeline::comparison;
 use super::{PANELS, Panel, camera, capture, output};
 use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA, Side, VIEW_FROM};
@@ -210,23 +211,23 @@ fn the_buttons_of_a_comparison_fit_a_narrow_column() {
 
 /// Label that a panel shows without a model, and with one.
 const LABELS: [(Panel, [&str; 2]); 17] = [
-    (Panel::Modes, ["Compiling shaders…", "Facing"]),
-    (Panel::Scene, ["No model yet", "Search nodes, materials, textures"]),
-    (Panel::Model, ["Statistics", "Statistics"]),
-    (Panel::Texture, ["", "shell base color"]),
-    (Panel::Learn, ["Square the roughness", "Square the roughness"]),
-    (Panel::Shaders, ["Reload", "Generation 3"]),
-    (Panel::Timeline, ["Keep this picture", "Keep this picture"]),
-    (Panel::Timing, ["Pipelines", "Pipelines"]),
-    (Panel::Expression, ["Watch", "Watch"]),
-    (Panel::Parameters, ["", "Tint"]),
-    (Panel::Passes, ["", ""]),
-    (Panel::Inspector, ["no pixel", "no pixel"]),
-    (Panel::Environment, ["Visible", "Visible"]),
-    (Panel::Lights, ["Ambient light", "Ambient light"]),
-    (Panel::Output, ["Copy as look file", "Copy as look file"]),
-    (Panel::Camera, ["Frame the model", "Frame the model"]),
-    (Panel::Capture, ["Capture picture", "Capture picture"]),
+    (Panel::MODES, ["Compiling shaders…", "Facing"]),
+    (Panel("Scene"), ["No model yet", "Search nodes, materials, textures"]),
+    (Panel("Model"), ["Statistics", "Statistics"]),
+    (Panel::TEXTURE, ["", "shell base color"]),
+    (Panel::LEARN, ["Square the roughness", "Square the roughness"]),
+    (Panel::SHADERS, ["Reload", "Generation 3"]),
+    (Panel::TIMELINE, ["Keep this picture", "Keep this picture"]),
+    (Panel::TIMING, ["Pipelines", "Pipelines"]),
+    (Panel::EXPRESSION, ["Watch", "Watch"]),
+    (Panel::PARAMETERS, ["", "Tint"]),
+    (Panel::PASSES, ["", ""]),
+    (Panel::INSPECTOR, ["no pixel", "no pixel"]),
+    (Panel("Environment"), ["Visible", "Visible"]),
+    (Panel("Lights"), ["Ambient light", "Ambient light"]),
+    (Panel::OUTPUT, ["Copy as look file", "Copy as look file"]),
+    (Panel("Camera"), ["Frame the model", "Frame the model"]),
+    (Panel::CAPTURE, ["Capture picture", "Capture picture"]),
 ];
 
 /// A window with a model and shaders, and nothing drawn yet.
@@ -300,8 +301,9 @@ const SIZES: [egui::Vec2; 2] = [egui::vec2(190.0, 420.0), egui::vec2(900.0, 240.
 fn every_panel_is_shown_without_a_device_and_changes_nothing_by_itself() {
     let states = [State::new(Settings::of_window(), Source::embedded()), with_a_model()];
     let mut lacking = Vec::new();
-    for (panel, make) in PANELS {
-        let (_, expected) = LABELS.into_iter().find(|(of, _)| *of == panel).unwrap();
+    for &&PanelSpec { panel, make, .. } in PANELS {
+        let expected =
+            LABELS.into_iter().find(|(of, _)| *of == panel).map(|(_, expected)| expected).unwrap_or_default();
         for ((state, expected), size) in states.iter().zip(expected).flat_map(|of| SIZES.map(|size| (of, size))) {
             let mut shown_panel = make();
             let shown = frames(size, state, |ui, context, commands| shown_panel.ui(ui, context, commands));

@@ -6,7 +6,7 @@ use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 use super::scene::tree::textures;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::selection::Selected;
 use crate::app::state::workspace::TextureRequest;
 use crate::app::widgets::search;
@@ -14,6 +14,11 @@ use crate::app::widgets::theme::{EDGE, QUIET, small_mono_font};
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Texture", Group::Modes, "channels mip levels UV", || Box::<TextureState>::default())
+        .opens_on_request();
 
 /// The channels that can be looked at, with their hover texts.
 const CHANNELS: [(&str, &str); 6] = [

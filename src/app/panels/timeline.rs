@@ -11,7 +11,7 @@ use crate::app::command::shaders::{VERSIONS, VersionsRequest};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::state::shaders::versions::{Thumbnail, Version, Versions};
@@ -20,6 +20,13 @@ use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
 use comparison::{ENTRIES, monospace};
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Timeline", Group::Shaders, "versions history compare difference restore", || {
+        Box::<TimelineState>::default()
+    })
+    .scrolls_itself();
 
 /// Size of a thumbnail in points.
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);

@@ -8,11 +8,16 @@ use egui::{Grid, Label, RichText, Ui};
 
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::State;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
 use crate::gpu::MemoryUse;
 use crate::pipeline::grouped;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Timing", Group::Shaders, "GPU ms frame time memory", || Box::new(ui));
 
 /// Time that the panels may take in a frame, milliseconds.
 const UI_LIMIT_MS: f64 = 2.0;

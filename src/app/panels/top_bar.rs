@@ -122,16 +122,16 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
 /// The menu that opens and closes panels, and resets their arrangement.
 fn panels(ui: &mut Ui, layout: &mut Layout) {
     ui.menu_button(format!("{}  Panels", icon::LAYOUT), |ui| {
-        for (index, group) in Panel::GROUPS.into_iter().enumerate() {
+        for (index, group) in Panel::groups().into_iter().enumerate() {
             if index > 0 {
                 ui.separator();
             }
             for panel in group {
-                let mut is_open = layout.is_in_sight(*panel);
-                if check_box::show(ui, Checkbox::new(&mut is_open, panel.title())).changed() {
+                let mut is_open = layout.is_in_sight(panel);
+                if check_box::show(ui, Checkbox::new(&mut is_open, panel.0)).changed() {
                     match is_open {
-                        true => layout.open(*panel),
-                        false => layout.close(*panel),
+                        true => layout.open(panel),
+                        false => layout.close(panel),
                     }
                 }
             }

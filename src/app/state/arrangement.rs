@@ -2,89 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Panel that a tile shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(in crate::app) enum Panel {
-    Viewport,
-    Modes,
-    Scene,
-    Texture,
-    Model,
-    Shaders,
-    Timeline,
-    Timing,
-    Expression,
-    Parameters,
-    Passes,
-    Inspector,
-    Environment,
-    Lights,
-    Output,
-    Camera,
-    Learn,
-    Capture,
-}
+/// A panel that a tile shows, by its title. `crate::app::panels` lists them all; these are named elsewhere, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(in crate::app) struct Panel(pub(in crate::app) &'static str);
 
 impl Panel {
-    /// All panels that can be closed, in groups that share a tile at first.
-    pub(in crate::app) const GROUPS: [&[Self]; 4] = [
-        &[Self::Modes, Self::Scene, Self::Model, Self::Texture, Self::Learn],
-        &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
-        &[Self::Parameters, Self::Passes, Self::Inspector],
-        &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
-    ];
-
-    /// Whether a preset opens the panel. The others open on request.
-    pub(in crate::app) fn is_in_presets(self) -> bool {
-        self != Self::Texture
-    }
-
-    /// Keywords for the search.
-    pub(in crate::app) fn words(self) -> &'static str {
-        match self {
-            Self::Viewport => "picture",
-            Self::Modes => "debug gallery thumbnails side by side grid",
-            Self::Scene => "nodes meshes materials textures cameras lights",
-            Self::Texture => "channels mip levels UV",
-            Self::Model => "variant statistics transform rotation scale material override",
-            Self::Shaders => "files includes stages problems driver registers",
-            Self::Timeline => "versions history compare difference restore",
-            Self::Timing => "GPU ms frame time memory",
-            Self::Expression => "watch variable numbers of a line sliders",
-            Self::Parameters => "sliders values defaults",
-            Self::Passes => "clock time effects switch",
-            Self::Inspector => "pixel values texels BRDF lobe albedo furnace plot",
-            Self::Environment => "HDR map rotation background blur suns",
-            Self::Lights => "color orbit rectangle ambient",
-            Self::Output => "exposure tone map range channels colors samples",
-            Self::Camera => "field of view bookmarks",
-            Self::Learn => "exercises lessons",
-            Self::Capture => "contact sheet turntable video timeline GIF WebP MP4 EXR size",
-        }
-    }
-
-    pub(in crate::app) fn title(self) -> &'static str {
-        match self {
-            Self::Viewport => "Viewport",
-            Self::Modes => "Modes",
-            Self::Scene => "Scene",
-            Self::Texture => "Texture",
-            Self::Model => "Model",
-            Self::Shaders => "Shaders",
-            Self::Timeline => "Timeline",
-            Self::Timing => "Timing",
-            Self::Expression => "Expression",
-            Self::Parameters => "Parameters",
-            Self::Passes => "Passes",
-            Self::Inspector => "Inspector",
-            Self::Environment => "Environment",
-            Self::Lights => "Lights",
-            Self::Output => "Output",
-            Self::Camera => "Camera",
-            Self::Learn => "Learn",
-            Self::Capture => "Capture",
-        }
-    }
+    pub(in crate::app) const VIEWPORT: Self = Self("Viewport");
+    pub(in crate::app) const MODES: Self = Self("Modes");
+    pub(in crate::app) const TEXTURE: Self = Self("Texture");
+    pub(in crate::app) const LEARN: Self = Self("Learn");
+    pub(in crate::app) const SHADERS: Self = Self("Shaders");
+    pub(in crate::app) const TIMELINE: Self = Self("Timeline");
+    pub(in crate::app) const TIMING: Self = Self("Timing");
+    pub(in crate::app) const EXPRESSION: Self = Self("Expression");
+    pub(in crate::app) const PARAMETERS: Self = Self("Parameters");
+    pub(in crate::app) const PASSES: Self = Self("Passes");
+    pub(in crate::app) const INSPECTOR: Self = Self("Inspector");
+    pub(in crate::app) const OUTPUT: Self = Self("Output");
+    pub(in crate::app) const CAPTURE: Self = Self("Capture");
 }
 
 /// An arrangement that Specula offers.

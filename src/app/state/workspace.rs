@@ -118,8 +118,8 @@ mod tests {
         let mut workspace = Workspace::default();
         workspace.request(PanelRequest::Toggle);
         workspace.request(PanelRequest::Unhide);
-        workspace.request(PanelRequest::Open(Panel::Timeline));
-        let all = [PanelRequest::Toggle, PanelRequest::Unhide, PanelRequest::Open(Panel::Timeline)];
+        workspace.request(PanelRequest::Open(Panel::TIMELINE));
+        let all = [PanelRequest::Toggle, PanelRequest::Unhide, PanelRequest::Open(Panel::TIMELINE)];
         assert_eq!(workspace.take_requests(), all);
         assert_eq!(workspace.take_requests(), []);
     }

@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, texels: &[Texel], words: &Words, commands: &mut 
     for texel in found {
         if row(ui, texel).clicked() {
             commands.push(SELECT.with(Selected::Texture(texel.place.source)));
-            commands.push(OPEN_PANEL.with(Panel::Texture));
+            commands.push(OPEN_PANEL.with(Panel::TEXTURE));
         }
     }
 }
@@ -137,7 +137,7 @@ mod tests {
         harness.run();
         harness.get_by_label("base color texel 255   0 128 255").click();
         harness.run();
-        let opened = [SELECT.with(Selected::Texture(source)), OPEN_PANEL.with(Panel::Texture)];
+        let opened = [SELECT.with(Selected::Texture(source)), OPEN_PANEL.with(Panel::TEXTURE)];
         assert_eq!(*harness.state(), opened);
         harness.get_by_label("Inf  brdf/ndf.glsl:20  return a2 / 0.0;").click();
         harness.run();

@@ -24,7 +24,7 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
                     commands.push(VERSIONS.with(VersionsRequest::ShowNewest));
                 }
                 if ui.button("Write to the files…").on_hover_text("Asks first, in the panel Timeline").clicked() {
-                    commands.push(OPEN_PANEL.with(Panel::Timeline));
+                    commands.push(OPEN_PANEL.with(Panel::TIMELINE));
                     commands.push(PANELS.with(PanelRequest::AskVersion(number)));
                 }
             });

@@ -45,7 +45,7 @@ pub(super) fn show(
             let image = source.image(model);
             title(ui, "Texture", image.map_or("", |image| &image.name));
             if ui.button("Show it").on_hover_text("Open the Texture panel").clicked() {
-                commands.push(OPEN_PANEL.with(Panel::Texture));
+                commands.push(OPEN_PANEL.with(Panel::TEXTURE));
             }
         }
         Selected::Camera(index) => {

@@ -62,7 +62,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, scene: &Scene, index: u
         let link = ui.add(Button::new(text).frame(false).truncate());
         if link.on_hover_text(format!("{name}\nClick to see the texture")).clicked() {
             commands.push(SELECT.with(Selected::Texture(source)));
-            commands.push(OPEN_PANEL.with(Panel::Texture));
+            commands.push(OPEN_PANEL.with(Panel::TEXTURE));
         }
     }
 }

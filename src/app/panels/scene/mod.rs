@@ -13,7 +13,7 @@ use crate::app::command::layout::OPEN_PANEL;
 use crate::app::command::scene::{SELECT, SHOW_ALL};
 use crate::app::commands::Commands;
 use crate::app::context::Context;
-use crate::app::panels::panel_ui::PanelUi;
+use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
@@ -22,6 +22,12 @@ use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::QUIET;
 use crate::frame::Scene;
 use tree::Tree;
+
+/// How the rest of the window finds the panel.
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Scene", Group::Modes, "nodes meshes materials textures cameras lights", || {
+        Box::<SceneState>::default()
+    });
 
 /// Height of the part about the selection at first, points.
 const DETAILS: f32 = 300.0;
@@ -101,7 +107,7 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
                 Some(row::Action::Select(item)) => {
                     commands.push(SELECT.with(item));
                     if matches!(item, Selected::Texture(_)) {
-                        commands.push(OPEN_PANEL.with(Panel::Texture));
+                        commands.push(OPEN_PANEL.with(Panel::TEXTURE));
                     }
                 }
                 Some(row::Action::LookThrough(camera)) => commands.push(LOOK_THROUGH.with(camera)),
