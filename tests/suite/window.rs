@@ -93,24 +93,13 @@ fn any_size_and_any_number_of_sizes() {
     viewer.quit();
 }
 
-/// While nothing changes, the window draws nothing.
+/// While nothing changes, the window draws nothing. Keys wake it.
 #[test]
-fn a_window_in_which_nothing_happens_rests() {
+fn a_window_rests_until_keys_choose_modes_and_hide_the_panels() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     // Pipelines may still be built.
     viewer.rests();
-    // Input wakes the window.
-    let picture = viewer.screenshot();
-    viewer.key("n");
-    viewer.until("shading normals", |shot| *shot != picture);
-    viewer.quit();
-}
-
-#[test]
-fn keys_choose_modes_and_hide_the_panels() {
-    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
-    viewer.running.event("ready");
     let picture = viewer.screenshot();
     viewer.key("n");
     viewer.until("shading normals", |shot| *shot != picture);
@@ -120,6 +109,15 @@ fn keys_choose_modes_and_hide_the_panels() {
     viewer.until("the next mode", |shot| *shot != picture);
     viewer.key("Escape");
     viewer.until("the picture, by Escape", |shot| *shot == picture);
+    // Escape is the list's while the list of keys is open.
+    viewer.key("n");
+    viewer.until("shading normals again", |shot| *shot != picture);
+    let normals = viewer.screenshot();
+    viewer.key("F1");
+    viewer.key("Escape");
+    assert!(viewer.screenshot() == normals, "Escape behind the list of keys left the mode");
+    viewer.key("Escape");
+    viewer.until("the picture, by a second Escape", |shot| *shot == picture);
     viewer.key("h");
     viewer.until("the whole window", |shot| shot.dimensions() == (640, 480));
     viewer.quit();
@@ -178,11 +176,11 @@ fn a_model_saved_while_it_loads_is_shown_as_saved() {
 
 #[test]
 fn names_that_do_not_exist_are_told() {
-    for (option, name) in [("--mode", "metal-ness"), ("--set", "no_such_name=1"), ("--set", "TOON_BANDS=Nine")] {
-        let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", option, name]);
-        viewer.running.event("ready");
-        let stderr = viewer.quit();
-        let name = name.split('=').next().unwrap();
+    let wrong = ["--mode", "metal-ness", "--set", "no_such_name=1", "--set", "TOON_BANDS=Nine"];
+    let mut viewer = Viewer::open(Tree::new(), &[&["sphere-grid"][..], &wrong].concat());
+    viewer.running.event("ready");
+    let stderr = viewer.quit();
+    for name in ["metal-ness", "no_such_name", "TOON_BANDS"] {
         assert!(stderr.contains(name), "no word of {name} in: {stderr}");
     }
 }

@@ -50,6 +50,12 @@ impl Layout {
         Self { is_own, own, is_light, preset, ..Self::of_tree(tree) }
     }
 
+    /// An arrangement that is not stored until it changes.
+    #[cfg(test)]
+    pub(super) fn of_preset(preset: Preset) -> Self {
+        Self::of_tree(preset.tree())
+    }
+
     fn of_tree(tree: Tree<Panel>) -> Self {
         Self {
             tree,

@@ -12,14 +12,9 @@ fn shown(layout: &mut Layout, egui: &egui::Context, size: Vec2) -> Rect {
     picture
 }
 
-/// A layout that is not stored.
-fn unstored(preset: Preset) -> Layout {
-    Layout::of_tree(preset.tree())
-}
-
 #[test]
 fn panels_keep_their_width_and_the_picture_takes_the_rest() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     let widths = [1280.0, 2560.0, 900.0, 1280.0].map(|width| {
         let picture = shown(&mut layout, &egui, Vec2::new(width, 720.0));
         (picture.min.x, width - picture.max.x)
@@ -40,7 +35,7 @@ fn panels_keep_their_width_and_the_picture_takes_the_rest() {
 #[test]
 fn every_panel_closes_and_opens_again() {
     for preset in Preset::ALL {
-        let (egui, mut layout) = (egui::Context::default(), unstored(preset));
+        let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(preset));
         let size = Vec2::new(1280.0, 720.0);
         let first = shown(&mut layout, &egui, size);
         layout.is_changed = false;
@@ -70,7 +65,7 @@ fn every_panel_closes_and_opens_again() {
 
 #[test]
 fn panels_that_a_small_window_shrinks_grow_again() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     let [first, small, last] = [1280.0, 400.0, 1280.0].map(|width| {
         let picture = shown(&mut layout, &egui, Vec2::new(width, 720.0));
         width - picture.max.x
@@ -80,7 +75,7 @@ fn panels_that_a_small_window_shrinks_grow_again() {
 
 #[test]
 fn a_panel_that_a_narrow_window_hides_can_be_opened() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     let size = Vec2::new(640.0, 480.0);
     let left_of_picture = shown(&mut layout, &egui, size).min.x;
     layout.open(Panel::MODES);
@@ -91,7 +86,7 @@ fn a_panel_that_a_narrow_window_hides_can_be_opened() {
 
 #[test]
 fn a_preset_keeps_the_arrangement_that_the_user_made() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
     layout.close(Panel("Lights"));
     for preset in [Preset::Look, Preset::Debug] {
@@ -106,7 +101,7 @@ fn a_preset_keeps_the_arrangement_that_the_user_made() {
 
 #[test]
 fn a_reset_shows_the_preset_that_was_chosen_last() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     let size = Vec2::new(1280.0, 720.0);
     shown(&mut layout, &egui, size);
     layout.close(Panel::MODES);
@@ -125,7 +120,7 @@ fn a_reset_shows_the_preset_that_was_chosen_last() {
 
 #[test]
 fn a_panel_on_the_picture_moves_beside_it() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     let size = Vec2::new(1280.0, 720.0);
     shown(&mut layout, &egui, size);
     let tiles = &mut layout.tree.tiles;
@@ -160,7 +155,7 @@ fn handles_lie_only_between_the_picture_and_panels() {
 
 #[test]
 fn the_active_tab_shows_its_whole_title() {
-    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
     crate::app::widgets::theme::apply(&egui);
     for panel in Panel::groups().concat() {
         layout.open(panel);

@@ -1,5 +1,8 @@
 //! All panels in a frame: the bars, the tiles, and the messages over the picture.
 
+#[cfg(test)]
+mod tests;
+
 use egui::{Ui, Vec2};
 
 use super::panel_ui::PanelUi;

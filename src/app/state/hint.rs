@@ -23,6 +23,11 @@ impl Hint {
         Self { is_shown: state::load(FILE).is_none(), folder: standard_folder(Path::new("")) }
     }
 
+    #[cfg(test)]
+    pub(in crate::app) fn of_first_start() -> Self {
+        Self { is_shown: true, folder: "shaders".into() }
+    }
+
     pub(in crate::app) fn is_shown(&self) -> bool {
         self.is_shown
     }

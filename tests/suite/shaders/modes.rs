@@ -1,14 +1,17 @@
 //! Every debug mode shows what its documentation says: data, or a checkerboard where there is none, in the declared encoding.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use crate::support::{Renderer, SIZE, Session, glb, load, model, ready, render, renderer, settings, srgb};
+use crate::support::{
+    Renderer, SIZE, Session, assert_validated, glb, load, model, ready, render, renderer, settings, srgb,
+};
 use serde_json::json;
 use specula::headless::Headless;
 use specula::render::Capture;
 use specula::scene::{BUILT_IN, Model};
 use specula::settings::Settings;
-use specula::shader::Encode;
+use specula::shader::{Encode, Mode, PixelValue};
 
 /// Slugs that other programs rely on.
 const FIXED: &str = "final base-color alpha metallic roughness occlusion emissive normal-texture geometric-normal \
@@ -80,18 +83,56 @@ fn the_fixed_slugs_exist() {
     }
 }
 
-/// The fault in the picture of a mode whose data the model has.
-fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
-    let capture = render(headless, slug);
-    let values = covered(&capture);
-    let shown: Vec<_> =
-        values.iter().zip(no_data(&capture)).filter(|(_, flag)| !flag).map(|(value, _)| value).collect();
-    let black = shown.iter().all(|value| value.iter().all(|c| *c == 0.0));
-    let uniform = shown.iter().all(|value| *value == shown[0]);
-    let bad = capture.not_finite.contains(&true);
-    let is_wrong = bad || shown.len() < 20 || black || (uniform && !SAME_ALL_OVER.contains(&slug));
-    let count = shown.len();
-    is_wrong.then(|| format!("{slug}: {count} pixels with data, black {black}, uniform {uniform}, not finite {bad}"))
+/// Pixels on the model that stand for all of them.
+const PIXELS: usize = 40;
+
+/// Pixels all over the model.
+fn pixels(headless: &mut Headless) -> Vec<(u32, u32)> {
+    let capture = render(headless, "alpha");
+    let step = covered(&capture).len() / PIXELS;
+    let on_model = (0..).zip(&capture.raw).filter(|(_, value)| value[3] == 1.0);
+    on_model.map(|(at, _)| (at % SIZE.0, at / SIZE.0)).step_by(step).collect()
+}
+
+/// The values of each mode at pixels all over the model. Modes are drawn in sets, a pipeline each, as the inspector of the window draws
+/// them; those that cannot be in a set are rendered.
+fn values(headless: &mut Headless, slugs: &[&str]) -> BTreeMap<String, Vec<PixelValue>> {
+    let pixels = pixels(headless);
+    headless.settings_mut().mode = "final".to_owned();
+    // The inspector reads numbers where the picture has colors for them.
+    let is_in_set = |mode: &&Mode| slugs.contains(&&*mode.slug) && mode.numbers.is_none();
+    let modes: Vec<Mode> = headless.shaders().modes.iter().filter(is_in_set).cloned().collect();
+    let mut values = BTreeMap::<String, Vec<PixelValue>>::new();
+    for at in &pixels {
+        for (slug, value) in headless.inspect(*at, &modes).unwrap() {
+            values.entry(slug).or_default().push(value);
+        }
+    }
+    assert_validated();
+    for slug in slugs.iter().filter(|slug| !values.contains_key(**slug)).copied().collect::<Vec<_>>() {
+        let capture = render(headless, slug);
+        let of = |(x, y): &(u32, u32)| {
+            let at = (y * SIZE.0 + x) as usize;
+            PixelValue { value: capture.raw[at], no_data: capture.no_data[at], not_finite: capture.not_finite[at] }
+        };
+        values.insert(slug.to_owned(), pixels.iter().map(of).collect());
+    }
+    values
+}
+
+/// The faults of modes whose data the model has.
+fn faults(headless: &mut Headless, slugs: &[&str]) -> Vec<String> {
+    let fault = |(slug, values): (String, Vec<PixelValue>)| {
+        let shown: Vec<_> = values.iter().filter(|pixel| !pixel.no_data).map(|pixel| &pixel.value[..3]).collect();
+        let black = shown.iter().all(|value| value.iter().all(|c| *c == 0.0));
+        let uniform = shown.iter().all(|value| *value == shown[0]);
+        let bad = values.iter().any(|pixel| pixel.not_finite);
+        let is_wrong = bad || shown.len() < 2 || black || (uniform && !SAME_ALL_OVER.contains(&&*slug));
+        let count = shown.len();
+        is_wrong
+            .then(|| format!("{slug}: {count} pixels with data, black {black}, uniform {uniform}, not finite {bad}"))
+    };
+    values(headless, slugs).into_iter().filter_map(fault).collect()
 }
 
 #[test]
@@ -100,9 +141,10 @@ fn every_mode_shows_data_of_the_shader_ball() {
     let mut headless = sharp(model("shader-ball"), &[]);
     // Images of the depth of field have blur in alpha, not coverage, and those of lights a number of a matrix. Nothing moves here.
     let is_other = |slug: &str| slug.starts_with("pass:dof_") || slug == "pass:velocity" || slug == "pass:light_views";
-    let is_own = |slug: &String| !elsewhere.contains(&slug.as_str()) && !is_other(slug);
-    let wrong: Vec<String> =
-        slugs(&headless).into_iter().filter(is_own).filter_map(|slug| fault(&mut headless, &slug)).collect();
+    let all = slugs(&headless);
+    let own: Vec<&str> =
+        all.iter().map(String::as_str).filter(|slug| !elsewhere.contains(slug) && !is_other(slug)).collect();
+    let wrong = faults(&mut headless, &own);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
@@ -111,7 +153,7 @@ fn modes_of_what_the_shader_ball_lacks_show_data_elsewhere() {
     let mut wrong = Vec::new();
     for (name, more, slugs) in ELSEWHERE {
         let mut headless = sharp(model(name), more);
-        wrong.extend(slugs.iter().filter_map(|slug| fault(&mut headless, slug)));
+        wrong.extend(faults(&mut headless, slugs));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
@@ -188,26 +230,21 @@ fn absent_data_is_a_checkerboard() {
         "environment",
         "area-light",
     ];
-    let check = |headless: &mut Headless, slug: &str| {
-        let capture = render(headless, slug);
-        let values = covered(&capture);
-        assert!(!no_data(&capture).contains(&false), "{slug} has data");
-        assert!(
-            values.iter().any(|v| v[0] == 0.180017) && values.iter().any(|v| v[0] == 0.260017),
-            "{slug} has no squares"
-        );
+    let check = |headless: &mut Headless, slugs: &[&str]| {
+        for (slug, values) in values(headless, slugs) {
+            assert!(values.iter().all(|pixel| pixel.no_data), "{slug} has data");
+        }
+        let squares = covered(&render(headless, slugs[0]));
+        assert!(squares.iter().any(|v| v[0] == 0.180017) && squares.iter().any(|v| v[0] == 0.260017));
     };
-    for slug in data.into_iter().chain(BY_PATHS).chain(["texel-density"]) {
-        check(&mut headless, slug);
-    }
+    check(&mut headless, &[&data[..], &BY_PATHS, &["texel-density"]].concat());
     headless.settings_mut().assign("lights.source=none").unwrap();
-    for slug in ["light-1", "light-2", "light-3", "d", "g", "v", "f", "n-dot-l", "diffuse-lobe", "direct-specular"] {
-        check(&mut headless, slug);
-    }
+    let of_lights = ["light-1", "light-2", "light-3", "d", "g", "v", "f", "n-dot-l", "diffuse-lobe", "direct-specular"];
+    check(&mut headless, &of_lights);
     // Three orbiting lights: there is no fourth.
     headless.settings_mut().assign("lights.source=orbit").unwrap();
     headless.settings_mut().lights.chosen = 4;
-    check(&mut headless, "specular-lobe");
+    check(&mut headless, &["specular-lobe"]);
 }
 
 /// In a debug mode, blended surfaces are opaque: they have the flag, and hide the surfaces behind them.

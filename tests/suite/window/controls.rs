@@ -11,9 +11,6 @@ pub(super) const ACCENT: [u8; 3] = [240, 166, 60];
 /// Text and frames of warnings.
 pub(super) const WARNING: [u8; 3] = [255, 196, 92];
 
-/// The mark of shaders without an error.
-pub(super) const GOOD: [u8; 3] = [112, 201, 130];
-
 /// Rows between the bars of a window of 480.
 pub(super) const TILES: std::ops::Range<u32> = 32..456;
 /// Rows of the lower bar.

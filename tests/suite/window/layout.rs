@@ -3,7 +3,7 @@
 use image::RgbaImage;
 use serde_json::{Value, json};
 
-use super::controls::{ACCENT, TILES, choose, count};
+use super::controls::choose;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
 
@@ -55,15 +55,29 @@ fn the_arrangement_of_the_panels_lasts() {
     viewer.resize(900, 480);
     assert_eq!(viewer.screenshot().width(), wide - 100);
     viewer.quit();
+}
 
-    // What is no arrangement costs nothing.
-    let mut viewer = open(Some("{\"root\": 7}"));
-    assert_eq!(viewer.screenshot().width(), first);
+#[test]
+fn a_panel_is_docked_beside_the_picture() {
+    // What is no arrangement counts as none.
+    let damaged = "{\"root\": 7}";
+    let mut viewer = open(Some(damaged));
+    let first = viewer.screenshot().dimensions();
+    // The tab Passes, in the upper group of the right column, goes to the lower part of the picture.
+    viewer.drag_along(&[(782, 42), (770, 60), (500, 360), (460, 420)]);
+    viewer.until("a picture that has made room", |shot| shot.dimensions() != first);
+    let docked = viewer.screenshot().dimensions();
+    let text = stored(&mut viewer, damaged);
+    viewer.quit();
+    let mut viewer = open(Some(&text));
+    assert_eq!(viewer.screenshot().dimensions(), docked, "the arrangement is forgotten");
+    choose(&viewer, "reset arrangement");
+    viewer.until("the first arrangement", |shot| shot.dimensions() == first);
     viewer.quit();
 }
 
 #[test]
-fn the_palette_reaches_modes_switches_and_commands() {
+fn the_palette_reaches_modes_switches_commands_and_numbers() {
     let mut viewer = open(None);
     let picture = viewer.screenshot();
     viewer.key("n");
@@ -93,6 +107,23 @@ fn the_palette_reaches_modes_switches_and_commands() {
     viewer.until("shading normals still, which Escape behind the palette would leave", |shot| *shot == normals);
     viewer.key("n");
     viewer.until("the picture, by a letter that no palette takes", |shot| *shot == picture);
+
+    // Numbers.
+    choose(&viewer, "expsoure -2 EV");
+    viewer.until("a darker picture", |shot| brightness(shot) < 0.6 * brightness(&picture));
+    let dark = viewer.screenshot();
+    choose(&viewer, "undo");
+    viewer.until("the picture, undone", |shot| *shot == picture);
+    // The number of a parameter of the shaders, in a second step. A value out of range is not taken.
+    choose(&viewer, "roughness scale");
+    assert!(viewer.screenshot() == picture, "a number without a value changed the picture");
+    viewer.display.xdotool(&["type", "7"]);
+    viewer.key("Return");
+    assert!(viewer.screenshot() == picture, "a value out of range was taken");
+    viewer.key("BackSpace");
+    viewer.display.xdotool(&["type", "0.1"]);
+    viewer.key("Return");
+    viewer.until("a smoother model", |shot| *shot != picture && *shot != dark);
     viewer.quit();
 }
 
@@ -125,54 +156,9 @@ fn keys_of_one_frame_act_in_their_order() {
     viewer.quit();
 }
 
-#[test]
-fn the_palette_sets_numbers() {
-    let mut viewer = open(None);
-    let picture = viewer.screenshot();
-    choose(&viewer, "expsoure -2 EV");
-    viewer.until("a darker picture", |shot| brightness(shot) < 0.6 * brightness(&picture));
-    let dark = viewer.screenshot();
-    choose(&viewer, "undo");
-    viewer.until("the picture, undone", |shot| *shot == picture);
-    // The number of a parameter of the shaders, in a second step. A value out of range is not taken.
-    choose(&viewer, "roughness scale");
-    assert!(viewer.screenshot() == picture, "a number without a value changed the picture");
-    viewer.display.xdotool(&["type", "7"]);
-    viewer.key("Return");
-    assert!(viewer.screenshot() == picture, "a value out of range was taken");
-    viewer.key("BackSpace");
-    viewer.display.xdotool(&["type", "0.1"]);
-    viewer.key("Return");
-    viewer.until("a smoother model", |shot| *shot != picture && *shot != dark);
-    viewer.quit();
-}
-
 /// Sum of all channels.
 fn brightness(shot: &RgbaImage) -> f64 {
     shot.pixels().flat_map(|pixel| pixel.0[..3].to_vec()).map(f64::from).sum()
-}
-
-#[test]
-fn escape_closes_the_list_of_keys_alone() {
-    let mut viewer = open(None);
-    let picture = viewer.screenshot();
-    // Roughness is gray, so that only the keys in the list have the color of links.
-    viewer.key("u");
-    viewer.until("roughness", |shot| *shot != picture);
-    let roughness = viewer.screenshot();
-    let keys = |screen: &RgbaImage| count(screen, 240..660, TILES, ACCENT);
-    let before = keys(&viewer.screen());
-    viewer.key("F1");
-    viewer.until_screen("the list of keys", |screen| keys(screen) > before + 600);
-    // The letters are the filter's.
-    viewer.display.xdotool(&["type", "undo"]);
-    viewer.until_screen("one row", |screen| (before + 30..before + 400).contains(&keys(screen)));
-    viewer.key("Escape");
-    viewer.until_screen("no list", |screen| keys(screen) <= before);
-    assert!(viewer.screenshot() == roughness, "Escape changed the mode, or the filter's letters did");
-    viewer.key("Escape");
-    viewer.until("the picture", |shot| *shot == picture);
-    viewer.quit();
 }
 
 /// The files of earlier runs are in the palette, apart from those that are gone. An opened one comes first.
@@ -200,23 +186,6 @@ fn files_that_were_open_are_offered() {
         stored["models"].clone()
     };
     viewer.until("the list of models", |_| models() == json!([model, other]));
-    viewer.quit();
-}
-
-#[test]
-fn a_panel_is_docked_beside_the_picture() {
-    let mut viewer = open(None);
-    let first = viewer.screenshot().dimensions();
-    // The tab Passes, in the upper group of the right column, goes to the lower part of the picture.
-    viewer.drag_along(&[(782, 42), (770, 60), (500, 360), (460, 420)]);
-    viewer.until("a picture that has made room", |shot| shot.dimensions() != first);
-    let docked = viewer.screenshot().dimensions();
-    let text = stored(&mut viewer, "");
-    viewer.quit();
-    let mut viewer = open(Some(&text));
-    assert_eq!(viewer.screenshot().dimensions(), docked, "the arrangement is forgotten");
-    choose(&viewer, "reset arrangement");
-    viewer.until("the first arrangement", |shot| shot.dimensions() == first);
     viewer.quit();
 }
 

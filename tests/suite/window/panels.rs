@@ -5,53 +5,13 @@ use image::RgbaImage;
 use serde_json::json;
 
 use super::NDF;
-use super::controls::{ERROR, GOOD, STATUS, STATUS_COLUMNS, TILES, WARNING, count};
+use super::controls::{ERROR, STATUS, STATUS_COLUMNS, TILES, WARNING, count};
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
-
-/// The last columns of the panel belong to the scroll bar, which fades in and out.
-const SCROLL_BAR: u32 = 16;
-const SIZE: (u32, u32) = (640, 480);
 
 /// Pixels of a color in the lower bar.
 fn in_status(screen: &RgbaImage, color: [u8; 3]) -> usize {
     count(screen, STATUS_COLUMNS, STATUS, color)
-}
-
-#[test]
-fn an_error_moves_nothing_and_goes_with_its_repair() {
-    let tree = Tree::new();
-    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    let mut viewer = Viewer::open(tree, &["model.glb"]);
-    viewer.running.event("ready");
-    let first = viewer.screenshot();
-    let left = first.width();
-    let errors = |screen: &RgbaImage| count(screen, 0..left, TILES, ERROR);
-    let is_good = |screen: &RgbaImage| in_status(screen, GOOD) > 10 && in_status(screen, ERROR) == 0;
-    let good = viewer.until_screen("the state of the start", is_good);
-    assert_eq!(errors(&good), 0, "an error without an error");
-    let moved = |screen: &RgbaImage| -> Vec<u32> {
-        let differs = |y: u32| (left..SIZE.0 - SCROLL_BAR).any(|x| screen.get_pixel(x, y) != good.get_pixel(x, y));
-        TILES.filter(|y| differs(*y)).collect()
-    };
-
-    let original = viewer.tree.read(NDF);
-    for edit in ["alpha * alfa;", "alpha * ;\n}\nfloat other() { return 1.0 / beta;"] {
-        viewer.tree.write(NDF, &original.replace("alpha * alpha;", edit));
-        viewer.running.reload(false);
-        let bad = viewer.until_screen("the error in the lower bar, and over the picture", |screen| {
-            in_status(screen, ERROR) > 20 && in_status(screen, GOOD) == 0 && errors(screen) > 100
-        });
-        assert_eq!(moved(&bad), [0; 0], "rows of the panels that moved or changed");
-        assert_eq!(viewer.screenshot().dimensions(), first.dimensions(), "the picture has another size");
-    }
-
-    viewer.tree.write(NDF, &original);
-    viewer.running.reload(true);
-    let repaired = viewer.until_screen("the repair", |screen| is_good(screen) && errors(screen) == 0);
-    assert_eq!(moved(&repaired), [0; 0], "rows of the panels that moved or changed");
-    assert!(viewer.screenshot() == first, "the first text no longer shows the first picture");
-    viewer.quit();
 }
 
 /// The position of an error opens in the editor at its line.
@@ -110,28 +70,6 @@ fn a_loop_that_does_not_end_stays_on_screen() {
     viewer.tree.write("user.glsl", &original);
     viewer.running.reload(true);
     viewer.until_screen("the repair", |screen| errors(screen) == 0 && in_status(screen, ERROR) == 0);
-    viewer.quit();
-}
-
-#[test]
-fn the_end_of_a_bake_moves_nothing() {
-    let tree = Tree::new();
-    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    let args = ["model.glb", "--env", "furnace", "--size", "640x640"];
-    let mut viewer = Viewer::with_fault(tree, &args, "bake-delay-ms:3000");
-    viewer.running.event("ready");
-    let left = viewer.screenshot().width();
-    let baking = viewer.screen();
-    let changed = |screen: &RgbaImage| -> Vec<u32> {
-        let differs = |y: u32| (left..SIZE.0 - SCROLL_BAR).any(|x| screen.get_pixel(x, y) != baking.get_pixel(x, y));
-        (32..616).filter(|y| differs(*y)).collect()
-    };
-    viewer.running.event("bake");
-    viewer.until_screen("the time of the bake", |screen| !changed(screen).is_empty());
-    viewer.screenshot();
-    let rows = changed(&viewer.screen());
-    // The bar becomes a line of text.
-    assert!(rows.last().unwrap() - rows[0] < 20, "rows that moved or changed: {rows:?}");
     viewer.quit();
 }
 
