@@ -13,7 +13,7 @@ const MOST_BYTES: usize = 1 << 20;
 
 /// A line of the input.
 #[derive(Debug, PartialEq, Eq)]
-enum Line {
+enum InputLine {
     Whole(Vec<u8>),
     TooLong,
 }
@@ -23,9 +23,9 @@ pub(super) fn read(input: impl Read, client: &Client, sender: &Sender<Asked>) {
     let mut lines = BufReader::new(input);
     while let Some(line) = next(&mut lines) {
         let bytes = match line {
-            Line::Whole(bytes) if bytes.trim_ascii().is_empty() => continue,
-            Line::Whole(bytes) => bytes,
-            Line::TooLong => {
+            InputLine::Whole(bytes) if bytes.trim_ascii().is_empty() => continue,
+            InputLine::Whole(bytes) => bytes,
+            InputLine::TooLong => {
                 let reply = Reply::new(client, Value::Null, String::new());
                 reply.error(format!("a command is longer than {MOST_BYTES} bytes; it was skipped"));
                 continue;
@@ -42,7 +42,7 @@ pub(super) fn read(input: impl Read, client: &Client, sender: &Sender<Asked>) {
 }
 
 /// The next line without its line break; `None` at the end of the input, which also an error ends.
-fn next(input: &mut BufReader<impl Read>) -> Option<Line> {
+fn next(input: &mut BufReader<impl Read>) -> Option<InputLine> {
     let (mut line, mut is_long, mut is_begun) = (Vec::new(), false, false);
     loop {
         let bytes = match input.fill_buf() {
@@ -68,7 +68,7 @@ fn next(input: &mut BufReader<impl Read>) -> Option<Line> {
             break Some(());
         }
     }?;
-    Some(if is_long { Line::TooLong } else { Line::Whole(line) })
+    Some(if is_long { InputLine::TooLong } else { InputLine::Whole(line) })
 }
 
 #[cfg(test)]
@@ -84,7 +84,7 @@ mod tests {
         while let Some(line) = next(&mut input) {
             lines.push(line);
         }
-        let whole = |text: &str| Line::Whole(text.as_bytes().to_vec());
-        assert_eq!(lines, [whole("a"), whole(""), Line::TooLong, whole("b\r"), whole("last")]);
+        let whole = |text: &str| InputLine::Whole(text.as_bytes().to_vec());
+        assert_eq!(lines, [whole("a"), whole(""), InputLine::TooLong, whole("b\r"), whole("last")]);
     }
 }

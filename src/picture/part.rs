@@ -34,14 +34,14 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// A file that is written piece by piece under a temporary name. Dropped unfinished, it leaves no file.
 pub struct PartFile {
     target: PathBuf,
-    part: Part,
+    part: TemporaryFile,
     file: File,
 }
 
 impl PartFile {
     /// Creates the temporary file beside `path`.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let (part, file) = Part::create(path)?;
+        let (part, file) = TemporaryFile::create(path)?;
         Ok(Self { target: path.to_owned(), part, file })
     }
 
@@ -74,9 +74,9 @@ impl Seek for PartFile {
 }
 
 /// A temporary file, removed on drop unless it was renamed.
-struct Part(PathBuf);
+struct TemporaryFile(PathBuf);
 
-impl Part {
+impl TemporaryFile {
     fn create(path: &Path) -> io::Result<(Self, File)> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         // The lock is held while the file is created, so that a signal comes before that or finds the file in the list.
@@ -97,7 +97,7 @@ impl Part {
     }
 }
 
-impl Drop for Part {
+impl Drop for TemporaryFile {
     fn drop(&mut self) {
         let mut unfinished = lock();
         let _ = fs::remove_file(&self.0);
@@ -122,7 +122,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let target = directory.path().join("picture.png");
         replace(&target, b"old").unwrap();
-        let (part, mut file) = Part::create(&target).unwrap();
+        let (part, mut file) = TemporaryFile::create(&target).unwrap();
         file.write_all(b"new").unwrap();
         drop(remove_unfinished());
         assert!(!part.0.exists());

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::part::{Choice, Kind};
+use super::part::{Choice, SettingType};
 use super::value::Value;
 
 /// The range of values that the picture spreads over the display, `view.range`.
@@ -61,7 +61,7 @@ impl TryFrom<String> for ViewRange {
     }
 }
 
-impl Kind for ViewRange {
+impl SettingType for ViewRange {
     const TAKES: &'static str = String::TAKES;
 
     fn value(&self) -> Value {

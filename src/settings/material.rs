@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::declare::settings;
 use super::entry::When;
 use super::list::names;
-use super::part::Kind;
+use super::part::SettingType;
 use super::value::Value;
 use crate::message::did_you_mean;
 
@@ -66,7 +66,7 @@ impl MaterialChannels {
     }
 }
 
-impl Kind for MaterialChannels {
+impl SettingType for MaterialChannels {
     const TAKES: &'static str = Vec::<String>::TAKES;
 
     fn value(&self) -> Value {

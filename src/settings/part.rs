@@ -9,7 +9,7 @@ use super::setting::Setting;
 use super::value::Value;
 
 /// The type of a setting.
-pub(super) trait Kind {
+pub(super) trait SettingType {
     /// The values that it takes, in words.
     const TAKES: &'static str;
 
@@ -36,7 +36,7 @@ pub(super) trait Part {
     fn set_at(&mut self, path: &str, value: &Value);
 }
 
-impl<T: Kind> Part for T {
+impl<T: SettingType> Part for T {
     fn list(&self, path: &str, entry: &'static Entry, list: &mut Vec<Setting>) {
         let (path, default) = (path.to_owned(), self.value());
         list.push(Setting { path, entry, takes: T::TAKES, names: T::names(), default });
@@ -73,10 +73,10 @@ impl<V> Part for BTreeMap<String, V> {
     fn set_at(&mut self, _: &str, _: &Value) {}
 }
 
-/// Implements [`Kind`] for a type that a variant of [`Value`] holds.
+/// Implements [`SettingType`] for a type that a variant of [`Value`] holds.
 macro_rules! kinds {
     ($($kind:ty, $takes:literal, $variant:ident;)+) => {
-        $(impl Kind for $kind {
+        $(impl SettingType for $kind {
             const TAKES: &'static str = $takes;
 
             fn value(&self) -> Value {
@@ -101,7 +101,7 @@ kinds! {
     Vec<String>, "names", Names;
 }
 
-impl Kind for Option<[f32; 3]> {
+impl SettingType for Option<[f32; 3]> {
     const TAKES: &'static str = <[f32; 3]>::TAKES;
 
     fn value(&self) -> Value {
@@ -120,7 +120,7 @@ impl Kind for Option<[f32; 3]> {
 /// A type with a fixed list of names.
 pub(super) trait Choice: ValueEnum {}
 
-impl<T: Choice> Kind for T {
+impl<T: Choice> SettingType for T {
     const TAKES: &'static str = "name";
 
     fn names() -> Vec<String> {

@@ -16,7 +16,7 @@ use crate::message::did_you_mean;
 
 /// A side of the model, as in Blender: glTF models face +Z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Side {
+pub(in crate::app) enum ViewSide {
     Front,
     Back,
     Right,
@@ -25,7 +25,7 @@ pub(in crate::app) enum Side {
     Bottom,
 }
 
-impl Side {
+impl ViewSide {
     /// All sides, in the order of their shortcuts.
     pub(in crate::app) const ALL: [Self; 6] =
         [Self::Front, Self::Back, Self::Right, Self::Left, Self::Top, Self::Bottom];
@@ -91,12 +91,12 @@ const SIDES: [Shortcut; 6] = [
 ];
 
 /// Frames the model, seen from a side.
-pub(in crate::app) static VIEW_FROM: Spec<Side> = Spec::act("view-from", |state, _, side: Side| {
+pub(in crate::app) static VIEW_FROM: Spec<ViewSide> = Spec::act("view-from", |state, _, side: ViewSide| {
     state.frame_model();
     let camera = &mut state.session.settings.camera;
     [camera.azimuth, camera.elevation] = side.angles();
 })
-.arguments(|index| Side::ALL[index])
+.arguments(|index| ViewSide::ALL[index])
 .shortcuts(Group::Camera, &SIDES, "view from the front, the right or the top; with Ctrl, from the opposite side")
 .keys("Numpad 1, 3, 7");
 
@@ -137,8 +137,8 @@ fn move_camera(state: &mut State, _: &mut Engine, asked: CameraFields) -> Outcom
         camera.frame_model();
     }
     if let Some(name) = &asked.view {
-        let names = || Side::ALL.into_iter().map(Side::name);
-        let side = Side::ALL.into_iter().find(|side| side.name().eq_ignore_ascii_case(name));
+        let names = || ViewSide::ALL.into_iter().map(ViewSide::name);
+        let side = ViewSide::ALL.into_iter().find(|side| side.name().eq_ignore_ascii_case(name));
         let unknown = || {
             format!(
                 "no view is named `{name}`.{} It can be {}",

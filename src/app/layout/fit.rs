@@ -15,7 +15,7 @@ const MIN_PICTURE: f32 = 120.0;
 
 /// A side of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Side {
+enum PictureSide {
     #[default]
     Left,
     Right,
@@ -31,7 +31,7 @@ pub(super) struct Fit {
     /// The window size for which they were computed.
     size: Option<Vec2>,
     /// The side that a narrow window hides.
-    hidden: Side,
+    hidden: PictureSide,
 }
 
 impl Fit {
@@ -43,14 +43,14 @@ impl Fit {
     /// The side of the picture whose panels a narrow window hides; `None` if there are none.
     pub(super) fn hidden_side(&self, tree: &Tree<Panel>) -> Option<&'static str> {
         let is_hidden = |id: &TileId| !tree.tiles.is_visible_in_layout(*id);
-        let name = if self.hidden == Side::Left { "left" } else { "right" };
+        let name = if self.hidden == PictureSide::Left { "left" } else { "right" };
         let is_narrow = self.size.is_some_and(|size| size.x < NARROW);
         (is_narrow && tree.tiles.tile_ids().any(|id| is_hidden(&id))).then_some(name)
     }
 
     /// Shows the other side of the picture in a narrow window.
     pub(super) fn swap_sides(&mut self) {
-        self.hidden = if self.hidden == Side::Left { Side::Right } else { Side::Left };
+        self.hidden = if self.hidden == PictureSide::Left { PictureSide::Right } else { PictureSide::Left };
         self.invalidate();
     }
 
@@ -76,7 +76,7 @@ impl Fit {
             let is_row = dir == LinearDir::Horizontal;
             let place = children.iter().position(|child| *child == on_path).unwrap_or(0);
             for (index, child) in children.iter().enumerate().filter(|(_, child)| **child != on_path) {
-                let side = if index < place { Side::Left } else { Side::Right };
+                let side = if index < place { PictureSide::Left } else { PictureSide::Right };
                 tiles.set_visible(*child, !(is_row && size.x < NARROW && side == self.hidden));
             }
             let beside: Vec<(TileId, f32)> = children

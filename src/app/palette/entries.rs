@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::entry::{Action, Ask, Entry, Target, switch};
 use super::settings::of_settings;
-use crate::app::command::camera::{LOOK_THROUGH, Side, VIEW_FROM};
+use crate::app::command::camera::{LOOK_THROUGH, VIEW_FROM, ViewSide};
 use crate::app::command::compare::{COMPARE, CompareFields, TOGGLE_COMPARE, TOGGLE_DIFFERENCE};
 use crate::app::command::file::{CHOOSE, OPEN, Open};
 use crate::app::command::layout::{ARRANGE, ARRANGE_OWN, OPEN_INSPECTOR, OPEN_PANEL};
@@ -154,7 +154,7 @@ fn of_picture(state: &State) -> Vec<Entry> {
     entries.extend(writable.map(|version| {
         compare(format!("Write version {} to the files…", version.number), ASK_VERSION.with(version.number))
     }));
-    entries.extend(Side::ALL.map(|side| {
+    entries.extend(ViewSide::ALL.map(|side| {
         let entry = Entry::new("Camera", format!("View from the {}", side.name()), VIEW_FROM.with(side));
         Entry { key: side.key(), ..entry }
     }));

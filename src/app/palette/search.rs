@@ -32,40 +32,40 @@ enum Class {
     Typo,
 }
 
-/// The place of an entry in the list: whether the query gives it a value, whether only typing errors match, whether it is an inner
+/// The rank of an entry in the list: whether the query gives it a value, whether only typing errors match, whether it is an inner
 /// part of an effect that is not named as a whole, its class, and whether it `is_minor`.
-type Place = (bool, bool, bool, Class, bool);
+type Rank = (bool, bool, bool, Class, bool);
 
 /// The entries that have all words of the query, the best first. Those that `is_minor` come last, with the entries of one pass
 /// together, unless the query is their whole name.
 pub(super) fn find<'a>(entries: impl IntoIterator<Item = &'a Entry>, query: &'a str) -> Vec<Found<'a>> {
     let whole = query.trim();
-    let mut found: Vec<(Place, Found<'a>)> = Vec::new();
-    let place = |has_value, class, entry: &Entry| {
+    let mut found: Vec<(Rank, Found<'a>)> = Vec::new();
+    let rank = |has_value, class, entry: &Entry| {
         let is_inner = entry.is_minor && class != Class::Name;
         (has_value, class >= Class::TypoInTitle, is_inner, class, entry.is_minor)
     };
     for entry in entries {
         if let Some((class, marks)) = compare(entry, whole) {
-            found.push((place(false, class, entry), Found { entry, marks, typed: None }));
+            found.push((rank(false, class, entry), Found { entry, marks, typed: None }));
         } else if let (Action::Number(_), Some((name, value))) = (&entry.action, value(whole))
             && let Some((class, marks)) = compare(entry, name)
         {
-            found.push((place(true, class, entry), Found { entry, marks, typed: Some(value) }));
+            found.push((rank(true, class, entry), Found { entry, marks, typed: Some(value) }));
         }
     }
-    found.sort_by_key(|(place, _)| *place);
+    found.sort_by_key(|(rank, _)| *rank);
     group_inner(found)
 }
 
 /// Moves the inner entries of one pass, its switch and its images, together: to the first of them.
-fn group_inner<'a>(found: Vec<(Place, Found<'a>)>) -> Vec<Found<'a>> {
-    let mut firsts: HashMap<(Place, String), usize> = HashMap::new();
+fn group_inner<'a>(found: Vec<(Rank, Found<'a>)>) -> Vec<Found<'a>> {
+    let mut firsts: HashMap<(Rank, String), usize> = HashMap::new();
     let keys: Vec<usize> = found
         .iter()
         .enumerate()
-        .map(|(at, (place, found))| match place.2 {
-            true => *firsts.entry((*place, name(&found.entry.title).to_owned())).or_insert(at),
+        .map(|(at, (rank, found))| match rank.2 {
+            true => *firsts.entry((*rank, name(&found.entry.title).to_owned())).or_insert(at),
             false => at,
         })
         .collect();

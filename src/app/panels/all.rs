@@ -30,7 +30,7 @@ pub(in crate::app) struct Panels {
     pub(in crate::app) show_keys: bool,
     key_list: keys::KeyList,
     pub(in crate::app) open_gallery: open_gallery::OpenGallery,
-    pub(in crate::app) defaults: parameters::defaults::Asked,
+    pub(in crate::app) defaults: parameters::defaults::AskedDefaults,
     overlay: overlay::Overlay,
 }
 
@@ -49,7 +49,7 @@ impl Panels {
             show_keys: false,
             key_list: keys::KeyList::default(),
             open_gallery: open_gallery::OpenGallery::default(),
-            defaults: parameters::defaults::Asked::default(),
+            defaults: parameters::defaults::AskedDefaults::default(),
             overlay: overlay::Overlay::default(),
         }
     }

@@ -2,7 +2,7 @@
 
 use egui::{Button, Label, Response, RichText, Ui};
 
-use crate::app::command::camera::{FRAME, KEEP_CAMERA, LOOK_THROUGH, RECALL_CAMERA, Side, VIEW_FROM};
+use crate::app::command::camera::{FRAME, KEEP_CAMERA, LOOK_THROUGH, RECALL_CAMERA, VIEW_FROM, ViewSide};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -124,7 +124,7 @@ fn edit_point(ui: &mut Ui, name: &str, point: &mut [f32; 3], scale: &Scale, is_c
 fn sides(ui: &mut Ui, commands: &mut Vec<Command>) {
     heading(ui, "View from");
     ui.horizontal_wrapped(|ui| {
-        for side in Side::ALL {
+        for side in ViewSide::ALL {
             let (name, key) = (side.name(), side.key());
             let hint = format!("View from the {name} ({key})");
             if named(ui.button(capitalized(name)), &hint).on_hover_text(&hint).clicked() {

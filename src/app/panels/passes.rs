@@ -31,7 +31,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
         list.extend(asked.map(|asked| PLAYBACK.with(asked)));
     }
     let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());
-    let Found { added, switches, shipped, inside } = Found::new(shaders, &words);
+    let FoundPasses { added, switches, shipped, inside } = FoundPasses::new(shaders, &words);
     if !words.is_empty() && added.len() + switches.len() + shipped.len() + inside.len() == 0 {
         words.no_match(ui, "pass");
     }
@@ -75,7 +75,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
 
 /// The entries of the panel: the passes and switches that match the search, or whose parameters do.
 #[derive(Debug, Default)]
-struct Found<'a> {
+struct FoundPasses<'a> {
     /// Effects of the user.
     added: Vec<&'a GraphPass>,
     /// Constants that switch passes.
@@ -86,7 +86,7 @@ struct Found<'a> {
     inside: Vec<&'a GraphPass>,
 }
 
-impl<'a> Found<'a> {
+impl<'a> FoundPasses<'a> {
     fn new(shaders: &'a ShaderSet, words: &Words) -> Self {
         let names = &shaders.graph.internal;
         let with = |texts: [&str; 4], parameters: Vec<&Parameter>| {

@@ -12,7 +12,7 @@ use super::overlay::swatches::swatches;
 use super::panel_ui::PanelSpec;
 use super::timeline::comparison;
 use super::{PANELS, Panel, camera, capture, output};
-use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA, Side, VIEW_FROM};
+use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA, VIEW_FROM, ViewSide};
 use crate::app::command::compare::{COMPARE, CompareFields};
 use crate::app::command::file::CHOOSE;
 use crate::app::command::spec::Command;
@@ -170,7 +170,7 @@ fn the_camera_is_placed_by_numbers_and_from_the_sides() {
     assert!(eye[1] > 2.0 && [eye[0], eye[2]] == [1.0, 4.0] && camera.target == Some([0.0; 3]), "{camera:?}");
     harness.get_by_role_and_label(Role::Button, "View from the top (Numpad 7)").click();
     harness.run();
-    assert_eq!(harness.state().1, [VIEW_FROM.with(Side::Top)]);
+    assert_eq!(harness.state().1, [VIEW_FROM.with(ViewSide::Top)]);
 }
 
 #[test]

@@ -2,25 +2,25 @@
 
 use std::ops::Range;
 
-use super::place::Place;
+use super::place::AnnotationPlace;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::is_word;
 
 /// A position in an annotation.
 pub struct Cursor<'a> {
-    place: &'a Place,
+    place: &'a AnnotationPlace,
     raw: &'a str,
     at: usize,
 }
 
 impl<'a> Cursor<'a> {
     /// A cursor at byte `at` of `raw`, the annotation's line.
-    pub fn new(place: &'a Place, raw: &'a str, at: usize) -> Self {
+    pub fn new(place: &'a AnnotationPlace, raw: &'a str, at: usize) -> Self {
         Self { place, raw, at }
     }
 
     /// The location of the annotation.
-    pub fn place(&self) -> &'a Place {
+    pub fn place(&self) -> &'a AnnotationPlace {
         self.place
     }
 

@@ -44,9 +44,9 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{TreePath, embedded};
 use crate::shader::spirv::reflect::Reflection;
-use parse::{Found, parse_file};
+use parse::{Annotation, parse_file};
 use pass::PassDesc;
-use place::Place;
+use place::AnnotationPlace;
 use resolve::resolve;
 use texture::TextureDesc;
 use ui::Ui;
@@ -70,7 +70,7 @@ pub fn read<'p>(
     let mut out = Annotations::default();
     let mut errors = Vec::new();
     let mut seen = Seen::default();
-    let mut places: BTreeMap<(String, u32), Place> = BTreeMap::new();
+    let mut places: BTreeMap<(String, u32), AnnotationPlace> = BTreeMap::new();
     for path in files {
         let Ok(text) = snapshot.read(path) else { continue };
         let file = snapshot.display_path(path);
@@ -79,12 +79,12 @@ pub fn read<'p>(
         errors.extend(bad);
         for found in found {
             let added = match found {
-                Found::Mode(mode, places) => seen.mode(&mode, &places).map(|()| out.modes.push(mode)),
-                Found::Ui(ui) => {
+                Annotation::Mode(mode, places) => seen.mode(&mode, &places).map(|()| out.modes.push(mode)),
+                Annotation::Ui(ui) => {
                     places.insert((ui.place.file.clone(), ui.place.line), ui.place.clone());
                     seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out))
                 }
-                Found::Pass(desc) => {
+                Annotation::Pass(desc) => {
                     let desc = PassDesc { stage: path.to_string(), ..desc };
                     match StageKind::of(path) {
                         Some(StageKind::Fragment | StageKind::Compute) => {
@@ -96,7 +96,7 @@ pub fn read<'p>(
                         }
                     }
                 }
-                Found::Texture(desc) => seen.texture(&desc).map(|()| {
+                Annotation::Texture(desc) => seen.texture(&desc).map(|()| {
                     out.textures.push(TextureDesc { declared_in: path.to_string(), ..desc });
                 }),
             };
@@ -129,7 +129,7 @@ pub fn read<'p>(
 pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Item = PassDesc> {
     let found = snapshot.read(stage).map(|text| parse_file("", &text).0).unwrap_or_default();
     found.into_iter().filter_map(|found| match found {
-        Found::Pass(desc) => Some(PassDesc { stage: stage.to_string(), ..desc }),
+        Annotation::Pass(desc) => Some(PassDesc { stage: stage.to_string(), ..desc }),
         _ => None,
     })
 }
@@ -138,13 +138,13 @@ pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Ite
 #[derive(Default)]
 struct Seen {
     /// Where the name occurs, and whether that file is unchanged from the shipped one.
-    first: BTreeMap<(&'static str, String), (Place, bool)>,
+    first: BTreeMap<(&'static str, String), (AnnotationPlace, bool)>,
     /// Whether the file that is being read is unchanged from the shipped one.
     is_shipped: bool,
 }
 
 impl Seen {
-    fn mode(&mut self, mode: &Mode, [place, number]: &[Place; 2]) -> Result<(), Box<Diagnostic>> {
+    fn mode(&mut self, mode: &Mode, [place, number]: &[AnnotationPlace; 2]) -> Result<(), Box<Diagnostic>> {
         self.first("mode slug", &mode.slug, place)?;
         self.first("mode id", &mode.id.to_string(), number)?;
         self.first("mode name", &mode.name, place)?;
@@ -169,7 +169,7 @@ impl Seen {
         self.first("pass or texture", &desc.name, &desc.place)
     }
 
-    fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
+    fn first(&mut self, what: &'static str, value: &str, place: &AnnotationPlace) -> Result<(), Box<Diagnostic>> {
         let now = (place.clone(), self.is_shipped);
         let Some((first, was_shipped)) = self.first.insert((what, value.to_owned()), now) else { return Ok(()) };
         // Report the author's file, not the shipped one.

@@ -6,7 +6,7 @@ use clap::ValueEnum as _;
 use serde::Serialize;
 
 use super::cursor::Cursor;
-use super::place::Place;
+use super::place::AnnotationPlace;
 use super::value;
 use crate::interface;
 use crate::message::{did_you_mean, either};
@@ -150,7 +150,10 @@ pub struct Mode {
 }
 
 /// Parses the rest of a `//@mode`, whose id stands in `declaration`. Returns where the id stands, too.
-pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Mode, Place), Box<Diagnostic>> {
+pub(super) fn mode(
+    cursor: &mut Cursor<'_>,
+    declaration: Option<&Line<'_>>,
+) -> Result<(Mode, AnnotationPlace), Box<Diagnostic>> {
     let (bytes, slug) = cursor.word();
     let valid = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if slug.is_empty() || !slug.chars().all(valid) {
@@ -331,7 +334,7 @@ fn check_key(key: char) -> Result<(), String> {
 }
 
 /// The number of `const uint MODE_X = 120u;`, and where it stands.
-fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, Place), Box<Diagnostic>> {
+fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, AnnotationPlace), Box<Diagnostic>> {
     let found = declaration.map(|line| (line, line.tokens()));
     let words: Vec<&str> = found.iter().flat_map(|(_, tokens)| tokens).map(|token| token.text).collect();
     if let (["const", "uint", _, "=", literal, ";", ..], Some((line, tokens))) = (words.as_slice(), &found) {
@@ -342,7 +345,7 @@ fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, 
         };
         if let Ok(number) = number {
             let (file, raw) = (cursor.place().file.clone(), line.raw.to_owned());
-            return Ok((number, Place { file, line: line.number, raw, bytes: tokens[4].bytes.clone() }));
+            return Ok((number, AnnotationPlace { file, line: line.number, raw, bytes: tokens[4].bytes.clone() }));
         }
     }
     let found = declaration.map_or("the end of the file", |line| line.raw.trim());

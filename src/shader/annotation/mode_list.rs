@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use super::mode::Mode;
-use super::parse::{Found, parse_file};
+use super::parse::{Annotation, parse_file};
 use crate::shader::{TreePath, embedded};
 
 /// The groups of the modes that Specula comes with.
@@ -12,7 +12,7 @@ static BUILT_IN_GROUPS: LazyLock<HashSet<String>> = LazyLock::new(|| {
     let text = embedded::read(None, &TreePath::from("debug/modes.glsl")).unwrap_or_default();
     let text = std::str::from_utf8(text).unwrap_or_default();
     let groups = parse_file("", text).0.into_iter().filter_map(|found| match found {
-        Found::Mode(mode, _) => Some(mode.group),
+        Annotation::Mode(mode, _) => Some(mode.group),
         _ => None,
     });
     groups.chain(["Passes".to_owned()]).collect()

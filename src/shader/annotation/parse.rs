@@ -4,7 +4,7 @@ use super::cursor::Cursor;
 use super::mode::{Mode, mode};
 use super::parse_pass::pass;
 use super::pass::PassDesc;
-use super::place::Place;
+use super::place::AnnotationPlace;
 use super::texture::{self, TextureDesc};
 use super::ui::{Ui, ui};
 use crate::message::did_you_mean;
@@ -13,9 +13,9 @@ use crate::shader::glsl::{Line, lines};
 
 /// A parsed annotation.
 #[derive(Debug)]
-pub enum Found {
+pub enum Annotation {
     /// `//@mode`, where it stands, and where its number stands.
-    Mode(Mode, [Place; 2]),
+    Mode(Mode, [AnnotationPlace; 2]),
     /// `//@ui`
     Ui(Ui),
     /// `//@pass`
@@ -25,7 +25,7 @@ pub enum Found {
 }
 
 /// Reads all annotations of a file.
-pub fn parse_file(file: &str, text: &str) -> (Vec<Found>, Vec<Diagnostic>) {
+pub fn parse_file(file: &str, text: &str) -> (Vec<Annotation>, Vec<Diagnostic>) {
     if !text.contains("//@") {
         return (Vec::new(), Vec::new());
     }
@@ -34,7 +34,8 @@ pub fn parse_file(file: &str, text: &str) -> (Vec<Found>, Vec<Diagnostic>) {
     for (index, line) in lines.iter().enumerate() {
         let Some(start) = line.annotation else { continue };
         let end = line.raw.trim_end().len();
-        let place = Place { file: file.to_owned(), line: line.number, raw: line.raw.to_owned(), bytes: start..end };
+        let place =
+            AnnotationPlace { file: file.to_owned(), line: line.number, raw: line.raw.to_owned(), bytes: start..end };
         let own = (!line.is_blank()).then_some(line);
         let declaration = own.or_else(|| lines[index + 1..].iter().find(|line| !line.is_blank()));
         match parse(place, start, declaration) {
@@ -45,21 +46,21 @@ pub fn parse_file(file: &str, text: &str) -> (Vec<Found>, Vec<Diagnostic>) {
     (found, errors)
 }
 
-fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<Found, Box<Diagnostic>> {
+fn parse(place: AnnotationPlace, start: usize, declaration: Option<&Line<'_>>) -> Result<Annotation, Box<Diagnostic>> {
     let raw = place.raw.clone();
     let mut cursor = Cursor::new(&place, &raw, start + "//@".len());
     let (bytes, kind) = cursor.word();
     match kind {
         "mode" => {
             let (mode, number) = mode(&mut cursor, declaration)?;
-            Ok(Found::Mode(mode, [place, number]))
+            Ok(Annotation::Mode(mode, [place, number]))
         }
         "ui" => {
             let ui = ui(&mut cursor, declaration)?;
-            Ok(Found::Ui(Ui { place, ..ui }))
+            Ok(Annotation::Ui(Ui { place, ..ui }))
         }
-        "pass" => pass(&mut cursor).map(Found::Pass),
-        "texture" => texture::texture(&mut cursor).map(Found::Texture),
+        "pass" => pass(&mut cursor).map(Annotation::Pass),
+        "texture" => texture::texture(&mut cursor).map(Annotation::Texture),
         _ => {
             let hint = did_you_mean(kind, ["mode", "ui", "pass", "texture"]);
             let hint = hint.replace("mean `", "mean `//@");

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::place::Place;
+use super::place::AnnotationPlace;
 
 /// Most instances of the model that a pass draws.
 pub const MOST_COPIES: u32 = 1024;
@@ -186,7 +186,7 @@ pub struct PassDesc {
     pub stage: String,
     /// Location of the annotation.
     #[serde(skip)]
-    pub place: Place,
+    pub place: AnnotationPlace,
 }
 
 impl PassDesc {

@@ -7,7 +7,7 @@ use crate::shader::glsl::find_word;
 
 /// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
 #[derive(Clone, Debug, Default)]
-pub struct Place {
+pub struct AnnotationPlace {
     /// Path of the file for messages.
     pub file: String,
     /// Line number, from 1.
@@ -18,19 +18,19 @@ pub struct Place {
     pub(super) bytes: Range<usize>,
 }
 
-impl PartialEq for Place {
+impl PartialEq for AnnotationPlace {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for Place {}
+impl Eq for AnnotationPlace {}
 
-impl std::hash::Hash for Place {
+impl std::hash::Hash for AnnotationPlace {
     fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
 }
 
-impl Place {
+impl AnnotationPlace {
     /// An error about the whole annotation, with the caret under its keyword, as `//@pass`.
     pub fn error(&self, message: impl Into<String>) -> Diagnostic {
         self.under(self.keyword(), message)
@@ -83,7 +83,8 @@ mod tests {
     #[test]
     fn the_caret_stands_under_the_word() {
         let raw = "vec3 tint; //@pass pass \"A pass\" after=other doc=\"to = x\" off  ";
-        let place = Place { raw: raw.to_owned(), bytes: 11..raw.trim_end().len(), ..Place::default() };
+        let place =
+            AnnotationPlace { raw: raw.to_owned(), bytes: 11..raw.trim_end().len(), ..AnnotationPlace::default() };
         let marked = |error: Diagnostic| {
             let from = error.column.unwrap() as usize - 1;
             raw[from..from + error.length as usize].to_owned()

@@ -1,6 +1,6 @@
 //! Completes a `//@ui` with the id, default or offset that its declaration has in the compiled modules.
 
-use super::place::Place;
+use super::place::AnnotationPlace;
 use super::ui::{Declared, Ui, outside_of_choices};
 use super::{Annotations, Constant, Parameter};
 use crate::interface;
@@ -99,7 +99,7 @@ fn in_a_pass(name: &str, modules: &[&Reflection]) -> bool {
 }
 
 /// The offset of a member of `Params`. It must be the same in every module, since all share one buffer.
-fn offset_in_params(name: &str, modules: &[&Reflection], place: &Place) -> Result<u32, Box<Diagnostic>> {
+fn offset_in_params(name: &str, modules: &[&Reflection], place: &AnnotationPlace) -> Result<u32, Box<Diagnostic>> {
     let params = interface::BINDINGS.iter().find(|binding| binding.name == "BINDING_PARAMS");
     let blocks = modules.iter().filter_map(|module| module.descriptor(params?.set, params?.binding)?.block.as_ref());
     let mut offsets: Vec<u32> = blocks

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::cursor::Cursor;
 use super::name::name;
-use super::place::Place;
+use super::place::AnnotationPlace;
 use crate::shader::diagnostic::Diagnostic;
 
 /// The addressing mode of a texture, for coordinates beyond its edges.
@@ -44,7 +44,7 @@ pub struct TextureDesc {
     pub layers: Option<u32>,
     /// Location of the annotation.
     #[serde(skip)]
-    pub place: Place,
+    pub place: AnnotationPlace,
 }
 
 /// Whether a file with this extension may be the image of a `//@texture`.

@@ -2,7 +2,7 @@
 
 use super::ParameterType;
 use super::cursor::Cursor;
-use super::place::Place;
+use super::place::AnnotationPlace;
 use super::value::{choices, claim, claimed, default, range, text_key};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{Line, is_word};
@@ -49,7 +49,7 @@ pub struct Ui {
     /// The annotated declaration.
     pub declared: Declared,
     /// Location of the annotation.
-    pub place: Place,
+    pub place: AnnotationPlace,
 }
 
 /// Parses the rest of a `//@ui` that belongs to `declaration`.

@@ -73,24 +73,24 @@ struct Drag {
 }
 
 /// Azimuth, polar angle and distance of a light.
-struct Place<'a> {
+struct LightPlace<'a> {
     azimuth: &'a mut f32,
     polar: &'a mut f32,
     distance: &'a mut f32,
     color: [f32; 3],
 }
 
-fn place(lights: &mut LightSettings, light: LightId) -> Option<Place<'_>> {
+fn place(lights: &mut LightSettings, light: LightId) -> Option<LightPlace<'_>> {
     match light {
         LightId::Orbit(index) => {
             let light = lights.orbit.get_mut(index)?;
             let (azimuth, polar, distance) = (&mut light.azimuth, &mut light.polar, &mut light.distance);
-            Some(Place { azimuth, polar, distance, color: light.color })
+            Some(LightPlace { azimuth, polar, distance, color: light.color })
         }
         LightId::Rectangle => {
             let light = &mut lights.rect;
             let (azimuth, polar, distance) = (&mut light.azimuth, &mut light.polar, &mut light.distance);
-            Some(Place { azimuth, polar, distance, color: light.color })
+            Some(LightPlace { azimuth, polar, distance, color: light.color })
         }
         LightId::Model(_) => None,
     }

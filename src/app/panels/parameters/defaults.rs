@@ -11,12 +11,12 @@ use crate::app::widgets::theme::{ACCENT, ERROR, QUIET};
 
 /// State of the confirmation dialog.
 #[derive(Default)]
-pub(in crate::app) struct Asked {
+pub(in crate::app) struct AskedDefaults {
     /// Of one parameter, or of all that are set. `None` while the dialog is closed.
     about: Option<Option<String>>,
 }
 
-impl Asked {
+impl AskedDefaults {
     /// Opens the dialog, about one parameter or about all.
     pub(in crate::app) fn ask(&mut self, only: Option<String>) {
         self.about = Some(only);
@@ -56,7 +56,7 @@ pub(super) fn menu(ui: &mut Ui, name: &str, is_enabled: bool) {
 }
 
 /// Shows the dialog while it is open.
-pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut Asked, commands: &mut Vec<Command>) {
+pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut AskedDefaults, commands: &mut Vec<Command>) {
     if let Some(only) = egui.data_mut(|data| data.remove_temp::<Option<String>>(wish())) {
         own.ask(only);
     }

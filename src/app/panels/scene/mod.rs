@@ -97,7 +97,7 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
         ui.set_max_width(width);
         for at in range {
             let row = &own.tree.rows()[at];
-            let shown = row::State {
+            let shown = row::RowState {
                 is_drawn: row.item.is_none_or(|item| own.tree.is_drawn(item)),
                 is_selected: row.item.is_some() && row.item == chosen_part,
                 is_found: !own.search.is_empty(),

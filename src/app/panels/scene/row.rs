@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
-use super::tree::Row;
+use super::tree::TreeRow;
 use crate::app::state::selection::Selected;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{EDGE, QUIET, STRONG};
@@ -24,7 +24,7 @@ pub(super) enum Action {
 }
 
 /// How a row is shown.
-pub(super) struct State {
+pub(super) struct RowState {
     pub(super) is_drawn: bool,
     pub(super) is_selected: bool,
     /// Whether it is a search result, which is shown without a level.
@@ -32,8 +32,8 @@ pub(super) struct State {
 }
 
 /// Shows a row.
-pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
-    let State { is_drawn, is_selected, is_found } = *state;
+pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Action> {
+    let RowState { is_drawn, is_selected, is_found } = *state;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let label = format!("{} {}", row.name, row.detail);
     response.widget_info(|| {
@@ -95,7 +95,7 @@ pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
 }
 
 /// The hover text of a row.
-fn hover(row: &Row) -> String {
+fn hover(row: &TreeRow) -> String {
     let about = match row.item {
         None => "Click to fold or unfold",
         Some(Selected::Camera(_)) => "Click to look through this camera; R frames the model again",

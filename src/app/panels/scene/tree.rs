@@ -21,7 +21,7 @@ pub(super) enum Group {
 
 /// A row of the tree.
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub(super) struct TreeRow {
     pub(super) depth: usize,
     pub(super) name: String,
     /// Counts and sizes, at the right.
@@ -39,7 +39,7 @@ pub(super) struct Row {
 #[derive(Default)]
 pub(super) struct Tree {
     folded: HashSet<(Group, Option<Selected>)>,
-    rows: Vec<Row>,
+    rows: Vec<TreeRow>,
     /// The scene of the last frame, and whether each of its nodes, or something below it, is drawn.
     drawn: Option<(Scene, Vec<bool>)>,
     /// Whether folding has changed since the rows were made.
@@ -51,7 +51,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    pub(super) fn rows(&self) -> &[Row] {
+    pub(super) fn rows(&self) -> &[TreeRow] {
         &self.rows
     }
 
@@ -84,7 +84,7 @@ impl Tree {
         self.rows = match words.is_empty() {
             true => self.unfolded(all),
             false => {
-                let has = |row: &Row| words.are_in(&row.name);
+                let has = |row: &TreeRow| words.are_in(&row.name);
                 all.into_iter().filter(|row| row.item.is_some() && has(row)).collect()
             }
         };
@@ -92,7 +92,7 @@ impl Tree {
     }
 
     /// Leaves out what is below folded rows.
-    fn unfolded(&self, all: Vec<Row>) -> Vec<Row> {
+    fn unfolded(&self, all: Vec<TreeRow>) -> Vec<TreeRow> {
         let mut below = None;
         let mut shown = Vec::with_capacity(all.len());
         for mut row in all {
@@ -198,7 +198,7 @@ fn drawn_nodes(scene: &Scene) -> Vec<bool> {
 }
 
 /// All rows of a model.
-fn rows(model: &Model) -> Vec<Row> {
+fn rows(model: &Model) -> Vec<TreeRow> {
     let mut rows = Vec::new();
     nodes(model, &mut rows);
     let mut uses = vec![0; model.materials.len()];
@@ -245,12 +245,12 @@ pub(super) fn kind(kind: LightKind) -> &'static str {
 }
 
 /// The title of a group, and its rows.
-fn group(rows: &mut Vec<Row>, group: Group, title: &str, items: Vec<(String, String, Selected)>) {
+fn group(rows: &mut Vec<TreeRow>, group: Group, title: &str, items: Vec<(String, String, Selected)>) {
     if items.is_empty() {
         return;
     }
     rows.push(title_of(group, title, items.len()));
-    rows.extend(items.into_iter().map(|(name, detail, item)| Row {
+    rows.extend(items.into_iter().map(|(name, detail, item)| TreeRow {
         depth: 1,
         name,
         detail,
@@ -261,13 +261,13 @@ fn group(rows: &mut Vec<Row>, group: Group, title: &str, items: Vec<(String, Str
     }));
 }
 
-fn title_of(group: Group, title: &str, count: usize) -> Row {
+fn title_of(group: Group, title: &str, count: usize) -> TreeRow {
     let (name, detail) = (title.to_owned(), count.to_string());
-    Row { depth: 0, name, detail, item: None, group, is_folded: Some(false), key: None }
+    TreeRow { depth: 0, name, detail, item: None, group, is_folded: Some(false), key: None }
 }
 
 /// The nodes, each with the primitives of its mesh if there are several.
-fn nodes(model: &Model, rows: &mut Vec<Row>) {
+fn nodes(model: &Model, rows: &mut Vec<TreeRow>) {
     let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, instance) in model.instances.iter().enumerate() {
         of_node.entry(instance.node).or_default().push(index);
@@ -293,10 +293,10 @@ fn nodes(model: &Model, rows: &mut Vec<Row>) {
             node.mesh.clone().filter(|mesh| !mesh.is_empty()).unwrap_or_else(|| format!("node {}", node.index))
         });
         let is_folded = (has_children || instances.len() > 1).then_some(false);
-        rows.push(Row { depth, name, detail, item, group, is_folded, key: keys.get(at).cloned() });
+        rows.push(TreeRow { depth, name, detail, item, group, is_folded, key: keys.get(at).cloned() });
         for instance in instances.iter().filter(|_| instances.len() > 1) {
             let primitive = &model.primitives[model.instances[*instance].primitive];
-            rows.push(Row {
+            rows.push(TreeRow {
                 depth: depth + 1,
                 name: format!("{} · {}", primitive.name, model.material_key(primitive.default_material)),
                 detail: thousands(triangles(instance)),

@@ -55,7 +55,7 @@ impl FilesState {
 
 /// A row of the list.
 #[derive(Clone, Debug, PartialEq)]
-enum Row {
+enum FileRow {
     Folder {
         path: String,
         depth: usize,
@@ -75,7 +75,7 @@ enum Row {
 }
 
 /// The rows in sight: folders before files, each sorted.
-fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded: &BTreeSet<TreePath>) -> Vec<Row> {
+fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded: &BTreeSet<TreePath>) -> Vec<FileRow> {
     let words = Words::new(search);
     let is_found = |path: &&TreePath| words.are_in(path.as_str());
     let mut files: Vec<&TreePath> = graph.files().filter(is_found).collect();
@@ -99,7 +99,7 @@ fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded:
                 let is_inside =
                     |path: &&&TreePath| path.as_str().strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'));
                 let files = files.iter().filter(is_inside).count();
-                out.push(Row::Folder { path: (*folder).to_owned(), depth, is_open: opens, files });
+                out.push(FileRow::Folder { path: (*folder).to_owned(), depth, is_open: opens, files });
             }
             is_open &= opens;
         }
@@ -107,10 +107,11 @@ fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded:
             continue;
         }
         let depth = folders.len();
-        out.push(Row::File { path: (*path).clone(), depth });
+        out.push(FileRow::File { path: (*path).clone(), depth });
         if unfolded.contains(*path) {
-            let row =
-                |is_included| move |path: &TreePath| Row::Include { path: path.clone(), depth: depth + 1, is_included };
+            let row = |is_included| {
+                move |path: &TreePath| FileRow::Include { path: path.clone(), depth: depth + 1, is_included }
+            };
             out.extend(graph.includes(path).iter().map(row(true)));
             out.extend(graph.included_by(path).map(row(false)));
         }
@@ -163,13 +164,13 @@ fn show_row(
     ui: &mut Ui,
     state: &State,
     shaders: &ShaderSet,
-    row: &Row,
+    row: &FileRow,
     own: &mut FilesState,
     commands: &mut Vec<Command>,
 ) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     match row {
-        Row::Folder { path, depth, is_open, files } => {
+        FileRow::Folder { path, depth, is_open, files } => {
             let name = path.rsplit('/').next().unwrap_or(path);
             let response = ui.interact(rect, ui.id().with(("folder", path)), Sense::click());
             spoken::button(&response, &format!("{path}/"));
@@ -182,7 +183,7 @@ fn show_row(
                 own.closed.insert(path.clone());
             }
         }
-        Row::File { path, depth } => {
+        FileRow::File { path, depth } => {
             let display = state.source.display_path(path);
             let mark = mark(state, own, path, &display);
             let x = rect.left() + INDENT * *depth as f32;
@@ -204,7 +205,7 @@ fn show_row(
             }
             open_on_click(response, &display, commands, |ui| about(ui, shaders, &own.graph, path, mark));
         }
-        Row::Include { path, depth, is_included } => {
+        FileRow::Include { path, depth, is_included } => {
             let display = state.source.display_path(path);
             let x = rect.left() + INDENT * (*depth as f32 + 1.0);
             let response = ui.interact(rect, ui.id().with(("include", row_id(row), rect.top() as i32)), Sense::click());
@@ -218,11 +219,11 @@ fn show_row(
     }
 }
 
-fn row_id(row: &Row) -> (&str, bool) {
+fn row_id(row: &FileRow) -> (&str, bool) {
     match row {
-        Row::Folder { path, .. } => (path, false),
-        Row::File { path, .. } => (path.as_str(), false),
-        Row::Include { path, is_included, .. } => (path.as_str(), *is_included),
+        FileRow::Folder { path, .. } => (path, false),
+        FileRow::File { path, .. } => (path.as_str(), false),
+        FileRow::Include { path, is_included, .. } => (path.as_str(), *is_included),
     }
 }
 
@@ -309,13 +310,13 @@ mod tests {
         IncludeGraph::new(&texts, IncludeGraph::default())
     }
 
-    fn words(rows: &[Row]) -> Vec<String> {
-        let words = |row: &Row| match row {
-            Row::Folder { path, depth, is_open, files } => {
+    fn words(rows: &[FileRow]) -> Vec<String> {
+        let words = |row: &FileRow| match row {
+            FileRow::Folder { path, depth, is_open, files } => {
                 format!("{}{} {path}/ {files}", " ".repeat(*depth), if *is_open { "-" } else { "+" })
             }
-            Row::File { path, depth } => format!("{}{path}", " ".repeat(*depth)),
-            Row::Include { path, depth, is_included } => {
+            FileRow::File { path, depth } => format!("{}{path}", " ".repeat(*depth)),
+            FileRow::Include { path, depth, is_included } => {
                 format!("{}{} {path}", " ".repeat(*depth), if *is_included { ">" } else { "<" })
             }
         };
