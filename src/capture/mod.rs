@@ -1,12 +1,14 @@
-//! Many pictures in one file: a contact sheet of modes, and animations. The same code serves a command, which has a [`Headless`], and
+//! Many pictures in one file: a contact sheet of modes and settings, and animations. The same code serves a command, which has a [`Headless`], and
 //! the window, which draws with [`OffscreenCapture`] on a thread.
 
 mod animation;
+mod cells;
 mod label;
 mod modes;
 mod mp4;
 mod offscreen;
 mod sheet;
+mod sweep;
 mod turntable;
 mod webp;
 mod yuv;
@@ -25,10 +27,12 @@ use crate::settings::Settings;
 use crate::shader::ShaderSet;
 
 pub use animation::{Animation, check_animation};
+pub use cells::{Cell, cells_of_modes, swept};
 pub use modes::modes_of;
 pub use offscreen::OffscreenCapture;
 pub(crate) use offscreen::VersionPicture;
-pub use sheet::SheetPlan;
+pub use sheet::{Page, SheetPlan};
+pub use sweep::Sweep;
 pub use turntable::{Turn, Turntable};
 
 /// Draws pictures of a session at any size.

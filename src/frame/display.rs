@@ -120,6 +120,26 @@ impl Display {
     }
 }
 
+/// The range that a legend names: that of the display, or that of the mode; `None` for light, which exposure and tone map bring there.
+pub fn legend_limits(mode: &Mode, displayed: Option<Limits>) -> Option<Limits> {
+    displayed.or(match mode.encode {
+        _ if mode.tonemap => None,
+        Encode::Vector => Some((-1.0, 1.0)),
+        Encode::Color | Encode::Data => Some((0.0, 1.0)),
+    })
+}
+
+/// A number with four significant digits, or fewer.
+pub fn short(number: f32) -> String {
+    let magnitude = number.abs();
+    if magnitude != 0.0 && !(1e-3..1e5).contains(&magnitude) {
+        return format!("{number:.1e}");
+    }
+    let decimals = 3_usize.saturating_sub(magnitude.max(1.0).log10() as usize);
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// Whether the limits suit values from `low` to `high`: at most a tenth is cut off, and at most a third of the range is empty.
 fn still_fit((before_low, before_high): Limits, (low, high): Limits) -> bool {
     let span = before_high - before_low;
@@ -150,6 +170,12 @@ mod tests {
 
     fn data(unit: &str) -> Mode {
         Mode { encode: Encode::Data, components: 1, unit: unit.into(), ..Mode::default() }
+    }
+
+    #[test]
+    fn numbers_of_the_legend_are_short() {
+        let numbers = [0.0, 1.0, -0.05, 4.9, 1234.5, 0.000_02, 1e7].map(short);
+        assert_eq!(numbers, ["0", "1", "-0.05", "4.9", "1234", "2.0e-5", "1.0e7"]);
     }
 
     #[test]

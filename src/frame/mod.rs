@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub(crate) use baked::BakeStage;
 pub use baked::{BakeValues, EnvironmentKey, TablesKey};
 pub use date::Date;
-pub use display::{Display, Limits};
+pub use display::{Display, Limits, legend_limits, short};
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};

@@ -12,7 +12,8 @@ use crate::app::frames::reference::version_pictures;
 use crate::app::state::State;
 use crate::app::state::captures::Job;
 use crate::capture::{
-    Animation, CaptureError, OffscreenCapture, Renderer as _, SheetPlan, Turntable, VersionPicture, modes_of,
+    Animation, CaptureError, OffscreenCapture, Page, Renderer as _, SheetPlan, Turntable, VersionPicture,
+    cells_of_modes, modes_of,
 };
 use crate::control::Reply;
 use crate::headless::HeadlessError;
@@ -71,8 +72,8 @@ impl Job {
             }
             Self::Sheet { file, names, size, columns } => {
                 let modes = modes_of(offscreen.session(), &names).map_err(wrong)?;
-                let count = modes.len();
-                SheetPlan { modes, size, columns }.write(offscreen, &file, tell)?;
+                let (count, cells) = (modes.len(), cells_of_modes(&offscreen.session().settings, &modes));
+                SheetPlan { cells, size, columns, page: Page::Dark }.write(offscreen, &file, tell)?;
                 Ok(json!({ "file": path_text(&file), "modes": count }))
             }
             Self::Turntable { file, frames, fps, size: own, turn } => {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use specula::capture::Turn;
+use specula::capture::{Page, Sweep, Turn};
 
 use crate::commands::common::Common;
 use crate::commands::common::frames::Frames;
@@ -22,6 +22,12 @@ pub struct Args {
     /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (all but those of random paths), paths (those), or names such as d,f,v
     #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
     pub(super) sheet: Option<String>,
+    /// Write a sheet of the values of a setting or parameter: PATH=a,b (lists in lists with ;), PATH=0..1 or PATH=0..1/9 (9 values), or PATH for all. Repeated: rows and columns; with --sheet, each mode in a row
+    #[arg(long, value_name = "PATH=VALUES", conflicts_with = "turntable", value_parser = Sweep::parse)]
+    pub(super) sweep: Vec<Sweep>,
+    /// Page of a sheet
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "dark")]
+    pub(super) page: Page,
     /// Size of each picture on a sheet in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
     pub(super) tile: (u32, u32),

@@ -1,8 +1,8 @@
-//! `--sheet` and `--turntable`: many pictures in one file.
+//! `--sheet`, `--sweep` and `--turntable`: many pictures in one file.
 
 use std::path::Path;
 
-use specula::capture::{CaptureError, SheetPlan, Turntable, check_animation, modes_of};
+use specula::capture::{CaptureError, Cell, SheetPlan, Turntable, cells_of_modes, check_animation, modes_of, swept};
 use specula::headless::{Headless, Step};
 use specula::picture;
 use specula::pipeline::Outcome;
@@ -12,10 +12,12 @@ use super::{Failure, Progress};
 
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;
+/// Most pictures in the single row of a sweep.
+const MOST_COLUMNS: usize = 8;
 
-/// Whether one of the two is requested.
+/// Whether one of them is requested.
 pub fn is_asked(args: &Args) -> bool {
-    args.sheet.is_some() || args.turntable.is_some()
+    args.sheet.is_some() || args.turntable.is_some() || !args.sweep.is_empty()
 }
 
 /// Fails before any work when the file cannot be written.
@@ -37,7 +39,7 @@ pub fn write(headless: &mut Headless, args: &Args) -> Result<(), Failure> {
     if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
         return Err(Failure::Shaders(diagnostics));
     }
-    progress.say(if args.sheet.is_some() { "sheet" } else { "turntable" });
+    progress.say(if args.turntable.is_none() { "sheet" } else { "turntable" });
     let mut tell = |done: u64, of: u64| {
         progress.step(&Step { done, of, unit: "pictures" });
         true
@@ -61,8 +63,24 @@ fn draw(
         let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size, args.turn);
         return Turntable { frames, fps, size, turn }.write(headless, out, tell);
     }
-    let names: Vec<String> =
-        args.sheet.iter().flat_map(|names| names.split(',')).map(|name| name.trim().to_owned()).collect();
-    let modes = modes_of(headless.session(), &names).map_err(CaptureError::Usage)?;
-    SheetPlan { modes, size: args.tile, columns: None }.write(headless, out, tell)
+    let session = headless.session();
+    let cells = match &args.sheet {
+        Some(names) => {
+            let names: Vec<String> = names.split(',').map(|name| name.trim().to_owned()).collect();
+            cells_of_modes(&session.settings, &modes_of(session, &names).map_err(CaptureError::Usage)?)
+        }
+        None => vec![Cell { settings: session.settings.clone(), ..Cell::default() }],
+    };
+    let (cells, columns) = swept(cells, &args.sweep, session).map_err(CaptureError::Usage)?;
+    // Before the first picture, so that a wrong value is told at once.
+    let before = headless.settings_mut().clone();
+    let fit = cells.iter().try_for_each(|cell| {
+        headless.settings_mut().clone_from(&cell.settings);
+        headless.check_settings()
+    });
+    *headless.settings_mut() = before;
+    fit?;
+    let is_grid = args.sweep.len() + usize::from(args.sheet.is_some()) > 1;
+    let columns = (is_grid || (!args.sweep.is_empty() && columns <= MOST_COLUMNS)).then_some(columns as u32);
+    SheetPlan { cells, size: args.tile, columns, page: args.page }.write(headless, out, tell)
 }

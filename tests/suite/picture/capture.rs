@@ -49,7 +49,8 @@ fn a_sheet_shows_each_mode_as_render_does() {
     assert_eq!(order.len(), 3);
     for (index, slug) in order.iter().enumerate() {
         let file = format!("{slug}.png");
-        render(path, &["--mode", slug, "--size", "64x48", "--out", &file]).expect(0, &[]);
+        let range = ["--set", "view.range=auto"];
+        render(path, &[&["--mode", slug, "--size", "64x48", "--out", &file][..], &range].concat()).expect(0, &[]);
         let alone = open_image(&path.join(&file)).into_rgba8();
         let columns = (sheet.width() - 8) / 72;
         let (column, row) = (index as u32 % columns, index as u32 / columns);
@@ -150,6 +151,34 @@ fn a_video_has_the_size_and_the_times_that_were_asked_for() {
         .expect(1, &["cannot write spin.mp4: an MP4 has 16 to 3840 pixels a side, and at most 2160 on the shorter"]);
     assert_eq!(std::fs::read(path.join("spin.mp4")).unwrap(), b"old");
     assert_eq!(std::fs::read_dir(path).unwrap().count(), 8);
+}
+
+#[test]
+fn a_sheet_shows_each_value_of_settings_and_parameters() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let sweeps = ["--sweep", "NDF=GGX,Beckmann", "--sweep", "material.roughness=0.2..0.8/3", "--tile", "64x48"];
+    render(path, &[&sweeps[..], &["--page", "light", "--out", "sheet.png"]].concat()).expect(0, &[]);
+    let sheet = open_image(&path.join("sheet.png"));
+    // A row for each distribution, a column for each roughness.
+    assert_eq!((sheet.width(), sheet.height()), (8 + 3 * 72, 8 + 2 * (48 + 22 + 8)));
+    assert_eq!(sheet.get_pixel(2, 2).0, [255; 4]);
+    for (row, ndf) in ["GGX", "Beckmann"].into_iter().enumerate() {
+        for (column, roughness) in ["0.2", "0.5", "0.8"].into_iter().enumerate() {
+            let (ndf, roughness) = (format!("NDF={ndf}"), format!("material.roughness={roughness}"));
+            let sets = ["--set", &ndf, "--set", "material.override=roughness", "--set", &roughness];
+            render(path, &[&sets[..], &["--size", "64x48", "--out", "one.png"]].concat()).expect(0, &[]);
+            let (x, y) = (8 + column as u32 * 72, 8 + row as u32 * 78);
+            let tile = sheet.view(x, y, 64, 48).to_image();
+            assert!(tile == open_image(&path.join("one.png")).into_rgba8(), "{ndf} {roughness} differs in the sheet");
+            // The legend, dark on the light page.
+            assert!(sheet.view(x, y + 48, 64, 22).pixels().any(|(.., pixel)| pixel[0] < 100));
+        }
+    }
+    render(path, &["--sweep", "view.tonmap=aces", "--out", "a.png"]).expect(2, &["Did you mean `view.tonemap`?"]);
+    render(path, &["--sweep", "NDF=GGX,Bekmann", "--out", "a.png"]).expect(2, &["Did you mean `Beckmann`?"]);
+    render(path, &["--sweep", "camera.eye", "--out", "a.png"]).expect(2, &["camera.eye needs values"]);
+    assert!(!path.join("a.png").exists());
 }
 
 #[test]

@@ -9,10 +9,9 @@ use super::swatches;
 use crate::app::readings::{LegendOf, Readout};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
-use crate::frame::Limits;
+use crate::frame::{Limits, legend_limits, short};
 use crate::interface::COLORMAP_STEPS;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings, choice_name};
-use crate::shader::Encode;
 
 /// Size of the color bar in points.
 const BAR: egui::Vec2 = vec2(132.0, 9.0);
@@ -78,13 +77,9 @@ impl Legend<'_> {
         !is_plain || state.shows_histogram
     }
 
-    /// The range of values that the display shows; `None` for light, which exposure and tone map bring there.
+    /// The range of values that the display shows.
     fn shown(&self) -> Option<Limits> {
-        self.of.limits.or(match self.of.mode.encode {
-            _ if self.of.mode.tonemap => None,
-            Encode::Vector => Some((-1.0, 1.0)),
-            Encode::Color | Encode::Data => Some((0.0, 1.0)),
-        })
+        legend_limits(&self.of.mode, self.of.limits)
     }
 }
 
@@ -299,26 +294,9 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
     ));
 }
 
-/// A number with four significant digits, or fewer.
-fn short(number: f32) -> String {
-    let magnitude = number.abs();
-    if magnitude != 0.0 && !(1e-3..1e5).contains(&magnitude) {
-        return format!("{number:.1e}");
-    }
-    let decimals = 3_usize.saturating_sub(magnitude.max(1.0).log10() as usize);
-    let text = format!("{number:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_of_the_legend_are_short() {
-        let numbers = [0.0, 1.0, -0.05, 4.9, 1234.5, 0.000_02, 1e7].map(short);
-        assert_eq!(numbers, ["0", "1", "-0.05", "4.9", "1234", "2.0e-5", "1.0e7"]);
-    }
 
     #[test]
     fn middle_gray_is_in_the_middle() {
