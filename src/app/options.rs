@@ -39,8 +39,8 @@ pub struct AppOptions {
     pub validation: bool,
     /// The file or shader tree to compare the picture with.
     pub compare: Option<OtherPicture>,
-    /// Whether models may read files outside their folder.
-    pub allow_outside: bool,
+    /// How models are loaded.
+    pub load_options: LoadOptions,
     /// Those who get events and send commands.
     pub control: Control,
     /// Start of the program, for the events' times.
@@ -75,7 +75,7 @@ impl Early {
         // Both only begin early what would be done later.
         let _ = std::thread::Builder::new().spawn(move || compiler.warm());
         let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
-        let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
+        let reading = loader::read(options.model.clone(), options.load_options);
         Self { watcher, reading, events: events.clone() }
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn start(
         hint: Hint::restored(),
         learning: Learning::restored(),
         follows_lights: options.follows_lights,
-        allow_outside: options.allow_outside,
+        load_options: options.load_options,
         offers_session: options.plain.is_some(),
         plain: options.plain,
         device: format!("{} · Vulkan {}", gpu.info().name, gpu.info().api),

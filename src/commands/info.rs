@@ -86,6 +86,7 @@ fn print_model(model: &Model) {
     out!("  size        {width:.3} x {height:.3} x {depth:.3} m, center {x:.3}, {y:.3}, {z:.3}");
     out!("  scenes      {}", count(model.contents.scenes));
     out!("  nodes       {}", model.nodes.len());
+    out!("  meshes      {}", count(model.contents.meshes));
     out!("  primitives  {}", model.primitives.len());
     out!("  instances   {}", model.instances.len());
     out!("  triangles   {}", triangles(model));
@@ -98,14 +99,17 @@ fn print_model(model: &Model) {
     for (number, camera) in model.cameras.iter().enumerate() {
         out!("    {} ({})", escape(&model.camera_key(number)), camera.lens);
     }
-    out!("  animations  {}", count(model.contents.animations));
+    out!("  animations  {}", named(&model.contents.animations));
     out!("  skins       {}", count(model.contents.skins));
+    let extensions = &model.contents.extensions;
+    out!("  extensions  {}", if extensions.is_empty() { "none".to_owned() } else { escape(&extensions.join(", ")) });
     let [geometry, textures] = memory(model).map(|bytes| bytes as f64 / f64::from(1 << 20));
     out!("  memory      {:.1} MiB: geometry {geometry:.1}, textures {textures:.1}", geometry + textures);
     out!("  images      {}", count(model.images.len()));
     for (number, image) in model.images.iter().enumerate() {
         let (name, uses) = (escape(&image.name), uses(model, number).join(", "));
-        out!("    {:>5} x {:<5} {name}: {uses}", image.width, image.height);
+        let space = if is_srgb(model, number) { "sRGB" } else { "linear" };
+        out!("    {:>5} x {:<5} {name}: {uses} ({space})", image.width, image.height);
     }
 }
 
@@ -133,6 +137,17 @@ fn uses(model: &Model, image: usize) -> Vec<String> {
     slots.map(|(slot, _)| slot_name(slot)).collect()
 }
 
+/// Whether the device reads the colors of an image as sRGB.
+fn is_srgb(model: &Model, image: usize) -> bool {
+    texture_sources(model).into_iter().any(|source| source.is_srgb() && source.images().any(|used| used == image))
+}
+
+/// A count, and the names.
+fn named(names: &[String]) -> String {
+    let known: Vec<String> = names.iter().filter(|name| !name.is_empty()).map(|name| escape(name)).collect();
+    if known.is_empty() { count(names.len()) } else { format!("{}: {}", names.len(), known.join(", ")) }
+}
+
 /// How many sets of texture coordinates the vertices have.
 fn uv_sets(model: &Model) -> usize {
     let has = |set| usize::from(model.primitives.iter().any(|primitive| primitive.attributes & set != 0));
@@ -149,7 +164,10 @@ fn summary(model: &Model) -> serde_json::Value {
         "model": model.name,
         "scenes": model.contents.scenes,
         "nodes": model.nodes.len(),
-        "animations": model.contents.animations,
+        "meshes": model.contents.meshes,
+        "animations": model.contents.animations.len(),
+        "clips": model.contents.animations,
+        "extensions": model.contents.extensions,
         "skins": model.contents.skins,
         "primitives": model.primitives.len(),
         "instances": model.instances.len(),
@@ -158,6 +176,7 @@ fn summary(model: &Model) -> serde_json::Value {
         "materials": materials(model),
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "textures": (0..model.images.len()).map(|image| uses(model, image)).collect::<Vec<_>>(),
+        "srgb": (0..model.images.len()).map(|image| is_srgb(model, image)).collect::<Vec<_>>(),
         "uv_sets": uv_sets(model),
         "memory_bytes": memory(model).iter().sum::<usize>(),
         "lights": model.lights.len(),

@@ -5,6 +5,8 @@
 pub struct LoadOptions {
     /// Whether the model may name files by absolute paths or outside its folder (`--allow-outside`).
     pub allow_outside: bool,
+    /// The scene of the file to show (`--scene`); without it, or where the file has fewer, its default one.
+    pub scene: Option<usize>,
 }
 
 /// Whether the result of a load is no longer needed.

@@ -59,15 +59,19 @@ pub struct LoadTiming {
     pub tangents_ms: f64,
 }
 
-/// How many of some objects a file has, shown or not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a file has, shown or not.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Contents {
     /// Scenes.
     pub scenes: usize,
-    /// Animations.
-    pub animations: usize,
+    /// Meshes.
+    pub meshes: usize,
+    /// Names of the animations; empty for one without a name.
+    pub animations: Vec<String>,
     /// Skins.
     pub skins: usize,
+    /// Extensions that it uses.
+    pub extensions: Vec<String>,
 }
 
 /// Axis-aligned bounds in world space, meters. Empty when `min > max`.

@@ -6,7 +6,6 @@ use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
 use crate::app::source_line::stop;
 use crate::app::state::State;
-use crate::scene::LoadOptions;
 use crate::shader::{Change, Source};
 use crate::threads::Message;
 use std::path::Path;
@@ -15,7 +14,7 @@ use std::time::Instant;
 
 /// Loads a model. The current model stays until the new one is ready.
 pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: Option<PathBuf>) {
-    engine.threads.loader.load(path.clone(), LoadOptions { allow_outside: state.allow_outside });
+    engine.threads.loader.load(path.clone(), state.load_options);
     begin_loading(state, path);
 }
 

@@ -34,6 +34,7 @@ use crate::frame::{FrameState, Scene};
 use crate::message;
 use crate::recovery::SessionState;
 use crate::render::NotFinitePixels;
+use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::{LightSource, Settings};
 use crate::shader::expression;
@@ -116,7 +117,7 @@ pub(super) struct State {
     /// The picture that the user compares with.
     pub(super) compare: Compare,
     pub(super) watched: WatchedFiles,
-    pub(super) allow_outside: bool,
+    pub(super) load_options: LoadOptions,
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) edits: Edits,
@@ -178,7 +179,7 @@ impl State {
             followed_source: LightSource::default(),
             compare: Compare::default(),
             watched: WatchedFiles::default(),
-            allow_outside: false,
+            load_options: LoadOptions::default(),
             versions: Versions::default(),
             timing: Timing::default(),
             stages: StageTable::default(),

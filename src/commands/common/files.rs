@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use specula::scene::{self, Model};
-use specula::settings::Settings;
+use specula::message;
+use specula::scene::{self, LoadOptions, Model};
+use specula::settings::{LightSource, Settings};
 use specula::shader::Source;
 
 use super::look::read_look;
-use super::names::only_model;
+use super::names::{check_model_path, only_model};
 use super::{Common, warn_once};
 use crate::commands::Failure;
 
@@ -57,5 +58,35 @@ impl Common {
             _ => {}
         }
         Ok(())
+    }
+
+    /// The model at `path`, or the built-in shader ball. Prints the model's warnings.
+    pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
+        let model = self.model_silently(path)?;
+        for warning in &model.warnings {
+            message::warn(format_args!("{}: {warning}", model.name));
+        }
+        Ok(model)
+    }
+
+    /// The same without the model's warnings. Only `--lights model` without lights is warned about.
+    pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
+        check_model_path(path)?;
+        let model = scene::open(path, &self.load_options()).map_err(|e| Failure::Input(e.to_string()))?;
+        if let Some(scene) = self.scene.filter(|scene| *scene >= model.contents.scenes.max(1)) {
+            let (name, scenes) = (&model.name, model.contents.scenes);
+            return Err(Failure::Usage(format!("--scene {scene}: {name} has {scenes} scenes; the first is 0")));
+        }
+        let wants_its_lights =
+            || self.settings_silently(Settings::default()).is_ok_and(|s| s.lights.source == LightSource::Model);
+        if model.lights.is_empty() && wants_its_lights() {
+            warn_once(&format!("{} has no lights of its own for `--lights model`", model.name));
+        }
+        Ok(model)
+    }
+
+    /// How models are loaded.
+    pub fn load_options(&self) -> LoadOptions {
+        LoadOptions { allow_outside: self.allow_outside, scene: self.scene }
     }
 }

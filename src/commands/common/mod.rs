@@ -15,14 +15,13 @@ use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::pipeline::DiskPipelines;
-use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
 use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
 
 use super::{Failure, limits};
 use look::read_look;
-use names::{check_environment, check_model_path};
+use names::check_environment;
 use parse::{ev, fovy, size, vector};
 
 /// Seconds after which a device that does not answer counts as hung.
@@ -91,9 +90,12 @@ pub struct Common {
     /// Print events to stdout as JSON, one object per line
     #[arg(long, value_enum, ignore_case = true, value_name = "FORMAT")]
     pub events: Option<EventFormat>,
+    /// Show this scene of the model's file, from 0 [default: the file's own]
+    #[arg(long, value_name = "N")]
+    scene: Option<usize>,
     /// Allow a model to read files outside its own folder
     #[arg(long)]
-    pub allow_outside: bool,
+    allow_outside: bool,
     /// Turn on the Vulkan validation layers; any message fails the command
     #[arg(long)]
     pub validate: bool,
@@ -238,28 +240,6 @@ impl Common {
     /// The shader tree.
     pub fn source(&self) -> Result<Source, Failure> {
         source(self.shaders.as_deref())
-    }
-
-    /// The model at `path`, or the built-in shader ball. Prints the model's warnings.
-    pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
-        let model = self.model_silently(path)?;
-        for warning in &model.warnings {
-            message::warn(format_args!("{}: {warning}", model.name));
-        }
-        Ok(model)
-    }
-
-    /// The same without the model's warnings. Only `--lights model` without lights is warned about.
-    pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
-        check_model_path(path)?;
-        let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
-        let model = loaded.map_err(|e| Failure::Input(e.to_string()))?;
-        let wants_its_lights =
-            || self.settings_silently(Settings::default()).is_ok_and(|s| s.lights.source == LightSource::Model);
-        if model.lights.is_empty() && wants_its_lights() {
-            warn_once(&format!("{} has no lights of its own for `--lights model`", model.name));
-        }
-        Ok(model)
     }
 
     /// Opens the device without a window.

@@ -138,7 +138,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         size: state.window.map_or(args.common.size, |window| window.size),
         at: state.window.and_then(|window| window.at),
         compare,
-        allow_outside: args.common.allow_outside,
+        load_options: args.common.load_options(),
         validation: args.common.validate,
         device: args.common.device,
         control,

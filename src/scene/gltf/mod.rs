@@ -50,26 +50,32 @@ pub fn load_file(
     let bytes = regular_file::read(&path, regular_file::LARGEST).map_err(Problem::Read)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = path.parent().map(Path::to_owned);
-    guarded(&name, &bytes, Files::new(folder, options.allow_outside, canceled, tried), start)
+    guarded(&name, &bytes, Files::new(folder, options.allow_outside, canceled, tried), options.scene, start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files::new(None, false, &|| false, &mut Vec::new()), Instant::now())
+    guarded(name, bytes, Files::new(None, false, &|| false, &mut Vec::new()), None, Instant::now())
 }
 
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
 /// the session.
-fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
-    catch_panic(|| build(name, bytes, files, start)).unwrap_or_else(|found| Err(Problem::Refused { found }))
+fn guarded(name: &str, bytes: &[u8], files: Files<'_>, scene: Option<usize>, start: Instant) -> Result<Model, Problem> {
+    catch_panic(|| build(name, bytes, files, scene, start)).unwrap_or_else(|found| Err(Problem::Refused { found }))
 }
 
-fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {
+fn build(
+    name: &str,
+    bytes: &[u8],
+    mut files: Files<'_>,
+    scene: Option<usize>,
+    start: Instant,
+) -> Result<Model, Problem> {
     let container::Document { mut root, bin, mut warnings } = container::parse(bytes)?;
     let mut buffers = Buffers::load(&root, bin, &mut files)?;
     warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
     let reader = Reader { root: &root, buffers: &buffers };
-    let mut scene = nodes::walk(&root)?;
+    let mut scene = nodes::walk(&root, scene)?;
     scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;
     let material::Materials { mut materials, textures, images, warnings: material_warnings } = material::read(&root)?;
     let variants = variants::names(&root, &mut warnings)?;
@@ -102,7 +108,13 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     }
     model.primitives = Arc::new(primitives);
     model.nodes = scene.nodes;
-    model.contents = Contents { scenes: root.scenes.len(), animations: root.animations.len(), skins: root.skins.len() };
+    model.contents = Contents {
+        scenes: root.scenes.len(),
+        meshes: root.meshes.len(),
+        animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
+        skins: root.skins.len(),
+        extensions: root.extensions_used.clone(),
+    };
     placing::place(&mut model, scene.meshes, scene.lights, scene.cameras, &ranges, &mut warnings)?;
     model.outline = outline(&model);
     warnings.extend(unseen::reason(&model));

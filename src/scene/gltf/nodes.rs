@@ -52,14 +52,17 @@ struct Hierarchy {
     parents: Vec<usize>,
 }
 
-/// Walks the default scene, or the first scene, or all nodes without a parent.
-pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
+/// Walks the chosen scene, or else the default scene, or the first scene, or all nodes without a parent.
+pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> {
     let mut scene = Scene::default();
     let hierarchy = Hierarchy::new(root, &mut scene.warnings)?;
-    let start = match (root.scene, root.scenes.first()) {
-        (Some(index), _) => hierarchy.roots(get(&root.scenes, index, "scene", "scenes")?, root, &mut scene.warnings)?,
-        (None, Some(first)) => hierarchy.roots(first, root, &mut scene.warnings)?,
-        (None, None) => hierarchy.tops(),
+    let chosen = chosen.and_then(|index| root.scenes.get(index));
+    let start = match (root.scene, chosen.or(root.scenes.first())) {
+        (Some(index), _) if chosen.is_none() => {
+            hierarchy.roots(get(&root.scenes, index, "scene", "scenes")?, root, &mut scene.warnings)?
+        }
+        (_, Some(first)) => hierarchy.roots(first, root, &mut scene.warnings)?,
+        (_, None) => hierarchy.tops(),
     };
     // An explicit stack, since files may nest deeper than the thread's stack allows.
     let root_of = |node| (node, None, DMat4::IDENTITY);

@@ -258,27 +258,40 @@ fn info_as_json() {
 fn info_counts_what_is_in_a_file() {
     let directory = directory();
     let (mut json, bin) = glb::document(&glb::quad(1.0), &glb::gray());
-    json["scenes"].as_array_mut().unwrap().push(json!({ "nodes": [] }));
+    json["scenes"].as_array_mut().unwrap().push(json!({ "nodes": [2] }));
     json["nodes"].as_array_mut().unwrap().push(json!({ "camera": 0, "name": "Top" }));
+    json["nodes"].as_array_mut().unwrap().push(json!({ "mesh": 0 }));
+    json["extensionsUsed"] = json!(["KHR_materials_ior"]);
     json["scenes"][0]["nodes"] = json!([0, 1]);
     json["cameras"] =
         json!([{ "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 1, "znear": 0, "zfar": 9 } }]);
     json["skins"] = json!([{ "joints": [0] }]);
-    json["animations"] = json!([{ "channels": [], "samplers": [] }, { "channels": [], "samplers": [] }]);
+    json["animations"] =
+        json!([{ "channels": [], "samplers": [], "name": "Walk" }, { "channels": [], "samplers": [] }]);
     std::fs::write(directory.path().join("m.glb"), glb::container(&json, &bin)).unwrap();
     let info = run(directory.path(), &["info", "m.glb"]);
     info.expect(0, &[]);
-    for line in ["scenes      2", "nodes       2", "UV sets     none", "animations  2", "skins       1", "Top (2 m)"] {
+    for line in
+        ["scenes      2", "nodes       2", "meshes      1", "UV sets     none", "animations  2: Walk", "Top (2 m)"]
+    {
         assert!(info.stdout.contains(line), "no {line}: {}", info.stdout);
     }
     let json = run(directory.path(), &["info", "m.glb", "--json"]).expect(0, &[]).json();
     let count = |name: &str| json["model"][name].as_u64().unwrap();
     assert_eq!(["scenes", "nodes", "uv_sets", "animations", "skins"].map(count), [2, 2, 0, 2, 1]);
+    assert_eq!(
+        (&json["model"]["clips"][0], &json["model"]["extensions"][0]),
+        (&json!("Walk"), &json!("KHR_materials_ior"))
+    );
+    let second = run(directory.path(), &["info", "m.glb", "--scene", "1", "--json"]).expect(0, &[]).json();
+    assert_eq!((&second["model"]["nodes"], &second["model"]["cameras"]), (&json!(1), &json!(0)));
+    run(directory.path(), &["info", "m.glb", "--scene", "2"]).expect(2, &["m has 2 scenes; the first is 0"]);
     // Four vertices, six indices, and two textures of one pixel.
     assert_eq!(count("memory_bytes"), 4 * size_of::<specula::interface::Vertex>() as u64 + 6 * 4 + 2 * 4);
     let json = run(directory.path(), &["info", "anisotropy", "--json"]).expect(0, &[]).json();
     let uses = json["model"]["textures"].as_array().unwrap();
     assert!(uses.iter().flat_map(|uses| uses.as_array().unwrap()).any(|name| name == "anisotropy"), "{json}");
+    assert_eq!(json["model"]["srgb"].as_array().unwrap().len(), uses.len());
 }
 
 #[test]

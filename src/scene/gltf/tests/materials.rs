@@ -169,7 +169,7 @@ fn external_files_and_data_uris() {
     let open = |builder: &Builder, allow_outside| {
         // A byte order mark is tolerated.
         std::fs::write(&path, format!("\u{feff}{}", builder.json)).unwrap();
-        load(&path, &LoadOptions { allow_outside }).map_err(|error| error.to_string())
+        load(&path, &LoadOptions { allow_outside, ..LoadOptions::default() }).map_err(|error| error.to_string())
     };
     let model = open(&builder, false).unwrap();
     assert_sound(&model);
@@ -216,7 +216,7 @@ fn links_out_of_the_folder_need_leave_too() {
             let message = refused.unwrap_err();
             assert!(message.contains("found a link to") && message.contains("--allow-outside"), "{message}");
         }
-        assert_sound(&load(&path, &LoadOptions { allow_outside: true }).unwrap());
+        assert_sound(&load(&path, &LoadOptions { allow_outside: true, ..LoadOptions::default() }).unwrap());
     }
 }
 

@@ -132,7 +132,7 @@ fn files_outside_of_the_folder_are_not_read_for_images_either() {
     let mut open = |uri: &str, allow_outside| {
         builder.json["images"][0] = json!({ "uri": uri });
         std::fs::write(&path, builder.json.to_string()).unwrap();
-        load(&path, &LoadOptions { allow_outside }).unwrap()
+        load(&path, &LoadOptions { allow_outside, ..LoadOptions::default() }).unwrap()
     };
     let uri = picture.to_str().unwrap();
     let model = open(uri, false);
