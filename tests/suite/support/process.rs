@@ -281,11 +281,9 @@ impl Running {
     /// The resources that the program holds now (proc(5)).
     pub fn usage(&self) -> Usage {
         let process = format!("/proc/{}", self.worker());
-        let status = std::fs::read_to_string(format!("{process}/status")).unwrap();
-        let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
         let count = |folder: &str| std::fs::read_dir(format!("{process}/{folder}")).unwrap().count();
         Usage {
-            memory_kib: resident.trim().trim_end_matches(" kB").parse().unwrap(),
+            memory_kib: held_kib(&std::fs::read_to_string(format!("{process}/smaps")).unwrap()),
             threads: count("task"),
             files: count("fd"),
         }
@@ -326,4 +324,23 @@ fn forward(pipe: impl Read + Send + 'static, to: Sender<String>) {
             }
         }
     });
+}
+
+/// KiB that the mappings of a process hold: their resident pages, but blocks of device memory as a whole. The software device takes such a
+/// block of 64 MiB from the heap, and a page of it becomes resident when an allocation first lies there. So the resident part of a block
+/// grows with the places of what is allocated, although no more is.
+fn held_kib(smaps: &str) -> u64 {
+    const LEAST_BLOCK: u64 = 32 * 1024;
+    let number = |text: &str| text.trim().trim_end_matches(" kB").parse::<u64>().unwrap();
+    let (mut held, mut is_anonymous, mut size) = (0, false, 0);
+    for line in smaps.lines() {
+        if let Some(text) = line.strip_prefix("Size:") {
+            size = number(text);
+        } else if let Some(text) = line.strip_prefix("Rss:") {
+            held += if is_anonymous && size >= LEAST_BLOCK { size } else { number(text) };
+        } else if line.split_whitespace().next().is_some_and(|first| !first.ends_with(':')) {
+            is_anonymous = line.contains(" rw-p ") && line.split_whitespace().count() == 5;
+        }
+    }
+    held
 }

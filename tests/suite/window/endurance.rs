@@ -15,9 +15,6 @@ const TONEMAP: &str = "tonemap.frag";
 const WIDTH: u32 = 640;
 /// Memory may grow by this much, in KiB: allocators keep some of what is freed.
 const SLACK_KIB: u64 = 16 * 1024;
-/// The same for bakes. Now and then the allocator keeps one of their buffers of some 20 MiB, which a later bake uses again. One bake's light
-/// takes 4.6 MiB, so 16 that are kept are more than this.
-const BAKES_SLACK_KIB: u64 = 48 * 1024;
 
 /// Repeats `step` so many times, or twenty times as often in a long run, and compares what the program holds after a fifth of them with what
 /// it holds in the end.
@@ -34,8 +31,7 @@ fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&m
         late = viewer.running.usage();
     }
     println!("{what}: {early:?} after {}, {late:?} after {steps}", steps / 5);
-    let slack = if what == "environments" { BAKES_SLACK_KIB } else { SLACK_KIB };
-    assert!(late.memory_kib < early.memory_kib + slack, "{what}: memory grows from {early:?} to {late:?}");
+    assert!(late.memory_kib < early.memory_kib + SLACK_KIB, "{what}: memory grows from {early:?} to {late:?}");
     assert!(late.threads <= early.threads, "{what}: threads grow from {early:?} to {late:?}");
     assert!(late.files <= early.files, "{what}: file descriptors grow from {early:?} to {late:?}");
 }
