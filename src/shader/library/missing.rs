@@ -11,6 +11,8 @@ use crate::shader::source::snapshot::Snapshot;
 
 /// Most lines that a note lists.
 const LISTED: usize = 6;
+/// Ends the note that lists them.
+const TOO: &str = "include it, too";
 
 /// The diagnostics with one for each include that was not found, instead of one for each line that includes it.
 pub(super) fn folded(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
@@ -32,11 +34,14 @@ pub(super) fn folded(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
             None => out.push(diagnostic),
         }
     }
-    for (index, others) in first.into_values().filter(|(_, others)| !others.is_empty()) {
+    // `check` folds the errors of an update again, with those of the files that no stage includes.
+    let is_listed = |index: usize| out[index].notes.iter().any(|note| note.ends_with(TOO));
+    let new: Vec<_> = first.into_values().filter(|(index, others)| !others.is_empty() && !is_listed(*index)).collect();
+    for (index, others) in new {
         let more = others.len().saturating_sub(LISTED);
         let listed = others[..others.len() - more].join(", ");
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        out[index].notes.push(format!("{listed}{more} include it, too"));
+        out[index].notes.push(format!("{listed}{more} {TOO}"));
     }
     out
 }
