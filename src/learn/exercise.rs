@@ -1,14 +1,18 @@
-//! An exercise, as `assets/learn/NN-name/exercise.toml` describes it.
+//! An exercise, as the `exercise.toml` of its folder describes it: one of `assets/learn`, or one of the user's own.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, DirEntry};
 use serde::Deserialize;
 
 use super::goal::Goal;
+use crate::regular_file;
 use crate::settings::Settings;
 use crate::shader::{Source, TreePath, embedded};
+
+/// The file that describes an exercise.
+pub(super) const DESCRIPTION: &str = "exercise.toml";
 
 /// How hard an exercise is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -73,10 +77,12 @@ struct Data {
 /// An exercise.
 #[derive(Clone, Debug)]
 pub struct Exercise {
-    /// Its place in the list, from 1.
+    /// Its place in the list, from 1; 0 for one of the user's own.
     pub number: usize,
     /// Name of its folder, as `03-fresnel`.
     pub name: String,
+    /// The folder of one of the user's own, absolute.
+    pub folder: Option<PathBuf>,
     /// Its title.
     pub title: String,
     /// How hard it is.
@@ -97,29 +103,51 @@ pub struct Exercise {
     pub goals: Vec<Goal>,
     set: Vec<String>,
     /// The files that differ from the shipped tree, at the start and when it is solved.
-    start: BTreeMap<TreePath, String>,
-    solved: BTreeMap<TreePath, String>,
+    start: Files,
+    solved: Files,
 }
 
+/// Texts of files by their paths in the tree.
+type Files = BTreeMap<TreePath, String>;
+
 impl Exercise {
-    /// Reads the folder of an exercise.
+    /// Reads an exercise that the program embeds.
     ///
     /// # Errors
     /// A message: a file is missing or wrong, or an edit does not fit the shipped tree.
-    pub fn read(folder: &Dir<'_>) -> Result<Self, String> {
-        let name = folder.path().file_name().and_then(|name| name.to_str()).unwrap_or_default().to_owned();
-        let error = |message: String| format!("exercise {name}: {message}");
+    pub(super) fn embedded(folder: &Dir<'_>) -> Result<Self, String> {
+        let name = folder.path().file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let number = name.split('-').next().and_then(|number| number.parse().ok());
-        let number = number.ok_or_else(|| error("the name does not begin with a number".into()))?;
-        let text = text_of(folder, "exercise.toml").ok_or_else(|| error("exercise.toml is missing".into()))?;
-        let data: Data = toml::from_str(text).map_err(|e| error(e.to_string()))?;
-        let mut start = files(folder, "start");
-        let mut solved = files(folder, "start");
-        solved.extend(files(folder, "solution"));
+        let number = number.ok_or_else(|| format!("exercise {name}: the name does not begin with a number"))?;
+        let description = folder.get_file(folder.path().join(DESCRIPTION)).and_then(|file| file.contents_utf8());
+        let files = [files(folder, "start"), files(folder, "solution")];
+        let read = Self::parse(description.unwrap_or_default(), files);
+        read.map(|read| Self { number, name: name.to_owned(), ..read })
+            .map_err(|error| format!("exercise {name}: {error}"))
+    }
+
+    /// Reads the folder of an exercise of the user's own.
+    ///
+    /// # Errors
+    /// A message: a file is missing or wrong, or an edit does not fit the shipped tree.
+    pub fn open(folder: &Path) -> Result<Self, String> {
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let path = folder.join(DESCRIPTION);
+        let error = |error: String| format!("{}: {error}", path.display());
+        let description = regular_file::read_text(&path).map_err(|e| error(e.to_string()))?;
+        let files = ["start", "solution"].map(|part| files_on_disk(&folder.join(part)));
+        let read = Self::parse(&description, files).map_err(error)?;
+        Ok(Self { name, folder: Some(folder), ..read })
+    }
+
+    /// An exercise by its description and the files of its start and its solution. It has no name yet.
+    fn parse(description: &str, [mut start, solution]: [Files; 2]) -> Result<Self, String> {
+        let data: Data = toml::from_str(description).map_err(|e| e.to_string())?;
+        let mut solved = start.clone();
+        solved.extend(solution);
         for (edits, texts) in [(&data.fault, &mut start), (&data.solution, &mut solved)] {
-            for edit in edits {
-                apply(edit, texts).map_err(&error)?;
-            }
+            edits.iter().try_for_each(|edit| apply(edit, texts))?;
         }
         // In the solution, a file that the start changes is the shipped one, unless the solution changes it too.
         for path in start.keys() {
@@ -129,7 +157,29 @@ impl Exercise {
         }
         let Data { title, level, idea, text, source, hints, model, set, open, goal: goals, .. } = data;
         let model = model.unwrap_or_else(|| crate::scene::BUILT_IN[0].to_owned());
-        Ok(Self { number, name, title, level, idea, text, source, hints, model, open, goals, set, start, solved })
+        let (number, name, folder) = (0, String::new(), None);
+        Ok(Self {
+            number,
+            name,
+            folder,
+            title,
+            level,
+            idea,
+            text,
+            source,
+            hints,
+            model,
+            open,
+            goals,
+            set,
+            start,
+            solved,
+        })
+    }
+
+    /// Its number, or the name of one of the user's own.
+    pub fn label(&self) -> String {
+        if self.number > 0 { self.number.to_string() } else { self.name.clone() }
     }
 
     /// The name without the number, as `fresnel`.
@@ -179,8 +229,8 @@ impl Exercise {
 }
 
 /// The shipped tree with these files in place of its own.
-fn tree(files: &BTreeMap<TreePath, String>) -> Source {
-    let mut all: BTreeMap<TreePath, String> =
+fn tree(files: &Files) -> Source {
+    let mut all: Files =
         embedded::list(None).into_iter().filter_map(|path| Some((path.clone(), shipped(&path)?))).collect();
     all.extend(files.clone());
     Source::of_texts(all)
@@ -190,7 +240,7 @@ fn shipped(path: &TreePath) -> Option<String> {
     String::from_utf8(embedded::read(None, path)?.to_vec()).ok()
 }
 
-fn apply(edit: &Edit, texts: &mut BTreeMap<TreePath, String>) -> Result<(), String> {
+fn apply(edit: &Edit, texts: &mut Files) -> Result<(), String> {
     let path = TreePath::parse(&edit.file).ok_or_else(|| format!("{} is no path in a tree", edit.file))?;
     let text = texts.get(&path).cloned().or_else(|| shipped(&path));
     let text = text.ok_or_else(|| format!("the tree has no {path}"))?;
@@ -201,13 +251,9 @@ fn apply(edit: &Edit, texts: &mut BTreeMap<TreePath, String>) -> Result<(), Stri
     Ok(())
 }
 
-fn text_of<'a>(folder: &'a Dir<'_>, name: &str) -> Option<&'a str> {
-    folder.get_file(folder.path().join(name))?.contents_utf8()
-}
-
 /// The files below `part` of an exercise's folder, by their paths in the tree.
-fn files(folder: &Dir<'_>, part: &str) -> BTreeMap<TreePath, String> {
-    let mut found = BTreeMap::new();
+fn files(folder: &Dir<'_>, part: &str) -> Files {
+    let mut found = Files::new();
     let root = folder.path().join(part);
     if let Some(directory) = folder.get_dir(&root) {
         collect(directory, &root, &mut found);
@@ -215,7 +261,7 @@ fn files(folder: &Dir<'_>, part: &str) -> BTreeMap<TreePath, String> {
     found
 }
 
-fn collect(directory: &Dir<'_>, root: &Path, found: &mut BTreeMap<TreePath, String>) {
+fn collect(directory: &Dir<'_>, root: &Path, found: &mut Files) {
     for entry in directory.entries() {
         match entry {
             DirEntry::Dir(directory) => collect(directory, root, found),
@@ -225,4 +271,11 @@ fn collect(directory: &Dir<'_>, root: &Path, found: &mut BTreeMap<TreePath, Stri
             }
         }
     }
+}
+
+/// The same of a folder on disk.
+fn files_on_disk(folder: &Path) -> Files {
+    let source = Source::disk(folder);
+    let text = |path: &TreePath| String::from_utf8(source.read_bytes(path).ok()?).ok();
+    source.list().into_iter().filter_map(|path| Some((path.clone(), text(&path)?))).collect()
 }

@@ -1,6 +1,7 @@
 //! The folder in which a student works on an exercise: the whole tree, so that it opens as any other, and the text.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::{Exercise, exercises};
 use crate::picture::replace_file;
@@ -19,7 +20,7 @@ const MARK: &str = "<!-- specula learn ";
 pub fn prepare(parent: &Path, exercise: &Exercise) -> Result<PathBuf, String> {
     let folder = parent.join(&exercise.name);
     let error = |error: &dyn std::fmt::Display| {
-        format!("cannot write exercise {} to {}: {error}", exercise.number, folder.display())
+        format!("cannot write exercise {} to {}: {error}", exercise.label(), folder.display())
     };
     let is_own = exercise_of(&folder).map_or(!folder.join(TEXT).exists(), |found| found.name == exercise.name);
     if is_own && is_specula_tree(&folder) {
@@ -46,18 +47,24 @@ pub fn prepare(parent: &Path, exercise: &Exercise) -> Result<PathBuf, String> {
 }
 
 /// The exercise whose tree this folder holds.
-pub fn exercise_of(folder: &Path) -> Option<&'static Exercise> {
+pub fn exercise_of(folder: &Path) -> Option<Arc<Exercise>> {
     let text = regular_file::read_text(&folder.join(TEXT)).ok()?;
-    let name = text.lines().rev().find_map(|line| line.strip_prefix(MARK))?.split_whitespace().next()?;
-    exercises().iter().find(|exercise| exercise.name == name)
+    let mark = text.lines().rev().find_map(|line| line.strip_prefix(MARK)?.trim_end().strip_suffix("-->"))?.trim();
+    match mark.split_once(' ') {
+        Some((_, own)) => Exercise::open(Path::new(own)).ok().map(Arc::new),
+        None => exercises().iter().find(|exercise| exercise.name == mark).cloned(),
+    }
 }
 
 /// The exercise as a page of Markdown.
 fn page(exercise: &Exercise) -> String {
-    let Exercise { number, title, text, source, open, goals, name, .. } = exercise;
+    let Exercise { title, text, source, open, goals, name, folder, .. } = exercise;
     let goals: String = goals.iter().map(|goal| format!("- {}\n", goal.says)).collect();
+    // One of the user's own is found by its folder.
+    let own = folder.as_ref().map(|folder| format!(" {}", folder.display())).unwrap_or_default();
     format!(
-        "# Exercise {number}: {title}\n\n{}\n\nEdit `{}` and save.\n\n## Goal\n\n{goals}\nSource: {source}\n\n{MARK}{name} -->\n",
+        "# Exercise {}: {title}\n\n{}\n\nEdit `{}` and save.\n\n## Goal\n\n{goals}\nSource: {source}\n\n{MARK}{name}{own} -->\n",
+        exercise.label(),
         text.trim(),
         open.file
     )

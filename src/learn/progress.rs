@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -72,8 +73,8 @@ impl Progress {
     }
 
     /// The first exercise that is not solved, or the last one.
-    pub fn next(&self) -> Option<&'static Exercise> {
+    pub fn next(&self) -> Option<Arc<Exercise>> {
         let all = exercises();
-        all.iter().find(|exercise| !self.of(exercise).solved).or(all.last())
+        all.iter().find(|exercise| !self.of(exercise).solved).or(all.last()).cloned()
     }
 }

@@ -14,7 +14,7 @@ use crate::shader::{Compiler, Source};
 pub(crate) struct Checker {
     gpu: Arc<Gpu>,
     compiler: Arc<Compiler>,
-    thread: Newest<(&'static Exercise, Source)>,
+    thread: Newest<(Arc<Exercise>, Source)>,
 }
 
 impl Checker {
@@ -23,11 +23,11 @@ impl Checker {
     }
 
     /// Measures a tree. Returns the number of the request.
-    pub(crate) fn check(&mut self, exercise: &'static Exercise, source: Source) -> u64 {
+    pub(crate) fn check(&mut self, exercise: Arc<Exercise>, source: Source) -> u64 {
         self.thread.request((exercise, source), || {
             let mut meter = GoalMeter::new(&self.gpu, &self.compiler);
             move |sender, turn, (exercise, source)| {
-                let result = match meter.check(exercise, &source, || turn.is_superseded()) {
+                let result = match meter.check(&exercise, &source, || turn.is_superseded()) {
                     Err(LearnError::Superseded) => return,
                     result => result.map_err(|error| error.to_string()),
                 };

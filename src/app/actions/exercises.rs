@@ -23,7 +23,7 @@ use crate::threads::Message;
 pub(in crate::app) fn learn(state: &mut State, engine: &mut Engine, command: LearnCommand) {
     let learning = &mut state.learning;
     learning.asks &= command == LearnCommand::StartOver;
-    match (command, learning.exercise) {
+    match (command, learning.exercise.clone()) {
         (LearnCommand::Open(number), _) => prepare_exercise(state, engine, number),
         (LearnCommand::List, _) if state.workspace.sight.learn => learning.shows_list ^= true,
         (LearnCommand::List, _) => {
@@ -32,11 +32,11 @@ pub(in crate::app) fn learn(state: &mut State, engine: &mut Engine, command: Lea
         }
         (LearnCommand::Hint, Some(exercise)) => {
             let most = exercise.hints.len();
-            learning.progress.update(exercise, |record| record.hints = (record.hints + 1).min(most));
+            learning.progress.update(&exercise, |record| record.hints = (record.hints + 1).min(most));
         }
         (LearnCommand::Solution, Some(exercise)) => {
             learning.solution = if learning.solution.is_none() { Some(Vec::new()) } else { None };
-            learning.progress.update(exercise, |record| record.saw_solution = true);
+            learning.progress.update(&exercise, |record| record.saw_solution = true);
             learning.update_solution(state.session.shaders.as_deref());
         }
         (LearnCommand::Solve, Some(exercise)) => {
@@ -47,10 +47,10 @@ pub(in crate::app) fn learn(state: &mut State, engine: &mut Engine, command: Lea
         (LearnCommand::StartOver, Some(exercise)) => {
             learning.asks = false;
             let shaders = state.session.shaders.as_deref();
-            let files = files_to_restore(exercise, shaders);
+            let files = files_to_restore(&exercise, shaders);
             write_exercise(state, engine, files, "Restored the original files");
         }
-        (LearnCommand::Edit, Some(exercise)) => edit_exercise(state, engine, exercise),
+        (LearnCommand::Edit, Some(exercise)) => edit_exercise(state, engine, &exercise),
         (_, None) => {}
     }
 }
@@ -58,14 +58,17 @@ pub(in crate::app) fn learn(state: &mut State, engine: &mut Engine, command: Lea
 /// Writes the tree of an exercise, unless it is there, on a thread of its own.
 fn prepare_exercise(state: &mut State, engine: &mut Engine, number: usize) {
     let Some(exercise) = exercises().iter().find(|exercise| exercise.number == number) else { return };
-    let parent = state.learning.parent();
-    engine.threads.wait(move || Some(Message::Prepared(exercise, prepare(&parent, exercise))));
+    let (parent, exercise) = (state.learning.parent(), exercise.clone());
+    engine.threads.wait(move || {
+        let prepared = prepare(&parent, &exercise);
+        Some(Message::Prepared(exercise, prepared))
+    });
 }
 
 pub(in crate::app) fn on_prepared(
     state: &mut State,
     engine: &mut Engine,
-    exercise: &'static Exercise,
+    exercise: &Exercise,
     prepared: Result<PathBuf, String>,
 ) {
     let folder = match prepared {
@@ -90,14 +93,15 @@ pub(in crate::app) fn on_exercise(
     state: &mut State,
     engine: &mut Engine,
     folder: PathBuf,
-    exercise: Option<&'static Exercise>,
+    exercise: Option<Arc<Exercise>>,
 ) {
     if state.source.root() != Some(&folder) || (state.learning.exercise.is_none() && exercise.is_none()) {
         return;
     }
     engine.threads.checker.supersede();
+    let is_one = exercise.is_some();
     state.learning.open(&folder, exercise);
-    if exercise.is_some() {
+    if is_one {
         state.hint.hide();
         state.workspace.request(PanelRequest::ShowExercise);
     }
@@ -110,9 +114,10 @@ pub(in crate::app) fn on_exercise(
 
 /// Has the checker measure the exercise. Called when the picture shows all of an edit, so that the measurement delays none.
 pub(in crate::app) fn check_exercise(state: &mut State, engine: &mut Engine) {
-    let Some(exercise) = state.learning.exercise else { return };
+    let Some(exercise) = state.learning.exercise.clone() else { return };
     state.learning.update_solution(state.session.shaders.as_deref());
-    state.learning.checking = Some(engine.threads.checker.check(exercise, state.source.clone()));
+    let generation = state.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+    state.learning.check(engine.threads.checker.check(exercise, state.source.clone()), generation);
 }
 
 /// Measures again what a save without an effect has superseded.
@@ -126,14 +131,14 @@ pub(in crate::app) fn on_checked(state: &mut State, Checked { number, result }: 
     if state.learning.checking.take_if(|awaited| *awaited == number).is_none() {
         return;
     }
-    let Some(exercise) = state.learning.exercise else { return };
+    let Some(exercise) = state.learning.exercise.clone() else { return };
     state.learning.measured = match result {
         Ok(findings) => Measured::Findings(findings),
         Err(message) => Measured::Failed(message),
     };
     let passed = state.learning.is_solved();
     if passed {
-        state.learning.progress.update(exercise, |record| record.solved = true);
+        state.learning.progress.update(&exercise, |record| record.solved = true);
     }
     if let Measured::Findings(goals) = &state.learning.measured {
         emit(&state.events, &Event::Exercise { name: &exercise.name, passed, goals });

@@ -44,8 +44,9 @@ impl Preset {
                 vec![(picture, 1.0), (column(tiles, &right), RIGHT)]
             }
             Self::Learn => {
-                let below: [(&[Panel], f32); 2] =
-                    [(&[Panel::LEARN], 3.0), (&[Panel::PARAMETERS, Panel::MODES, Panel::SHADERS], 1.0)];
+                // The panels that the texts of the exercises name, and the files.
+                let others = [Panel::PARAMETERS, Panel::LIGHTS, Panel::MODES, Panel::SHADERS];
+                let below: [(&[Panel], f32); 2] = [(&[Panel::LEARN], 3.0), (&others, 1.0)];
                 vec![(picture, 1.0), (column(tiles, &below), LESSON)]
             }
         };

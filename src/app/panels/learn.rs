@@ -12,8 +12,6 @@ use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::exercise::{LearnCommand, Learning};
-use crate::shader::{Diagnostic, Severity};
-
 use crate::app::widgets::theme::{ACCENT, GOOD, QUIET};
 use crate::learn::exercises;
 
@@ -22,31 +20,50 @@ pub(super) static PANEL: PanelSpec = PanelSpec::new("Learn", Group::Modes, "exer
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
-    show(ui, &context.state.learning, &context.state.session.diagnostics, &mut commands.list);
+    let state = context.state;
+    let results = match state.has_errors() {
+        true => Results::Broken,
+        false if state.shader.compiling || state.learning.is_outdated(context.shaders.generation) => Results::Old,
+        false => Results::New,
+    };
+    show(ui, &state.learning, results, &mut commands.list);
+}
+
+/// What the measured results are of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Results {
+    /// The shaders of now.
+    New,
+    /// The shaders before the last edit, which is being measured.
+    Old,
+    /// The shaders before an edit that does not compile.
+    Broken,
 }
 
 /// Shows the panel.
-fn show(ui: &mut Ui, learning: &Learning, diagnostics: &[Diagnostic], commands: &mut Vec<Command>) {
+fn show(ui: &mut Ui, learning: &Learning, results: Results, commands: &mut Vec<Command>) {
     bar(ui, learning, commands);
-    let is_broken = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
-    let exercise = learning.exercise.filter(|_| !learning.shows_list);
-    // Each exercise scrolls by itself.
-    let id = exercise.map_or("list", |exercise| exercise.name.as_str());
-    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| match exercise {
-        Some(exercise) => lesson::show(ui, learning, exercise, is_broken, commands),
-        None => list::show(ui, learning, commands),
-    });
+    match learning.exercise.as_ref().filter(|_| !learning.shows_list) {
+        Some(exercise) => lesson::show(ui, learning, exercise, results, commands),
+        None => {
+            let list = |ui: &mut Ui| list::show(ui, learning, commands);
+            ScrollArea::vertical().id_salt("list").auto_shrink(false).show(ui, list);
+        }
+    }
 }
 
 /// Where the student is, and how to go on.
 fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     let all = exercises();
-    let number = learning.exercise.filter(|_| !learning.shows_list).map(|exercise| exercise.number);
+    let open = learning.exercise.as_ref().filter(|_| !learning.shows_list);
+    let number = open.map(|exercise| exercise.number).filter(|number| *number > 0);
     let mut ask = |command| commands.push(LEARN.with(command));
     ui.horizontal(|ui| {
         if let Some(number) = number {
             let text = RichText::new(format!("Exercise {number} of {}", all.len())).small().color(QUIET);
             ui.label(text);
+        } else if let Some(own) = open {
+            ui.label(RichText::new(format!("Exercise {}", own.name)).small().color(QUIET));
         } else {
             ui.label(
                 RichText::new(format!("{} of {} solved", learning.progress.solved(), all.len())).small().color(QUIET),
@@ -80,7 +97,7 @@ fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(2.0, 2.0);
         for exercise in exercises() {
-            let is_open = learning.exercise.is_some_and(|open| open.number == exercise.number);
+            let is_open = learning.exercise.as_ref().is_some_and(|open| open.name == exercise.name);
             let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::click());
             crate::app::widgets::spoken::button(&response, &exercise.title);
             let record = learning.progress.of(exercise);

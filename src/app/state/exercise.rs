@@ -43,13 +43,15 @@ pub(in crate::app) enum Measured {
 #[derive(Default)]
 pub(in crate::app) struct Learning {
     /// `None`: the tree does not belong to an exercise, and the panel shows the list.
-    pub(in crate::app) exercise: Option<&'static Exercise>,
+    pub(in crate::app) exercise: Option<Arc<Exercise>>,
     /// Folder of its tree.
     pub(in crate::app) folder: PathBuf,
     pub(in crate::app) progress: Progress,
     pub(in crate::app) measured: Measured,
     /// Number of the request whose result is awaited.
     pub(in crate::app) checking: Option<u64>,
+    /// The generation of the shaders that were measured last, or are being measured.
+    generation: u64,
     /// Whether the list is shown although an exercise is open.
     pub(in crate::app) shows_list: bool,
     /// Difference between the current files and the solution, while the solution is shown.
@@ -70,9 +72,19 @@ impl Learning {
     }
 
     /// Sets the exercise of a tree that has been opened.
-    pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<&'static Exercise>) {
+    pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<Arc<Exercise>>) {
         let progress = std::mem::take(&mut self.progress);
         *self = Self { exercise, folder: folder.to_owned(), progress, ..Self::default() };
+    }
+
+    /// Notes that shaders of this generation are being measured, by the request with this number.
+    pub(in crate::app) fn check(&mut self, number: u64, generation: u64) {
+        (self.checking, self.generation) = (Some(number), generation);
+    }
+
+    /// Whether the findings are of an older edit than that of `generation`, which is being measured or will be.
+    pub(in crate::app) fn is_outdated(&self, generation: u64) -> bool {
+        self.checking.is_some() || self.generation != generation
     }
 
     /// Whether all goals are reached.
@@ -82,7 +94,10 @@ impl Learning {
 
     /// Compares the solution with the current shaders.
     pub(in crate::app) fn update_solution(&mut self, shaders: Option<&ShaderSet>) {
-        let Some((exercise, shaders)) = self.exercise.zip(shaders).filter(|_| self.solution.is_some()) else { return };
+        let Some((exercise, shaders)) = self.exercise.as_ref().zip(shaders) else { return };
+        if self.solution.is_none() {
+            return;
+        }
         let after: BTreeMap<TreePath, Arc<str>> =
             exercise.solution().map(|(path, text)| (path.clone(), Arc::from(text))).collect();
         let before = after.keys().filter_map(|path| Some((path.clone(), shaders.texts.get(path)?.clone()))).collect();

@@ -16,7 +16,7 @@ fn write(folder: &Path, file: &str, text: &str) {
 /// What the checker says about an exercise at its start, after an edit of something else, and when it is solved.
 fn three_times(name: &str) -> [Vec<Finding>; 3] {
     let parent = tempfile::tempdir().unwrap();
-    let exercise = find(name).unwrap();
+    let exercise = &*find(name).unwrap();
     let folder = prepare(parent.path(), exercise).unwrap();
     let mut meter = GoalMeter::new(gpu(), compiler());
     let mut check = || {
@@ -121,17 +121,17 @@ fn trail() {
 fn an_equal_formula_passes() {
     let parent = tempfile::tempdir().unwrap();
     let (exercise, mut meter) = (find("fresnel").unwrap(), GoalMeter::new(gpu(), compiler()));
-    let folder = prepare(parent.path(), exercise).unwrap();
+    let folder = prepare(parent.path(), &exercise).unwrap();
     let text = std::fs::read_to_string(folder.join("brdf/fresnel.glsl")).unwrap();
     write(&folder, "brdf/fresnel.glsl", &text.replace("f0 + (f90 - f0) * pow5(c)", "mix(f0, f90, pow(1.0 - c, 5.0))"));
-    let findings = meter.check(exercise, &Source::disk(folder), || false).unwrap();
+    let findings = meter.check(&exercise, &Source::disk(folder), || false).unwrap();
     assert!(findings.iter().all(|finding| finding.passed), "{findings:#?}");
 }
 
 #[test]
 fn a_newer_edit_ends_a_measurement() {
     let mut meter = GoalMeter::new(gpu(), compiler());
-    let exercise = find("roughness").unwrap();
+    let exercise = &*find("roughness").unwrap();
     let error = meter.check(exercise, &exercise.start_tree(), || true).unwrap_err();
     assert!(error.to_string().contains("newer edit"), "{error}");
 }
@@ -178,7 +178,7 @@ fn names_and_numbers_find_an_exercise() {
 #[test]
 fn a_folder_is_written_once_and_known_again() {
     let parent = tempfile::tempdir().unwrap();
-    let exercise = find("1").unwrap();
+    let exercise = &*find("1").unwrap();
     let folder = prepare(parent.path(), exercise).unwrap();
     assert_eq!(exercise_of(&folder).unwrap().name, exercise.name);
     let file = folder.join("brdf/ndf.glsl");
@@ -188,7 +188,7 @@ fn a_folder_is_written_once_and_known_again() {
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine", "the student's work is overwritten");
     std::fs::create_dir_all(parent.path().join("02-lambert")).unwrap();
     std::fs::write(parent.path().join("02-lambert/notes.txt"), "").unwrap();
-    let error = prepare(parent.path(), find("2").unwrap()).unwrap_err();
+    let error = prepare(parent.path(), &find("2").unwrap()).unwrap_err();
     assert!(error.contains("--dir"), "{error}");
     assert!(exercise_of(parent.path()).is_none());
 }
@@ -242,7 +242,7 @@ fn progress_survives_and_is_reset() {
 #[test]
 fn a_teacher_checks_in_a_terminal() {
     let parent = tempfile::tempdir().unwrap();
-    let exercise = find("energy").unwrap();
+    let exercise = &*find("energy").unwrap();
     let folder = prepare(parent.path(), exercise).unwrap();
     let dir = parent.path().display().to_string();
     let check = |dir: &str| learn(parent.path(), &["check", "11", "--dir", dir]);
@@ -262,4 +262,42 @@ fn a_teacher_checks_in_a_terminal() {
     learn(parent.path(), &["check"]).expect(2, &["learn check 3"]);
     learn(parent.path(), &["frensel"]).expect(2, &["fresnel"]);
     learn(parent.path(), &["3", "4"]).expect(2, &["one exercise at a time"]);
+}
+
+/// The exercise that the manual shows, the folders of two students, and the checks of a lecturer.
+#[test]
+fn an_own_exercise_is_a_folder_as_the_manual_describes_it() {
+    let manual = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual/exercises.md");
+    let manual = std::fs::read_to_string(manual).unwrap();
+    let example = manual.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("distance");
+    std::fs::create_dir(&own).unwrap();
+    write(&own, "exercise.toml", example);
+    let exercise = &*find(own.to_str().unwrap()).unwrap();
+    assert_eq!((exercise.number, &*exercise.name), (0, "distance"));
+    let [anna, ben] =
+        ["anna", "ben"].map(|name| prepare(&folder.path().join("students").join(name), exercise).unwrap());
+    for (path, text) in exercise.solution() {
+        write(&ben, path.as_str(), text);
+    }
+    // The folder knows its exercise.
+    let check = |dir: &Path| learn(folder.path(), &["check", "--dir", dir.to_str().unwrap()]);
+    let failed = check(&anna);
+    failed.expect(1, &[]);
+    assert!(failed.stdout.contains("FAIL") && failed.stdout.contains("the light is"), "{}", failed.stdout);
+    assert!(check(&ben).expect(0, &[]).stdout.contains("Exercise distance, Light and distance: solved"));
+    let all = |more: &[&str]| learn(folder.path(), &[&["check", "all", "--dir", "students"], more].concat());
+    let table = all(&[]);
+    table.expect(1, &[]);
+    let rows: Vec<Vec<&str>> = table.stdout.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(rows[0], ["anna/distance", "distance", "0", "of", "1", "goals"]);
+    assert_eq!(rows[1], ["ben/distance", "distance", "solved"]);
+    assert!(table.stdout.ends_with("1 of 2 solved\n"), "{}", table.stdout);
+    write(&anna, "lighting/punctual.glsl", "wrong");
+    let json = all(&["--json"]).json();
+    assert_eq!((&json[1]["folder"], &json[1]["passed"]), (&"ben/distance".into(), &true.into()), "{json}");
+    assert!(json[0]["error"].as_str().unwrap().contains("punctual.glsl"), "{json}");
+    write(&own, "exercise.toml", "title = 7");
+    learn(folder.path(), &["check", "distance"]).expect(2, &["exercise.toml", "title"]);
 }

@@ -10,7 +10,7 @@ use crate::support::window::Viewer;
 #[test]
 fn an_exercise_is_solved_by_an_edit() {
     let tree = Tree::new();
-    let folder = specula::learn::prepare(&tree.beside(""), specula::learn::find("1").unwrap()).unwrap();
+    let folder = specula::learn::prepare(&tree.beside(""), &specula::learn::find("1").unwrap()).unwrap();
     let mut viewer = Viewer::open(tree, &["--shaders", "01-roughness", "--size", "900x600"]);
     let goals = |event: &Value| event["goals"].as_array().unwrap().clone();
     let first = viewer.running.event("exercise");

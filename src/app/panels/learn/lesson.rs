@@ -1,7 +1,8 @@
 //! An exercise: its text, its goals with what was measured, hints and the solution.
 
-use egui::{Frame, Label, Margin, RichText, Ui};
+use egui::{Align, Frame, Id, Label, Margin, Panel, RichText, ScrollArea, Ui};
 
+use super::Results;
 use super::mark::mark;
 use crate::app::command::program::LEARN;
 use crate::app::command::spec::Command;
@@ -10,15 +11,40 @@ use crate::app::state::shaders::difference::Kind;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
 
-/// Shows the exercise. `is_broken`: the newest edit does not compile.
+/// Height of a panel below which the goals scroll with the text, points.
+const LOW: f32 = 260.0;
+/// Largest part of the panel's height that the goals take.
+const PART: f32 = 0.55;
+
+/// Shows the exercise: its text above, and its goals below, where they stay in sight.
 pub(super) fn show(
     ui: &mut Ui,
     learning: &Learning,
     exercise: &Exercise,
-    is_broken: bool,
+    results: Results,
     commands: &mut Vec<Command>,
 ) {
-    let record = learning.progress.of(exercise);
+    // Each exercise scrolls by itself.
+    let scroll = |id: &str| ScrollArea::vertical().id_salt((id, &exercise.name)).auto_shrink(false);
+    if ui.available_height() < LOW {
+        scroll("text").show(ui, |ui| {
+            about(ui, learning, exercise, commands);
+            ui.separator();
+            goals(ui, learning, exercise, results, commands);
+        });
+        return;
+    }
+    let most = PART * ui.available_height();
+    let below = Panel::bottom("goals").resizable(false).frame(Frame::new()).max_size(most);
+    below.show(ui, |ui| {
+        ui.add_space(4.0);
+        scroll("goals").auto_shrink([false, true]).show(ui, |ui| goals(ui, learning, exercise, results, commands));
+    });
+    scroll("text").show(ui, |ui| about(ui, learning, exercise, commands));
+}
+
+/// The text of the exercise, the hints that were asked for, and the solution.
+fn about(ui: &mut Ui, learning: &Learning, exercise: &Exercise, commands: &mut Vec<Command>) {
     let mut ask = |command| commands.push(LEARN.with(command));
     ui.add_space(4.0);
     ui.label(RichText::new(&exercise.title).strong());
@@ -27,35 +53,47 @@ pub(super) fn show(
     text(ui, &exercise.text);
     ui.label(RichText::new(format!("Source: {}", exercise.source)).small().color(QUIET));
     ui.add_space(6.0);
-    ui.horizontal_wrapped(|ui| {
-        let hover =
-            format!("{}\nOpens the file at the line to look at", learning.folder.join(&exercise.open.file).display());
-        if ui.button(format!("Open {}", exercise.open.file)).on_hover_text(hover).clicked() {
-            ask(LearnCommand::Edit);
-        }
-    });
-    ui.separator();
-    if goals(ui, learning, exercise, is_broken) {
-        ask(LearnCommand::Open(exercise.number + 1));
+    let hover =
+        format!("{}\nOpens the file at the line to look at", learning.folder.join(&exercise.open.file).display());
+    if ui.button(format!("Open {}", exercise.open.file)).on_hover_text(hover).clicked() {
+        ask(LearnCommand::Edit);
     }
-    ui.separator();
+    for (index, hint) in exercise.hints.iter().take(learning.progress.of(exercise).hints).enumerate() {
+        ui.add_space(2.0);
+        ui.label(RichText::new(format!("Hint {}: {hint}", index + 1)).color(WARNING));
+    }
+    if solution(ui, learning) {
+        ask(LearnCommand::Solve);
+    }
+    ui.add_space(8.0);
+    // What a button has just opened stands at the end of the text.
+    if ui.data_mut(|data| data.remove_temp::<()>(asked_id())).is_some() {
+        ui.scroll_to_cursor(Some(Align::BOTTOM));
+    }
+}
+
+/// Where egui notes that a hint or the solution was asked for, until it is shown.
+fn asked_id() -> Id {
+    Id::new("a hint or the solution was asked for")
+}
+
+/// The buttons for hints, the solution and the start.
+fn buttons(ui: &mut Ui, learning: &Learning, exercise: &Exercise, commands: &mut Vec<Command>) {
+    let mut ask = |command| commands.push(LEARN.with(command));
+    let record = learning.progress.of(exercise);
     ui.horizontal_wrapped(|ui| {
         let most = exercise.hints.len();
-        let text = format!("Hint ({} of {most})", (record.hints + 1).min(most));
         let is_left = record.hints < most;
-        let text = if is_left { text } else { "No more hints".to_owned() };
-        let hint = ui
-            .add_enabled(is_left, egui::Button::new(text))
-            .on_hover_text("The first hint is a nudge; the last one is almost the solution");
-        if hint.clicked() {
+        let text = if is_left { format!("Hint ({} of {most})", record.hints + 1) } else { "No more hints".to_owned() };
+        let hover = "The first hint is a nudge; the last one is almost the solution";
+        if ui.add_enabled(is_left, egui::Button::new(text)).on_hover_text(hover).clicked() {
+            ui.data_mut(|data| data.insert_temp(asked_id(), ()));
             ask(LearnCommand::Hint);
         }
         let text = if learning.solution.is_some() { "Hide the solution" } else { "Show the solution" };
-        if ui
-            .button(text)
-            .on_hover_text("Shows the lines that the solution changes. Your files stay as they are")
-            .clicked()
-        {
+        let hover = "Shows the lines that the solution changes. Your files stay as they are";
+        if ui.button(text).on_hover_text(hover).clicked() {
+            ui.data_mut(|data| data.insert_temp(asked_id(), ()));
             ask(LearnCommand::Solution);
         }
         let (text, hover) = match learning.asks {
@@ -66,14 +104,6 @@ pub(super) fn show(
             ask(LearnCommand::StartOver);
         }
     });
-    for (index, hint) in exercise.hints.iter().take(record.hints).enumerate() {
-        ui.add_space(2.0);
-        ui.label(RichText::new(format!("Hint {}: {hint}", index + 1)).color(WARNING));
-    }
-    if solution(ui, learning) {
-        ask(LearnCommand::Solve);
-    }
-    ui.add_space(8.0);
 }
 
 /// Paragraphs; lines that begin with four spaces are formulas or code.
@@ -114,20 +144,20 @@ fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// The goals, each gray before it is measured, then green or red with what was found. Returns whether the user wants the next exercise.
-fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool) -> bool {
+/// The goals, gray before they are measured and while an edit is being measured, else green or red, each with what was found; and what can be
+/// done next.
+fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results, commands: &mut Vec<Command>) {
     let findings: &[Finding] = match &learning.measured {
-        Measured::Findings(findings) => findings,
+        Measured::Findings(findings) if results != Results::Broken => findings,
         _ => &[],
     };
-    let is_solved = learning.is_solved() && !is_broken;
     ui.horizontal(|ui| {
         ui.label(RichText::new(if exercise.goals.len() == 1 { "Goal" } else { "Goals" }).strong());
-        let state = match (&learning.measured, learning.checking) {
-            _ if is_broken => "your edit does not compile yet",
-            (_, Some(_)) => "measuring…",
+        let state = match (&learning.measured, results) {
+            (_, Results::Broken) => "your edit does not compile yet",
+            (Measured::Nothing, Results::Old) => "measured when the picture is complete",
+            (_, Results::Old) => "measuring; these results are of the edit before",
             (Measured::Failed(_), _) => "not measured",
-            (Measured::Nothing, _) => "measured when the picture is complete",
             _ => "measured",
         };
         ui.label(RichText::new(state).small().color(QUIET)).on_hover_text(
@@ -135,9 +165,9 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool)
         );
     });
     for (index, goal) in exercise.goals.iter().enumerate() {
-        let finding = findings.get(index).filter(|_| !is_broken);
-        let state = finding.map(|finding| finding.passed);
-        let color = if state == Some(true) { GOOD } else { ERROR };
+        let finding = findings.get(index);
+        let state = finding.filter(|_| results == Results::New).map(|finding| finding.passed);
+        let color = state.map_or(QUIET, |passed| if passed { GOOD } else { ERROR });
         ui.horizontal_top(|ui| {
             mark(ui, state);
             ui.vertical(|ui| {
@@ -151,15 +181,16 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool)
     if let Measured::Failed(message) = &learning.measured {
         ui.add(Label::new(RichText::new(message).small().color(ERROR)).wrap());
     }
-    if !is_solved {
-        return false;
+    if learning.is_solved() && results == Results::New {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
+            let has_next = (1..exercises().len()).contains(&exercise.number);
+            if has_next && ui.button("Next").on_hover_text("Open the next exercise").clicked() {
+                commands.push(LEARN.with(LearnCommand::Open(exercise.number + 1)));
+            }
+        });
     }
-    ui.add_space(2.0);
-    ui.horizontal(|ui| {
-        ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
-        exercise.number < exercises().len() && ui.button("Next").on_hover_text("Open the next exercise").clicked()
-    })
-    .inner
+    buttons(ui, learning, exercise, commands);
 }
 
 /// The difference between the files and the solution. Returns whether the user wants it written.
@@ -191,7 +222,42 @@ fn solution(ui: &mut Ui, learning: &Learning) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
+
+    /// The panel at 720p.
+    const SIZE: egui::Vec2 = egui::vec2(400.0, 480.0);
+
+    #[test]
+    fn goals_stay_in_sight_and_results_of_an_older_edit_say_so() {
+        let exercise = exercises()[2].clone();
+        let mut learning = Learning::default();
+        learning.open(Path::new("03-fresnel"), Some(exercise.clone()));
+        let found =
+            |goal: &crate::learn::Goal| Finding { goal: goal.says.clone(), passed: true, found: "right".into() };
+        learning.measured = Measured::Findings(exercise.goals.iter().map(found).collect());
+        let harness = |results| {
+            let learning = &learning;
+            let mut harness = Harness::builder()
+                .with_size(SIZE)
+                .build_ui(move |ui| show(ui, learning, learning.exercise.as_ref().unwrap(), results, &mut Vec::new()));
+            harness.run();
+            harness
+        };
+        let new = harness(Results::New);
+        let last = exercise.goals.last().unwrap();
+        for text in [last.says.as_str(), "Solved. Well done!", "Start over"] {
+            let rect = new.get_by_label(text).rect();
+            assert!(rect.min.y > 0.0 && rect.max.y <= SIZE.y, "`{text}` is at {rect:?}");
+        }
+        let old = harness(Results::Old);
+        assert!(old.query_by_label("Solved. Well done!").is_none());
+        old.get_by_label("measuring; these results are of the edit before");
+    }
 
     #[test]
     fn formulas_are_told_from_paragraphs() {
