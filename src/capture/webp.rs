@@ -1,8 +1,12 @@
-//! An animated WebP: the container (RFC 9649) around frames that the `image` crate encodes without loss.
+//! An animated WebP: the container (RFC 9649) around frames that libwebp encodes. Their colors are compressed with loss, which takes a tenth of
+//! the bytes; numbered PNGs lose nothing.
 
-use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, RgbaImage};
+use image::RgbaImage;
 
+/// Quality of the colors, 0 to 100.
+const QUALITY: f32 = 90.0;
+/// Length of the chunk `VP8X` with its name and size, bytes.
+const EXTENDED: usize = 18;
 /// Largest width and height.
 pub(super) const LARGEST: u32 = 16_383;
 
@@ -23,12 +27,11 @@ impl AnimatedWebP {
     pub(super) fn add(&mut self, frame: &RgbaImage, ms: u32) -> Result<(), String> {
         let (width, height) = frame.dimensions();
         self.has_alpha |= frame.pixels().any(|pixel| pixel[3] != 255);
-        let mut file = Vec::new();
-        WebPEncoder::new_lossless(&mut file)
-            .encode(frame.as_raw(), width, height, ExtendedColorType::Rgba8)
-            .map_err(|error| error.to_string())?;
-        // A file of one frame is `RIFF`, its size, `WEBP`, and the chunk that also goes into an animation.
+        let encoder = webp::Encoder::from_rgba(frame.as_raw(), width, height);
+        let file = encoder.encode_simple(false, QUALITY).map_err(|error| format!("{error:?}"))?;
+        // A file of one frame is `RIFF`, its size, `WEBP`, with alpha a chunk `VP8X`, and the chunks that also go into an animation.
         let still = file.get(12..).ok_or("a frame was not encoded whole")?;
+        let still = if still.starts_with(b"VP8X") { still.get(EXTENDED..).unwrap_or_default() } else { still };
         let mut content = Vec::with_capacity(still.len() + 16);
         content.extend([u24(0), u24(0), u24(width - 1), u24(height - 1), u24(ms)].concat());
         // The frame replaces all earlier ones, also where it is transparent.
@@ -82,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_read_as_they_were_added() {
+    fn frames_are_read_nearly_as_they_were_added() {
         let frames: Vec<RgbaImage> =
             (0..3).map(|n| RgbaImage::from_fn(5, 3, |x, y| Rgba([n * 80, x as u8, y as u8, 255 - n * 100]))).collect();
         let mut animation = AnimatedWebP::new((5, 3));
@@ -95,7 +98,11 @@ mod tests {
         assert_eq!(read.len(), 3);
         for (read, frame) in read.iter().zip(&frames) {
             assert_eq!(read.delay().numer_denom_ms(), (40, 1));
-            assert_eq!(read.buffer(), frame);
+            let pairs = read.buffer().pixels().zip(frame.pixels());
+            for (read, pixel) in pairs {
+                let apart = (0..3).map(|channel| read[channel].abs_diff(pixel[channel])).max().unwrap();
+                assert!(apart < 12 && read[3] == pixel[3], "{read:?} of {pixel:?}");
+            }
         }
     }
 }

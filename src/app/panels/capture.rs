@@ -39,6 +39,8 @@ const SIZES: [(&str, [u32; 2]); 5] = [
 pub(super) struct CaptureState {
     /// `None` for the size on screen.
     size: Option<[u32; 2]>,
+    /// The size of animations. Theirs is that of a video, even where a picture is large.
+    animation_size: Option<[u32; 2]>,
     is_exr: bool,
     with_panels: bool,
     all_modes: bool,
@@ -54,6 +56,7 @@ impl Default for CaptureState {
     fn default() -> Self {
         Self {
             size: None,
+            animation_size: None,
             is_exr: false,
             with_panels: false,
             all_modes: false,
@@ -88,7 +91,7 @@ pub(super) fn show(
     heading(ui, "Sheet of modes");
     commands.extend(sheet(ui, state).map(|fields| SHEET.with(fields)));
     heading(ui, "Animation");
-    animation(ui, state);
+    animation(ui, state, shown);
     commands.extend(turntable(ui, state).map(|fields| TURNTABLE.with(fields)));
     commands.extend(timeline(ui, state, versions).map(|fields| TIMELINE.with(fields)));
 }
@@ -96,7 +99,7 @@ pub(super) fn show(
 /// Shows the rows of a picture. Returns the picture that the user asks for.
 fn picture(ui: &mut Ui, state: &mut CaptureState, shown: (u32, u32)) -> Option<Capture> {
     let doc = "Size of the file in pixels. Any size is possible: the picture in the window does not change";
-    row(ui, "Size", doc, |ui| size(ui, &mut state.size, shown));
+    row(ui, "Size", doc, |ui| size(ui, "picture size", &mut state.size, shown));
     let doc = "PNG: as displayed, with all settings in its metadata. EXR: the raw floats before exposure and tone map";
     row(ui, "Format", doc, |ui| {
         let png = ui.selectable_value(&mut state.is_exr, false, "PNG");
@@ -129,8 +132,10 @@ fn sheet(ui: &mut Ui, state: &mut CaptureState) -> Option<Sheet> {
 }
 
 /// Shows the rows of an animation.
-fn animation(ui: &mut Ui, state: &mut CaptureState) {
-    let doc = "MP4: a small video for any player. WebP: lossless. GIF: 256 colors a frame. PNGs: numbered frames, for other programs";
+fn animation(ui: &mut Ui, state: &mut CaptureState, shown: (u32, u32)) {
+    let doc = "Size of turntables and timelines in pixels";
+    row(ui, "Size", doc, |ui| size(ui, "animation size", &mut state.animation_size, shown));
+    let doc = "MP4: a small video for any player. WebP: in full color, also with a transparent background. GIF: 256 colors a frame. PNGs: numbered frames, for other programs";
     row(ui, "Format", doc, |ui| {
         let formats = [("mp4", "MP4"), ("webp", "WebP"), ("gif", "GIF"), ("png", "PNGs")];
         let choices = formats.map(|(ending, name)| ui.selectable_value(&mut state.animation, ending, name));
@@ -161,12 +166,12 @@ fn animation(ui: &mut Ui, state: &mut CaptureState) {
 
 /// Shows the button of a turntable. Returns the turntable that the user asks for.
 fn turntable(ui: &mut Ui, state: &CaptureState) -> Option<TurntableFields> {
-    let about = "Write a full turn as specula-turntable-N, at the size chosen above";
+    let about = "Write a full turn as specula-turntable-N";
     button(ui, "Write turntable", about).then(|| TurntableFields {
         file: animation_file("specula-turntable", state.animation),
         frames: Some(state.frames),
         fps: Some(state.fps),
-        size: state.size,
+        size: state.animation_size,
         turn: Some(format!("{:?}", state.turn).to_lowercase()),
     })
 }
@@ -177,7 +182,7 @@ fn timeline(ui: &mut Ui, state: &CaptureState, versions: usize) -> Option<Timeli
     let button = ui.add_enabled(versions > 1, Button::new("Write timeline")).on_hover_text(about);
     let is_clicked = button.on_disabled_hover_text("No edit has been shown yet").clicked();
     let file = || animation_file("specula-timeline", state.animation);
-    is_clicked.then(|| Timeline { file: file(), fps: None, size: state.size })
+    is_clicked.then(|| Timeline { file: file(), fps: None, size: state.animation_size })
 }
 
 /// Shows what is under way, in a line that is always there, so that nothing below it moves when a capture begins or ends.
@@ -223,14 +228,14 @@ fn button(ui: &mut Ui, title: &str, about: &str) -> bool {
 }
 
 /// The choice of a size: as on screen, by name, or in numbers.
-fn size(ui: &mut Ui, size: &mut Option<[u32; 2]>, shown: (u32, u32)) -> Response {
+fn size(ui: &mut Ui, id: &str, size: &mut Option<[u32; 2]>, shown: (u32, u32)) -> Response {
     let as_shown = format!("{} × {}, as on screen", shown.0, shown.1);
     let named = |size: &[u32; 2]| SIZES.iter().find(|(_, known)| known == size).map(|(name, _)| (*name).to_owned());
     let text = size
         .as_ref()
         .map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "custom".to_owned()));
     ui.vertical(|ui| {
-        let list = ComboBox::from_id_salt("capture size").selected_text(text);
+        let list = ComboBox::from_id_salt(id).selected_text(text);
         list.show_ui(ui, |ui| {
             ui.selectable_value(size, None, as_shown);
             for (name, known) in SIZES {

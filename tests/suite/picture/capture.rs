@@ -72,11 +72,18 @@ fn a_turntable_is_a_full_turn() {
     assert_eq!(frames[0].delay().numer_denom_ms(), (40, 1), "25 frames a second");
     render(path, &[&camera[..], &["--out", "first.png"]].concat()).expect(0, &[]);
     let first = open_image(&path.join("first.png")).into_rgba8();
-    assert!(*frames[0].buffer() == first, "the first frame is the picture");
+    turn("spin.png");
+    let plain = [1, 2, 3, 4].map(|number| open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8());
+    assert!(plain[0] == first, "the first frame is the picture");
+    // The colors of a WebP are nearly those.
+    for (frame, plain) in frames.iter().zip(&plain) {
+        let apart = distance(&halved(&frame.buffer().clone().into()), &halved(&plain.clone().into()));
+        assert!(apart < 2.0, "the WebP differs by {apart}");
+    }
     // The third is seen from behind.
     render(path, &["--eye", "0,1,-4", "--target", "0,0,0", "--size", "64x48", "--out", "third.png"]).expect(0, &[]);
     let third = open_image(&path.join("third.png")).into_rgba8();
-    assert!(distance(frames[2].buffer(), &third) < 0.5 && distance(&first, &third) > 0.5);
+    assert!(distance(&plain[2], &third) < 0.5 && distance(&first, &third) > 0.5);
 
     turn("spin.gif");
     let decoder = GifDecoder::new(reader(&path.join("spin.gif"))).unwrap();
@@ -87,15 +94,9 @@ fn a_turntable_is_a_full_turn() {
     turn("spin.mp4");
     let video = Video::read(&std::fs::read(path.join("spin.mp4")).unwrap());
     assert_eq!(video.frames.len(), 4);
-    for (frame, webp) in video.frames.iter().zip(&frames) {
-        let apart = distance(&halved(&DynamicImage::from(frame.clone())), &halved(&webp.buffer().clone().into()));
-        assert!(apart < 2.0, "the video differs from the WebP by {apart}");
-    }
-
-    turn("spin.png");
-    for number in 1..=4 {
-        let frame = open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8();
-        assert!(frame == *frames[number - 1].buffer(), "frame {number}");
+    for (frame, plain) in video.frames.iter().zip(&plain) {
+        let apart = distance(&halved(&DynamicImage::from(frame.clone())), &halved(&plain.clone().into()));
+        assert!(apart < 2.0, "the video differs from the pictures by {apart}");
     }
 }
 
