@@ -1,18 +1,50 @@
 //! Writes changes of single values into the files of a shader tree. All other bytes of the files stay as they are.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::picture::replace_file;
 use crate::regular_file;
 use crate::shader::rewrite::{Edit, applied};
 use crate::shader::{SourceError, TreePath, leads_out};
 
+/// Files that were written: the bytes before and after.
+#[derive(Debug)]
+pub struct Written(Vec<(PathBuf, [Vec<u8>; 2])>);
+
+impl Written {
+    /// Writes the bytes before, or with `again` those after. Files that have changed since stay.
+    ///
+    /// # Errors
+    /// A message: a file has changed, or cannot be read or written.
+    pub fn take_back(&self, again: bool) -> Result<(), String> {
+        let (from, to) = if again { (0, 1) } else { (1, 0) };
+        for (file, texts) in &self.0 {
+            let now = regular_file::read(file, regular_file::LONGEST_TEXT);
+            let now = now.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
+            if now != texts[from] {
+                return Err(format!("{} has changed since it was written, so it stays as it is", file.display()));
+            }
+        }
+        self.0.iter().try_for_each(|(file, texts)| replace(file, &texts[to]))
+    }
+
+    /// The names of the files.
+    pub fn names(&self) -> String {
+        let name = |(file, _): &(PathBuf, _)| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        self.0.iter().map(name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+fn replace(file: &Path, bytes: &[u8]) -> Result<(), String> {
+    replace_file(file, bytes).map_err(|error| format!("cannot write {}: {error}", file.display()))
+}
+
 /// Writes edits into the files below `root`. Each file is replaced whole. Nothing is written if a line is not as its edit expects it.
 ///
 /// # Errors
 /// A message, if a file has changed or cannot be read or written.
-pub fn write(root: &Path, edits: &[Edit]) -> Result<(), String> {
+pub fn write(root: &Path, edits: &[Edit]) -> Result<Written, String> {
     let mut of_files: BTreeMap<&TreePath, Vec<&Edit>> = BTreeMap::new();
     for edit in edits {
         of_files.entry(&edit.path).or_default().push(edit);
@@ -26,17 +58,36 @@ pub fn write(root: &Path, edits: &[Edit]) -> Result<(), String> {
         let bytes = regular_file::read(&file, regular_file::LONGEST_TEXT);
         let bytes = bytes.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
         let new = applied(&bytes, edits).map_err(|error| format!("{} {error}", file.display()))?;
-        writes.push((file, new));
+        writes.push((file, [bytes, new]));
     }
-    writes.iter().try_for_each(|(file, bytes)| {
-        replace_file(file, bytes).map_err(|error| format!("cannot write {}: {error}", file.display()))
-    })
+    writes.iter().try_for_each(|(file, [_, new])| replace(file, new))?;
+    Ok(Written(writes))
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[test]
+    fn what_was_written_is_taken_back_unless_the_file_has_changed() {
+        let tree = tempfile::tempdir().unwrap();
+        let file = tree.path().join("a.glsl");
+        let read = || std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, "x = 1;").unwrap();
+        let (path, name) = ("a.glsl".into(), "1".into());
+        let edit = Edit { path, name, line: 1, bytes: 4..5, before: "x = 1;".into(), new: "2".into() };
+        let written = write(tree.path(), &[edit]).unwrap();
+        assert_eq!((read().as_str(), written.names().as_str()), ("x = 2;", "a.glsl"));
+        written.take_back(false).unwrap();
+        assert_eq!(read(), "x = 1;");
+        written.take_back(true).unwrap();
+        assert_eq!(read(), "x = 2;");
+        std::fs::write(&file, "x = 3;").unwrap();
+        assert!(written.take_back(false).unwrap_err().contains("has changed since"));
+        assert_eq!(read(), "x = 3;");
+    }
+
+    #[cfg(unix)]
     #[test]
     fn a_link_out_of_the_tree_is_not_written() {
         let (tree, outside) = (tempfile::tempdir().unwrap(), tempfile::NamedTempFile::new().unwrap());

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::app::actions::restored::follow_restored;
@@ -13,7 +14,7 @@ use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
 use crate::shader::{Change, Expression, ShaderSet};
 use crate::threads::Message;
-use crate::write_back;
+use crate::write_back::{self, Written};
 
 /// Tells the worker of another watched expression. It reads the settings.
 pub(in crate::app) fn watch_expression(state: &mut State, engine: &mut Engine) {
@@ -73,13 +74,18 @@ pub(in crate::app) fn follow_edits(state: &mut State, engine: &mut Engine, shade
         state.edits.watched.clone_from(expression);
     }
     let settings = &mut state.session.settings.shader;
+    let mut is_removed = false;
     state.edits.written.retain(|name, value| {
         let is_written = is_default(shaders, name, value);
         if is_written && settings.get(name) == Some(value) {
-            settings.remove(name);
+            is_removed |= settings.remove(name).is_some();
         }
         !is_written
     });
+    if is_removed {
+        // It is part of the step that wrote the files.
+        state.history.extend(&state.session.shared_settings());
+    }
 }
 
 /// Writes edits into the files of the tree, on a thread of its own.
@@ -90,15 +96,16 @@ pub(in crate::app) fn write_edits(state: &mut State, engine: &mut Engine, edits:
     state.edits.written.extend(names);
     engine.threads.wait(move || {
         let written = write_back::write(&root, &edits);
-        Some(Message::Written(written.map(|()| told(&edits))))
+        Some(Message::Written(written.map(|written| (told(&edits), written))))
     });
 }
 
 /// Takes the result of writing.
-pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written: Result<String, String>) {
+pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written: Result<(String, Written), String>) {
     state.waiting.answer_edits(written.as_ref().map(|_| ()).map_err(String::as_str));
     match written {
-        Ok(text) => {
+        Ok((text, written)) => {
+            state.history.record_files(&state.session.shared_settings(), written);
             // The file has the dragged numbers now, so nothing is compiled.
             if state.edits.draft.is_some() {
                 state.versions.keep_draft();
@@ -111,6 +118,16 @@ pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written
             state.say(message);
         }
     }
+}
+
+/// Writes files back as they were before a step that wrote them, or with `again` as they were after it, on a thread of its own.
+pub(in crate::app) fn take_back(engine: &Engine, written: Arc<Written>, again: bool) {
+    engine.threads.wait(move || {
+        let done = if again { "Wrote" } else { "Took back the edit of" };
+        Some(Message::Say(
+            written.take_back(again).map_or_else(|message| message, |()| format!("{done} {}", written.names())),
+        ))
+    });
 }
 
 /// Summarizes the written edits in one line.

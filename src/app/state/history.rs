@@ -1,20 +1,32 @@
-//! Undo and redo of settings.
+//! Undo and redo of settings, and of files that the window wrote.
 
 use std::sync::Arc;
 
 use crate::settings::Settings;
+use crate::write_back::Written;
 
 /// Most undo steps that are kept.
 const STEPS: usize = 100;
 
-/// The settings before and after each change, except the camera, the mode and the orbiting lights.
+/// A step that can be undone or redone.
+struct Step {
+    /// The settings on its other side.
+    settings: Arc<Settings>,
+    /// The files that it wrote.
+    files: Option<Arc<Written>>,
+}
+
+/// The settings before and after each change, except the camera, the mode and the orbiting lights, and the files that were written.
 #[derive(Default)]
 pub(in crate::app) struct History {
-    past: Vec<Arc<Settings>>,
-    future: Vec<Arc<Settings>>,
+    past: Vec<Step>,
+    future: Vec<Step>,
     /// The settings when they were last recorded.
     last: Option<Arc<Settings>>,
 }
+
+/// What a step changes besides the settings.
+pub(in crate::app) type Files = Option<Arc<Written>>;
 
 impl History {
     /// Records the settings of a frame as an undo step if they have changed. `is_held`: a control is being dragged, so the
@@ -27,34 +39,50 @@ impl History {
         if is_held || Arc::ptr_eq(last, now) || last.is_other_view(now) {
             return;
         }
-        self.past.extend(self.last.replace(now.clone()));
+        self.push(now, None);
+    }
+
+    /// Records that files were written, as a step of its own.
+    pub(in crate::app) fn record_files(&mut self, now: &Arc<Settings>, written: Written) {
+        self.record(now, false);
+        self.push(now, Some(Arc::new(written)));
+    }
+
+    /// Takes changed settings as a part of the last step.
+    pub(in crate::app) fn extend(&mut self, now: &Arc<Settings>) {
+        self.last = Some(now.clone());
+    }
+
+    fn push(&mut self, now: &Arc<Settings>, files: Files) {
+        let settings = self.last.replace(now.clone());
+        self.past.extend(settings.map(|settings| Step { settings, files }));
         self.past.drain(..self.past.len().saturating_sub(STEPS));
         self.future.clear();
     }
 
-    /// Undoes the last step. Returns whether there was one.
-    pub(in crate::app) fn undo(&mut self, now: &mut Settings) -> bool {
+    /// Undoes the last step. Returns the files to take back, or `None` if there is no step.
+    pub(in crate::app) fn undo(&mut self, now: &mut Settings) -> Option<Files> {
         self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.past, &mut self.future, &mut self.last, now)
     }
 
-    /// Redoes the last undone step. Returns whether there was one.
-    pub(in crate::app) fn redo(&mut self, now: &mut Settings) -> bool {
+    /// Redoes the last undone step. Returns the files to write again, or `None` if there is no step.
+    pub(in crate::app) fn redo(&mut self, now: &mut Settings) -> Option<Files> {
         self.record(&Arc::new(now.clone()), false);
         Self::step(&mut self.future, &mut self.past, &mut self.last, now)
     }
 
     fn step(
-        from: &mut Vec<Arc<Settings>>,
-        to: &mut Vec<Arc<Settings>>,
+        from: &mut Vec<Step>,
+        to: &mut Vec<Step>,
         last: &mut Option<Arc<Settings>>,
         now: &mut Settings,
-    ) -> bool {
-        let Some(settings) = from.pop() else { return false };
-        to.push(Arc::new(now.clone()));
+    ) -> Option<Files> {
+        let Step { settings, files } = from.pop()?;
+        to.push(Step { settings: Arc::new(now.clone()), files: files.clone() });
         *now = with_view_of(&settings, now);
         *last = Some(Arc::new(now.clone()));
-        true
+        Some(files)
     }
 }
 
@@ -87,16 +115,16 @@ mod tests {
             now.view.ev = ev;
             record(&mut history, &now, false);
         }
-        assert!(history.undo(&mut now) && now.view.ev == 1.0);
-        assert!(history.undo(&mut now) && now.view.ev == 0.0);
-        assert!(!history.undo(&mut now) && now.view.ev == 0.0, "nothing is left");
-        assert!(history.redo(&mut now) && history.redo(&mut now) && now.view.ev == 2.0);
-        assert!(!history.redo(&mut now));
+        assert!(history.undo(&mut now).is_some() && now.view.ev == 1.0);
+        assert!(history.undo(&mut now).is_some() && now.view.ev == 0.0);
+        assert!(!history.undo(&mut now).is_some() && now.view.ev == 0.0, "nothing is left");
+        assert!(history.redo(&mut now).is_some() && history.redo(&mut now).is_some() && now.view.ev == 2.0);
+        assert!(!history.redo(&mut now).is_some());
         // A change after an undo discards the undone steps.
-        assert!(history.undo(&mut now));
+        assert!(history.undo(&mut now).is_some());
         now.view.ev = 5.0;
         record(&mut history, &now, false);
-        assert!(!history.redo(&mut now) && now.view.ev == 5.0);
+        assert!(!history.redo(&mut now).is_some() && now.view.ev == 5.0);
     }
 
     #[test]
@@ -108,7 +136,7 @@ mod tests {
             record(&mut history, &now, true);
         }
         record(&mut history, &now, false);
-        assert!(history.undo(&mut now) && now.view.ev == 0.0);
+        assert!(history.undo(&mut now).is_some() && now.view.ev == 0.0);
     }
 
     #[test]
@@ -124,12 +152,12 @@ mod tests {
         let azimuth = now.lights.orbit[0].azimuth;
         now.view.ev = 1.0;
         record(&mut history, &now, false);
-        assert!(history.undo(&mut now));
+        assert!(history.undo(&mut now).is_some());
         assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "d"));
         assert_eq!(now.lights.orbit[0].azimuth, azimuth);
         // The previous step is that the lights began to orbit.
-        assert!(history.undo(&mut now) && now.lights.spin == 0.0);
-        assert!(!history.undo(&mut now));
+        assert!(history.undo(&mut now).is_some() && now.lights.spin == 0.0);
+        assert!(!history.undo(&mut now).is_some());
     }
 
     #[test]
@@ -140,7 +168,7 @@ mod tests {
             record(&mut history, &now, false);
         }
         let mut steps = 0;
-        while history.undo(&mut now) {
+        while history.undo(&mut now).is_some() {
             steps += 1;
         }
         assert_eq!(steps, STEPS);
