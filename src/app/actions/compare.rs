@@ -61,7 +61,7 @@ pub(in crate::app) fn this_picture(state: &State, engine: &Engine) -> Option<(Wi
         return None;
     }
     let restored = state.edits.restored.as_ref().map(|restored| restored.number);
-    let number = restored.unwrap_or_else(|| state.shown_generation());
+    let number = restored.unwrap_or_else(|| state.shown_version());
     Some((With::Kept(Box::new(shown), number), Compared::Kept(Box::new(drawn))))
 }
 

@@ -143,13 +143,12 @@ fn parse_versions(about: &About, mut fields: Fields) -> Result<VersionsRequest, 
 }
 
 fn versions_json(state: &State) -> Value {
-    let newest = state.shown_generation();
     let versions = state.versions.iter().map(|version| {
         let reload = &version.reload;
         json!({ "number": version.number, "title": version.title(), "since": version.since.to_rfc3339(),
             "changed": reload.changed, "compile_ms": reload.compile_ms, "pipeline_ms": reload.pipeline_ms,
             "first_frame_ms": reload.first_frame_ms, "device_ms": version.device_ms,
-            "is_shown": version.number == newest, "can_compare": state.versions.can_show(version, newest) })
+            "is_shown": state.shows_version(version), "can_compare": state.can_show(version) })
     });
     versions.collect()
 }

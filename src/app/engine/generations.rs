@@ -21,19 +21,19 @@ struct Generation {
     picture: Option<LastComplete>,
 }
 
-/// The pipelines and the last pictures, by the numbers of the versions.
+/// The pipelines and the last pictures, by the generations of the versions.
 #[derive(Default)]
 pub(in crate::app) struct Generations(BTreeMap<u64, Generation>);
 
 impl Generations {
     /// The pipelines of a version.
-    pub(in crate::app) fn set(&self, number: u64) -> Option<&Arc<PipelineSet>> {
-        self.0.get(&number).map(|generation| &generation.set)
+    pub(in crate::app) fn set(&self, generation: u64) -> Option<&Arc<PipelineSet>> {
+        self.0.get(&generation).map(|generation| &generation.set)
     }
 
     /// The last picture of a version.
-    pub(in crate::app) fn picture(&self, number: u64) -> Option<&LastComplete> {
-        self.0.get(&number)?.picture.as_ref()
+    pub(in crate::app) fn picture(&self, generation: u64) -> Option<&LastComplete> {
+        self.0.get(&generation)?.picture.as_ref()
     }
 
     /// Takes the pipelines of the newest version, and drops those of versions that are no longer kept.
@@ -71,6 +71,6 @@ impl Generations {
 
     /// Drops what belongs to versions that are no longer kept.
     pub(in crate::app) fn keep(&mut self, versions: &Versions) {
-        self.0.retain(|number, _| versions.get(*number).is_some());
+        self.0.retain(|generation, _| versions.of_generation(*generation).is_some());
     }
 }

@@ -74,6 +74,20 @@ impl Drawing {
         screen.pointer = self.interface.mouse.over.then_some(self.interface.mouse.at);
         let pixels_per_point = self.interface.pixels_per_point();
 
+        let version = if screen.between.versions.is_free(state.workspace.sight.timeline) && !awaits_edit(state, engine)
+        {
+            let size = THUMBNAIL * pixels_per_point;
+            let missing = match missing_thumbnail(state, engine, (size.x.round() as u32, size.y.round() as u32)) {
+                Err(error) if error.is_shortage() => None,
+                missing => missing?,
+            };
+            if missing.is_none() {
+                screen.between.versions.rest();
+            }
+            missing
+        } else {
+            None
+        };
         let sees_nothing = Sight::default();
         let is_safe_mode = engine.recorder.is_safe_mode();
         let sight = if is_safe_mode { &sees_nothing } else { &state.workspace.sight };
@@ -88,17 +102,6 @@ impl Drawing {
         let pointed = screen.pointed_number(state.shown()).filter(|_| !is_safe_mode);
         let is_seen = !sight.thumbnails.is_empty() || inspector.is_some() || pointed.is_some();
         let picture = if is_seen { resting_picture(state, engine) } else { None };
-        let version = if screen.between.versions.is_free(state.workspace.sight.timeline) && !awaits_edit(state, engine)
-        {
-            let size = THUMBNAIL * pixels_per_point;
-            let missing = missing_thumbnail(state, engine, (size.x.round() as u32, size.y.round() as u32));
-            if missing.is_none() {
-                screen.between.versions.rest();
-            }
-            missing
-        } else {
-            None
-        };
         let request = BetweenRequest {
             picture: picture.as_ref(),
             modes: state.session.shaders.as_ref().map_or(&[], |shaders| &shaders.modes),

@@ -15,8 +15,10 @@ use crate::gpu::GpuError;
 use crate::recovery::SessionState;
 use crate::render::{BoundFrame, Missing};
 use crate::settings::Settings;
-use crate::shader::expression;
 use crate::threads::worker::Snapshot;
+
+/// Slug of the mode of thumbnails.
+const FINAL: &str = "final";
 
 /// The frame to draw: the one that the settings describe if it is complete, otherwise the last good frame with the current
 /// camera. Requests the missing resources from the threads. `None` before the first shaders. `prepare` allocates the targets;
@@ -119,15 +121,16 @@ fn keep_version(state: &mut State, engine: &mut Engine, last: Option<LastComplet
     if let Some(last) = last.filter(|last| last.scene().is_some() && last.frame.state.shaders.generation != generation)
     {
         let number = last.frame.state.shaders.generation;
-        if state.versions.get(number).is_some_and(|version| !version.is_cut_short()) {
+        if state.versions.of_generation(number).is_some_and(|version| !version.is_cut_short()) {
             engine.generations.retire(last);
         }
     }
-    if let Some(set) = engine.resources.pipelines().filter(|set| has_model && !state.versions.has(&set.shaders)) {
+    // An older version that is shown again is no new one.
+    let is_new = |shaders| has_model && state.edits.restored.is_none() && !state.versions.has(shaders);
+    if let Some(set) = engine.resources.pipelines().filter(|set| is_new(&set.shaders)) {
         let edit = state.first_frame.as_ref().filter(|first| first.generation == generation);
         let reload = edit.map(|first| first.event.clone()).or_else(|| state.shader.last.clone()).unwrap_or_default();
-        let again = state.edits.restored.as_ref().map(|restored| restored.number);
-        state.versions.add(&set.shaders, reload, again.is_some() || state.edits.draft.as_ref().is_some(), again);
+        state.versions.add(&set.shaders, reload, state.edits.draft.is_some());
         engine.generations.add(set, &state.versions);
     }
 }
@@ -146,23 +149,50 @@ pub(in crate::app) fn interim(state: &State, shown: &LastComplete, clock: Clock,
     })
 }
 
-/// The number and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open.
-pub(in crate::app) fn missing_thumbnail(state: &State, engine: &Engine, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
+/// The generation and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open. All are the final
+/// picture, so that they can be compared at a glance.
+///
+/// # Errors
+/// No memory left.
+pub(in crate::app) fn missing_thumbnail(
+    state: &mut State,
+    engine: &mut Engine,
+    size: (u32, u32),
+) -> Result<Option<(u64, BoundFrame)>, GpuError> {
+    if !state.workspace.sight.timeline {
+        return Ok(None);
+    }
     let newest = state.shown_generation();
     // The thumbnail of the newest version waits until its lighting is complete.
-    let shown = engine.shown.as_ref().filter(|shown| is_settled(state, engine) && shown.scene().is_some());
-    // Do not use a watched expression as the version's thumbnail.
-    let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
-    let lacks = state.versions.without_thumbnail();
-    if !state.workspace.sight.timeline {
-        return None;
+    let shown = engine.shown.clone().filter(|shown| is_settled(state, engine) && shown.scene().is_some());
+    let lacks: Vec<u64> = state.versions.without_thumbnail().map(|version| version.generation).collect();
+    for generation in lacks {
+        let picture =
+            if generation == newest { shown.clone() } else { engine.generations.picture(generation).cloned() };
+        let Some(picture) = picture else { continue };
+        let last = interim(state, &picture, state.picture.clock, size);
+        if picture.frame.state.mode().is_none_or(|mode| mode.slug == FINAL) {
+            return Ok(Some((generation, last)));
+        }
+        let Some(set) = engine.generations.set(generation).cloned() else { continue };
+        let settings = Settings { mode: FINAL.to_owned(), ..(*picture.settings).clone() };
+        let settings = settings.placed_as(&state.session.settings);
+        let now = std::mem::replace(&mut state.session.settings, settings);
+        let target = picture.frame.state.pipelines.target;
+        let final_state = state.session.frame_state_of(&set.shaders, state.picture.clock, size, target);
+        state.session.settings = now;
+        if let Some(frame) = engine.resources.bind_older(&set, &final_state, Some(&picture.frame))? {
+            return Ok(Some((generation, frame)));
+        }
+        if set.bind(&final_state.pipelines).is_some() {
+            // Its light is gone, so it has its last picture.
+            return Ok(Some((generation, last)));
+        }
+        if state.picture.is_complete && !final_state.pipelines.needs_pending(&set.shaders) {
+            engine.threads.worker.build(&set, &final_state.pipelines);
+        }
     }
-    let mut with_picture = lacks.filter_map(|version| {
-        let picture = if version.number == newest { shown } else { engine.generations.picture(version.number) };
-        Some((version.number, picture?))
-    });
-    let (number, picture) = with_picture.next()?;
-    Some((number, interim(state, picture, state.picture.clock, size)))
+    Ok(None)
 }
 
 /// Tells the worker what the next reload is for.

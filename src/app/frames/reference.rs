@@ -55,8 +55,8 @@ fn picture_of_version(
         state.compare.with = None;
         return Ok(None);
     };
-    let Some(set) = engine.generations.set(version.number).cloned() else { return Ok(None) };
-    let like = engine.generations.picture(version.number).map(|picture| picture.frame.clone());
+    let Some(set) = engine.generations.set(version.generation).cloned() else { return Ok(None) };
+    let like = engine.generations.picture(version.generation).map(|picture| picture.frame.clone());
     let frame_state = state_like(state, live, &set.shaders);
     if let Some(frame) = engine.resources.bind_older(&set, &frame_state, like.as_ref())? {
         return Ok(Some(frame));
@@ -82,12 +82,14 @@ fn state_like(state: &mut State, live: &BoundFrame, shaders: &Arc<ShaderSet>) ->
 /// Inputs for a picture of each version, oldest first.
 pub(in crate::app) fn version_pictures(state: &State, engine: &Engine) -> Vec<VersionPicture> {
     let newest = state.shown_generation();
-    let versions =
-        state.versions.iter().filter(|version| version.number == newest || state.versions.can_show(version, newest));
+    let versions = state
+        .versions
+        .iter()
+        .filter(|version| version.generation == newest || state.versions.can_show(version, newest));
     let of = |version: &Version| {
-        let set = engine.generations.set(version.number)?.clone();
-        let picture = engine.generations.picture(version.number);
-        let picture = picture.or(engine.shown.as_ref().filter(|_| version.number == newest));
+        let set = engine.generations.set(version.generation)?.clone();
+        let picture = engine.generations.picture(version.generation);
+        let picture = picture.or(engine.shown.as_ref().filter(|_| version.generation == newest));
         let label = format!("{}   {}", version.number, version.title());
         Some(VersionPicture { set, label, like: picture.map(|picture| picture.frame.clone()) })
     };

@@ -15,7 +15,7 @@ pub(in crate::app) fn update_stages(state: &mut State, engine: &mut Engine) {
     }
     if state.stages.is_outdated(set, &frame_state.pipelines) {
         let before = state.versions.last_before(frame_state.shaders.generation);
-        let before = before.and_then(|version| engine.generations.set(version.number));
+        let before = before.and_then(|version| engine.generations.set(version.generation));
         state.stages.update(set, &frame_state.pipelines, before, &state.shader.log);
     }
     if state.shader.asks_driver && is_settled && state.shader.told.as_ref() != Some(&frame_state.pipelines) {

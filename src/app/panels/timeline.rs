@@ -109,7 +109,6 @@ fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<
         }
     }
     own.thumbnails.update(ui.ctx(), &state.versions);
-    let newest = state.shown_generation();
     let scroll = if is_strip { egui::ScrollArea::horizontal() } else { egui::ScrollArea::vertical() };
     scroll.auto_shrink(false).show(ui, |ui| {
         let layout = match is_strip {
@@ -123,7 +122,7 @@ fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<
             }
             for version in found {
                 let thumbnail = version.thumbnail.as_ref().and_then(|thumbnail| own.thumbnails.of(thumbnail));
-                let entry = Entry { state, version, newest, thumbnail };
+                let entry = Entry { state, version, thumbnail };
                 let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
                 entry.respond(response, &mut own.asked, commands);
             }
@@ -146,8 +145,6 @@ fn is_found(state: &State, version: &Version, words: &Words) -> bool {
 struct Entry<'a> {
     state: &'a State,
     version: &'a Version,
-    /// The version on screen.
-    newest: u64,
     thumbnail: Option<&'a TextureHandle>,
 }
 
@@ -157,18 +154,17 @@ impl Entry<'_> {
     }
 
     fn can_show(&self) -> bool {
-        self.state.versions.can_show(self.version, self.newest)
+        self.state.can_show(self.version)
     }
 
     /// Whether a click on the version on screen ends a comparison, or shows the newest version in place of an older one.
     fn ends_something(&self) -> bool {
-        let is_now = self.version.number == self.newest;
-        is_now && (self.state.compare.is_on() || self.state.edits.restored.is_some())
+        self.state.shows_version(self.version) && (self.state.compare.is_on() || self.state.edits.restored.is_some())
     }
 
     /// Number and files.
     fn title(&self) -> String {
-        let now = if self.version.number == self.newest { " (now)" } else { "" };
+        let now = if self.state.shows_version(self.version) { " (now)" } else { "" };
         format!("{}{now}  {}", self.version.number, self.version.title())
     }
 
@@ -243,7 +239,7 @@ impl Entry<'_> {
     /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
     /// files.
     fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
-        let Self { state, version, newest, .. } = self;
+        let Self { state, version, .. } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
         if response.double_clicked() && can_show {
             commands
@@ -275,7 +271,7 @@ impl Entry<'_> {
                 ui.close();
             }
         });
-        let hint = match (can_show, version.number == *newest) {
+        let hint = match (can_show, state.shows_version(version)) {
             (true, _) if is_chosen => "Click to stop comparing, double click to show it alone",
             (true, _) => "Click to compare the picture with this version, double click to show it alone",
             (false, true) if state.compare.is_on() => "The picture on screen. Click to stop comparing",

@@ -23,8 +23,10 @@ pub(in crate::app) struct Thumbnail {
 
 /// One version of the shaders.
 pub(in crate::app) struct Version {
-    /// Its generation.
+    /// Its number, which stays: its first generation.
     pub(in crate::app) number: u64,
+    /// The newest generation with its texts: shaders get another when a version is shown again, or another expression is watched.
+    pub(in crate::app) generation: u64,
     /// When it was first on screen.
     pub(in crate::app) since: DateTime<Local>,
     /// The reload that made it.
@@ -36,20 +38,15 @@ pub(in crate::app) struct Version {
     pub(in crate::app) shaders: Arc<ShaderSet>,
     /// Whether a loop did not end in its picture.
     is_cut_short: bool,
-    /// Whether the files have other texts: numbers are dragged, or an older version is shown again. The next version replaces it.
+    /// Whether the files have other texts, because numbers are dragged. The next version replaces it.
     is_draft: bool,
-    /// The older version that it is again.
-    again: Option<u64>,
     /// The difference of its texts from the previous version.
     difference: OnceCell<Vec<Line>>,
 }
 
 impl Version {
-    /// The names of the changed files without folders, "whole tree", or the version that it is again.
+    /// The names of the changed files without folders, or "whole tree".
     pub(in crate::app) fn title(&self) -> String {
-        if let Some(number) = self.again {
-            return format!("version {number} again");
-        }
         let names: Vec<&str> = self.reload.changed.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
         if names.is_empty() { "whole tree".to_owned() } else { names.join(", ") }
     }
@@ -76,35 +73,33 @@ impl Versions {
         self.list.iter().find(|version| version.number == number)
     }
 
-    fn get_mut(&mut self, number: u64) -> Option<&mut Version> {
-        self.list.iter_mut().find(|version| version.number == number)
+    /// The version that a generation of the shaders shows.
+    pub(in crate::app) fn of_generation(&self, generation: u64) -> Option<&Version> {
+        self.list.iter().find(|version| version.generation == generation)
+    }
+
+    fn of_generation_mut(&mut self, generation: u64) -> Option<&mut Version> {
+        self.list.iter_mut().find(|version| version.generation == generation)
     }
 
     /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
     /// started again; the versions before are then dropped.
-    pub(in crate::app) fn add(
-        &mut self,
-        shaders: &Arc<ShaderSet>,
-        reload: ReloadEvent,
-        is_draft: bool,
-        again: Option<u64>,
-    ) {
-        if self.list.back().is_some_and(|last| last.number >= shaders.generation) {
+    pub(in crate::app) fn add(&mut self, shaders: &Arc<ShaderSet>, reload: ReloadEvent, is_draft: bool) {
+        let generation = shaders.generation;
+        if self.list.back().is_some_and(|last| last.generation >= generation) {
             self.list.clear();
         }
-        let ends_draft = self.list.back().is_some_and(|last| last.is_draft);
-        if ends_draft {
+        if self.list.back().is_some_and(|last| last.is_draft) {
             self.list.pop_back();
         }
-        // Watching another expression does not create a version; the sources are unchanged.
-        let may_be_same = ends_draft || reload.changed.is_empty();
-        let is_same = |last: &&mut Version| may_be_same && last.shaders.texts == shaders.texts;
-        if let Some(last) = self.list.back_mut().filter(is_same) {
-            (last.number, last.shaders) = (shaders.generation, shaders.clone());
+        // Watching another expression, and going back to the newest version, create none; the sources are unchanged.
+        if let Some(last) = self.list.back_mut().filter(|last| last.shaders.texts == shaders.texts) {
+            (last.generation, last.shaders) = (generation, shaders.clone());
             return;
         }
         self.list.push_back(Version {
-            number: shaders.generation,
+            number: generation,
+            generation,
             since: Local::now(),
             reload,
             device_ms: None,
@@ -112,7 +107,6 @@ impl Versions {
             shaders: shaders.clone(),
             is_cut_short: false,
             is_draft,
-            again,
             difference: OnceCell::new(),
         });
         self.list.drain(..self.list.len().saturating_sub(MOST));
@@ -120,14 +114,15 @@ impl Versions {
 
     /// Takes the shaders with the stages that were compiled later.
     pub(in crate::app) fn complete(&mut self, shaders: &Arc<ShaderSet>) {
-        if let Some(version) = self.get_mut(shaders.generation) {
+        if let Some(version) = self.of_generation_mut(shaders.generation) {
             version.shaders = shaders.clone();
         }
     }
 
     /// Records the times of a version's first frame. Those of the first frame with another watched expression do not count.
-    pub(in crate::app) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
-        if let Some(version) = self.get_mut(number).filter(|version| version.reload.first_frame_ms == 0.0) {
+    pub(in crate::app) fn time(&mut self, generation: u64, first_frame_ms: f64, device_ms: Option<f64>) {
+        if let Some(version) = self.of_generation_mut(generation).filter(|version| version.reload.first_frame_ms == 0.0)
+        {
             (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
         }
     }
@@ -140,22 +135,22 @@ impl Versions {
     }
 
     /// Takes the thumbnail of a version.
-    pub(in crate::app) fn set_thumbnail(&mut self, number: u64, thumbnail: Thumbnail) {
-        if let Some(version) = self.get_mut(number) {
+    pub(in crate::app) fn set_thumbnail(&mut self, generation: u64, thumbnail: Thumbnail) {
+        if let Some(version) = self.of_generation_mut(generation) {
             version.thumbnail = Some(Arc::new(thumbnail));
         }
     }
 
     /// Marks a version in which a loop did not end. It is not drawn again, since it would block the device again.
-    pub(in crate::app) fn cut_short(&mut self, number: u64) {
-        if let Some(version) = self.get_mut(number) {
+    pub(in crate::app) fn cut_short(&mut self, generation: u64) {
+        if let Some(version) = self.of_generation_mut(generation) {
             version.is_cut_short = true;
         }
     }
 
     /// Marks a version as good again: a setting had made its loop endless.
-    pub(in crate::app) fn loops_end(&mut self, number: u64) {
-        if let Some(version) = self.get_mut(number) {
+    pub(in crate::app) fn loops_end(&mut self, generation: u64) {
+        if let Some(version) = self.of_generation_mut(generation) {
             version.is_cut_short = false;
         }
     }
@@ -170,14 +165,14 @@ impl Versions {
         self.list.iter().rev().filter(|version| version.thumbnail.is_none() && !version.is_cut_short)
     }
 
-    /// Whether a version can be shown beside the version `newest`, which is on screen.
+    /// Whether a version can be shown beside the generation `newest`, which is on screen.
     pub(in crate::app) fn can_show(&self, version: &Version, newest: u64) -> bool {
-        version.number < newest && !version.is_cut_short
+        version.generation < newest && !version.is_cut_short
     }
 
-    /// The newest version before `newest`.
+    /// The newest version before the generation `newest`.
     pub(in crate::app) fn last_before(&self, newest: u64) -> Option<&Version> {
-        self.list.iter().rev().find(|version| version.number < newest)
+        self.list.iter().rev().find(|version| version.generation < newest)
     }
 
     /// The newest version before `newest` that can be shown.
@@ -187,7 +182,7 @@ impl Versions {
 
     /// The version that a version was made from, and the lines in which their texts differ.
     pub(in crate::app) fn difference<'a>(&'a self, version: &'a Version) -> &'a [Line] {
-        let before = self.last_before(version.number);
+        let before = self.last_before(version.generation);
         version.difference.get_or_init(|| {
             before.map(|before| difference(&before.shaders.texts, &version.shaders.texts)).unwrap_or_default()
         })
@@ -222,35 +217,35 @@ mod tests {
     #[test]
     fn the_newest_versions_are_kept() {
         let mut versions = Versions::default();
-        (1..=15).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false, None));
+        (1..=15).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false));
         assert_eq!(numbers(&versions), (4..=15).collect::<Vec<_>>());
         versions.drop_old();
         assert_eq!(numbers(&versions), [15]);
         // Another tree begins again at 1.
-        versions.add(&shaders(1, "another"), ReloadEvent::default(), false, None);
+        versions.add(&shaders(1, "another"), ReloadEvent::default(), false);
         assert_eq!(numbers(&versions), [1]);
     }
 
     #[test]
     fn dragged_numbers_make_one_version() {
         let mut versions = Versions::default();
-        versions.add(&shaders(1, "a"), save(), false, None);
-        versions.add(&shaders(2, "b"), save(), true, None);
-        versions.add(&shaders(3, "c"), save(), true, None);
+        versions.add(&shaders(1, "a"), save(), false);
+        versions.add(&shaders(2, "b"), save(), true);
+        versions.add(&shaders(3, "c"), save(), true);
         assert_eq!(numbers(&versions), [1, 3]);
         // The texts of the files are back, so it is the version before.
-        versions.add(&shaders(4, "a"), save(), false, None);
-        assert_eq!(numbers(&versions), [4]);
-        versions.add(&shaders(5, "d"), save(), true, None);
+        versions.add(&shaders(4, "a"), save(), false);
+        assert_eq!(numbers(&versions), [1]);
+        versions.add(&shaders(5, "d"), save(), true);
         versions.keep_draft();
-        versions.add(&shaders(6, "e"), save(), false, None);
-        assert_eq!(numbers(&versions), [4, 5, 6]);
+        versions.add(&shaders(6, "e"), save(), false);
+        assert_eq!(numbers(&versions), [1, 5, 6]);
     }
 
     #[test]
     fn a_version_whose_loop_did_not_end_is_passed_over() {
         let mut versions = Versions::default();
-        (1..=3).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false, None));
+        (1..=3).for_each(|number| versions.add(&shaders(number, &number.to_string()), save(), false));
         versions.cut_short(2);
         assert_eq!(versions.before(3).map(|version| version.number), Some(1));
         assert_eq!(versions.last_before(3).map(|version| version.number), Some(2));
@@ -260,14 +255,17 @@ mod tests {
     }
 
     #[test]
-    fn titles_name_files_or_the_version_that_is_shown_again() {
+    fn a_version_keeps_its_number_when_it_comes_back() {
         let mut versions = Versions::default();
-        versions.add(&shaders(1, "a"), ReloadEvent::default(), false, None);
-        versions.add(&shaders(2, "b"), save(), false, None);
-        versions.add(&shaders(3, "a"), save(), true, Some(1));
+        versions.add(&shaders(1, "a"), ReloadEvent::default(), false);
+        versions.add(&shaders(2, "b"), save(), false);
+        // Generation 3 showed version 1 again, which is no version of its own.
+        versions.add(&shaders(4, "b"), save(), false);
+        assert_eq!(numbers(&versions), [1, 2]);
+        assert_eq!(versions.of_generation(4).map(|version| version.number), Some(2));
+        assert_eq!(versions.before(4).map(|version| version.number), Some(1));
         let titles: Vec<String> = versions.iter().map(Version::title).collect();
-        assert_eq!(titles, ["whole tree", "a.glsl", "version 1 again"]);
-        let newest = versions.get(3).unwrap();
-        assert!(versions.difference(newest).iter().any(|line| line.text.contains('a')));
+        assert_eq!(titles, ["whole tree", "a.glsl"]);
+        assert!(versions.difference(versions.get(2).unwrap()).iter().any(|line| line.text.contains('b')));
     }
 }
