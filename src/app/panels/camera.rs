@@ -8,9 +8,10 @@ use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::numbers::Scale;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::{Row, drag, group, heading, option_text, option_value, set_option};
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::{ACCENT, QUIET};
+use crate::app::widgets::theme::{ACCENT, QUIET, body_font};
 use crate::scene::{CameraView, Model};
 use crate::settings::{CameraSettings, Curve, Settings, Value, setting};
 
@@ -54,7 +55,9 @@ pub(super) fn show(
     }
     for (index, camera) in model.cameras.iter().enumerate() {
         let name = if camera.name.is_empty() { "Unnamed camera" } else { &camera.name };
-        if ui.add(Button::new(name).truncate()).on_hover_text("Look through this camera").clicked() {
+        let shown = middle(ui.painter(), name, &body_font(), ui.available_width() - 12.0);
+        let button = ui.add(Button::new(shown).truncate());
+        if button.on_hover_text(format!("{name}\nLook through this camera")).clicked() {
             commands.push(LOOK_THROUGH.with(index));
         }
     }

@@ -9,8 +9,9 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::selection::Selected;
 use crate::app::state::workspace::TextureRequest;
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::search;
-use crate::app::widgets::theme::{EDGE, QUIET, small_mono_font};
+use crate::app::widgets::theme::{EDGE, QUIET, body_font, small_mono_font};
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
@@ -106,7 +107,9 @@ fn name_of(source: TextureSource, model: &Model) -> &str {
 /// The list of all textures with their names, with a search.
 fn list(ui: &mut Ui, own: &mut TextureState, source: TextureSource, all: &[(TextureSource, &str)]) {
     let name = all.iter().find(|(other, _)| *other == source).map_or("", |(_, name)| name);
-    let list = egui::ComboBox::from_id_salt("texture").selected_text(name).width(ui.available_width()).truncate();
+    // The box has an arrow and margins.
+    let shown = middle(ui.painter(), name, &body_font(), ui.available_width() - 34.0);
+    let list = egui::ComboBox::from_id_salt("texture").selected_text(shown).width(ui.available_width()).truncate();
     // A click into the search leaves the list open.
     let list = list.close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let list = list.show_ui(ui, |ui| {

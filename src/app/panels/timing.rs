@@ -11,7 +11,7 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::State;
 use crate::app::widgets::rows::elided;
-use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
+use crate::app::widgets::theme::{GOOD, QUIET, Tone, WARNING};
 use crate::gpu::MemoryUse;
 use crate::pipeline::grouped;
 
@@ -76,7 +76,7 @@ fn cpu(ui: &mut Ui, state: &State) {
             summary.p95,
             summary.max
         );
-        let color = if summary.p95 > UI_LIMIT_MS { WARNING.color() } else { graph::UI };
+        let color = if summary.p95 > UI_LIMIT_MS { WARNING } else { graph::UI };
         row(ui, ("Panels", color), &format!("{:.2} ms", last.ui_ms), &hint);
         let hint = "CPU time to record the commands of the last frame, without waiting for the device";
         row(ui, ("Recording", graph::RECORD), &format!("{:.2} ms", last.record_ms), hint);
@@ -86,12 +86,12 @@ fn cpu(ui: &mut Ui, state: &State) {
                  95th percentile {:.2}, maximum {:.2} ms",
                 whole.median, whole.p95, whole.max
             );
-            row(ui, ("Thread", QUIET.color()), &format!("{ms:.2} ms"), &hint);
+            row(ui, ("Thread", QUIET), &format!("{ms:.2} ms"), &hint);
         }
     });
 }
 
-fn row(ui: &mut Ui, (name, color): (&str, egui::Color32), value: &str, hint: &str) {
+fn row(ui: &mut Ui, (name, color): (&str, Tone), value: &str, hint: &str) {
     ui.label(RichText::new(name).small().color(color)).on_hover_text(hint);
     ui.label(RichText::new(value).monospace().small()).on_hover_text(hint);
     ui.end_row();
@@ -107,7 +107,7 @@ fn counts(ui: &mut Ui, state: &State, pipelines: usize) {
             ("Pipelines", pipelines as u64, "Pipelines kept for the newest 64 pictures, for bakes and for thumbnails"),
         ];
         for (name, value, hint) in all {
-            row(ui, (name, QUIET.color()), &grouped(value as f64), hint);
+            row(ui, (name, QUIET), &grouped(value as f64), hint);
         }
     });
 }
@@ -117,7 +117,7 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
     let mib = |bytes: u64| format!("{} MiB", grouped((bytes as f64 / f64::from(1 << 20)).round()));
     Grid::new("memory").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let hint = "Memory of images and buffers, and of the blocks that Specula's allocator has reserved for them";
-        row(ui, ("Device memory", QUIET.color()), &format!("{} of {}", mib(device.used), mib(device.reserved)), hint);
+        row(ui, ("Device memory", QUIET), &format!("{} of {}", mib(device.used), mib(device.reserved)), hint);
         for heap in &device.heaps {
             let name = if heap.is_device { "Device heap" } else { "Host heap" };
             let (value, hint) = match heap.used_of {
@@ -127,12 +127,12 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
                 ),
                 None => (mib(heap.size), "Size of the heap. This driver does not report how much is in use"),
             };
-            row(ui, (name, QUIET.color()), &value, hint);
+            row(ui, (name, QUIET), &value, hint);
         }
         if let Some(bytes) = process {
             row(
                 ui,
-                ("Process", QUIET.color()),
+                ("Process", QUIET),
                 &mib(bytes),
                 "Resident memory of Specula. On a software device this is device memory too",
             );

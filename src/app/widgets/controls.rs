@@ -98,14 +98,3 @@ pub(in crate::app) fn check(ui: &mut Ui, on: &mut bool) -> Response {
     ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
     response
 }
-
-/// A color picker for linear RGB.
-pub(in crate::app) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
-    // The picker rounds its color even while it is not used.
-    let mut edited = *linear;
-    let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
-    if response.changed() {
-        *linear = edited;
-    }
-    response
-}

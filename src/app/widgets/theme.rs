@@ -6,7 +6,8 @@ use std::cell::Cell;
 
 use egui::style::WidgetVisuals;
 use egui::{
-    Color32, CornerRadius, FontDefinitions, FontId, Id, LayerId, Popup, PopupAnchor, RichText, Stroke, TextStyle, Theme,
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id, LayerId, Popup, PopupAnchor, RichText,
+    Stroke, TextStyle, Theme,
 };
 
 /// Size of text, in points.
@@ -22,7 +23,7 @@ pub(in crate::app) struct Tone {
 }
 
 impl Tone {
-    const fn new(dark: u32, light: u32) -> Self {
+    pub(in crate::app) const fn new(dark: u32, light: u32) -> Self {
         Self { dark: opaque(dark), light: opaque(light) }
     }
 
@@ -90,8 +91,8 @@ pub(in crate::app) const GOOD: Tone = Tone::new(0x70c982, 0x2a732c);
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {
     pub(in crate::app) use egui_phosphor::regular::{
-        ARROWS_LEFT_RIGHT, CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON, QUESTION,
-        SQUARES_FOUR, SUN, X,
+        ARROWS_LEFT_RIGHT, BELL, CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON, QUESTION,
+        SKIP_BACK, SQUARES_FOUR, SUN, X,
     };
 }
 
@@ -99,6 +100,10 @@ pub(in crate::app) mod icon {
 pub(in crate::app) fn apply(egui: &egui::Context) {
     let mut fonts = FontDefinitions::default();
     egui_phosphor::add_to_fonts(&mut fonts, egui_phosphor::Variant::Regular);
+    // The π of the font for text reads as n.
+    let pi = FontData::from_static(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/pi.ttf")));
+    fonts.font_data.insert("pi".to_owned(), pi.into());
+    fonts.families.entry(FontFamily::Proportional).or_default().insert(0, "pi".to_owned());
     egui.set_fonts(fonts);
     for theme in [Theme::Dark, Theme::Light] {
         egui.style_mut_of(theme, |style| colors(style, theme));
@@ -165,6 +170,8 @@ fn colors(style: &mut egui::Style, theme: Theme) {
     visuals.error_fg_color = of(ERROR);
     visuals.warn_fg_color = of(WARNING);
     visuals.weak_text_color = Some(of(QUIET));
+    // Shaders have linear colors.
+    visuals.numeric_color_space = egui::style::NumericColorSpace::Linear;
     visuals.handle_shape = egui::style::HandleShape::Circle;
     let widget = |fill: Tone, line: Option<Tone>, text: Tone| WidgetVisuals {
         bg_fill: of(fill),

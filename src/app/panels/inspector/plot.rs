@@ -4,11 +4,11 @@ use egui::{Align2, Color32, Grid, Response, RichText, Stroke, Ui};
 use egui_plot::{Arrows, GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
 
 use crate::app::state::inspection::directions::Directions;
-use crate::app::widgets::theme::{ACCENT, QUIET, WARNING, small_font, small_mono};
+use crate::app::widgets::theme::{ACCENT, QUIET, Tone, WARNING, small_font, small_mono};
 use crate::measure::{Curves, Lobe, Material};
 
 /// Lines of the grid.
-pub(super) const GRID: Color32 = Color32::from_gray(52);
+pub(super) const GRID: Tone = Tone::new(0x343434, 0xb4bac2);
 /// Height of the polar plot, points.
 const TALL: f32 = 150.0;
 /// Height of the charts, points.
@@ -19,7 +19,7 @@ const DASHED: LineStyle = LineStyle::Dashed { length: 5.0 };
 /// A part of a lobe: its name, color and meaning.
 pub(super) struct Part {
     pub(super) name: &'static str,
-    pub(super) color: Color32,
+    pub(super) color: Tone,
     pub(super) doc: &'static str,
     of: fn(&Lobe) -> [f32; 3],
 }
@@ -28,25 +28,25 @@ pub(super) struct Part {
 pub(super) const PARTS: [Part; 4] = [
     Part {
         name: "sum",
-        color: Color32::from_rgb(222, 224, 230),
+        color: Tone::new(0xdee0e6, 0x24282d),
         doc: "f NoV: the part of the irradiance that leaves per steradian, 1/sr. Its integral over the hemisphere is the albedo",
         of: |lobe| std::array::from_fn(|c| lobe.diffuse[c] + lobe.specular[c] + lobe.multiple[c]),
     },
     Part {
         name: "diffuse",
-        color: Color32::from_rgb(240, 140, 66),
+        color: Tone::new(0xf08c42, 0xa85400),
         doc: "k_d times the selected diffuse model",
         of: |lobe| lobe.diffuse,
     },
     Part {
         name: "specular",
-        color: Color32::from_rgb(98, 160, 255),
+        color: Tone::new(0x62a0ff, 0x1a5fc4),
         doc: "D V F: single scattering between microfacets",
         of: |lobe| lobe.specular,
     },
     Part {
         name: "multiple scattering",
-        color: Color32::from_rgb(98, 200, 132),
+        color: Tone::new(0x62c884, 0x1d7a3c),
         doc: "Multiple scattering between microfacets",
         of: |lobe| lobe.multiple,
     },
@@ -168,8 +168,8 @@ pub(super) fn albedo(ui: &mut Ui, name: &str, values: &Pair<'_, [[f32; 3]]>, eye
     let plot = plain(name, LOW).include_x(-3.0).include_x(95.0).include_y(0.0).include_y(most).y_axis_min_width(26.0);
     let marks = |_| [0.0, 30.0, 60.0, 90.0].map(|value| GridMark { value, step_size: 30.0 }).to_vec();
     let plot = plot.x_grid_spacer(marks).x_axis_formatter(|mark, _| format!("{:.0}°", mark.value));
-    let shown = plot.set_margin_fraction(egui::Vec2::ZERO).grid_color(GRID).show(ui, |plot| {
-        plot.hline(HLine::new("1", 1.0).color(Color32::from_gray(110)).width(1.0).allow_hover(false));
+    let shown = plot.set_margin_fraction(egui::Vec2::ZERO).grid_color(GRID.color()).show(ui, |plot| {
+        plot.hline(HLine::new("1", 1.0).color(QUIET).width(1.0).allow_hover(false));
         plot.vline(VLine::new("eye", eye_deg.clamp(0.0, 90.0)).color(ACCENT).width(1.0).allow_hover(false));
         for (values, is_dashed) in values.each() {
             channels(plot, values, is_dashed);
@@ -196,7 +196,7 @@ pub(super) fn albedo(ui: &mut Ui, name: &str, values: &Pair<'_, [[f32; 3]]>, eye
 
 /// Draws the channels, or one line where they are equal.
 fn channels(plot: &mut PlotUi<'_>, values: &[[f32; 3]], is_dashed: bool) {
-    let colors = [Color32::from_rgb(255, 105, 97), Color32::from_rgb(119, 221, 119), Color32::from_rgb(110, 160, 255)];
+    let colors = [Tone::new(0xff6961, 0xb8241c), Tone::new(0x77dd77, 0x1d7a3c), Tone::new(0x6ea0ff, 0x1a5fc4)];
     let is_gray = values.iter().all(|[r, g, b]| (r - g).abs().max((r - b).abs()) < 2e-3);
     for (channel, color) in colors.into_iter().enumerate().take(if is_gray { 1 } else { 3 }) {
         let point = |(index, rgb): (usize, &[f32; 3])| [Curves::angle_deg(index).into(), rgb[channel].into()];
@@ -206,7 +206,7 @@ fn channels(plot: &mut PlotUi<'_>, values: &[[f32; 3]], is_dashed: bool) {
 }
 
 /// Draws a line through points. Non-finite points interrupt it.
-fn curve(plot: &mut PlotUi<'_>, name: &str, color: Color32, points: &[[f64; 2]], is_dashed: bool) {
+fn curve(plot: &mut PlotUi<'_>, name: &str, color: Tone, points: &[[f64; 2]], is_dashed: bool) {
     let (width, style) = if is_dashed { (1.2, DASHED) } else { (1.6, LineStyle::Solid) };
     for part in points.split(|[x, y]| !x.is_finite() || !y.is_finite()) {
         if part.len() > 1 {

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::plot::{GRID, luminance};
 use crate::app::state::inspection::directions::Directions;
-use crate::app::widgets::theme::{ACCENT, WARNING, small_font};
+use crate::app::widgets::theme::{ACCENT, CARD, WARNING, small_font};
 use crate::measure::Hemisphere;
 
 /// Angle of the view above the horizon, degrees, at most and at least.
@@ -73,11 +73,11 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
     front.into_iter().for_each(|(towards, color, name, inwards)| arrow(towards, color, name, inwards));
 }
 
-/// The name of an arrow, with its color, on a dark ground.
+/// The name of an arrow, with its color, on a ground of its own.
 fn draw_name(painter: &Painter, at: Pos2, text: &str, color: Color32) {
     let galley = painter.layout_no_wrap(text.to_owned(), small_font(), color);
     let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
-    painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, Color32::from_black_alpha(140));
+    painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, CARD.color().gamma_multiply(0.7));
     painter.galley(rect.min, galley, color);
 }
 

@@ -13,9 +13,10 @@ use crate::app::panels::lights;
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::{LightId, Selected, common_material, name_or};
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::heading;
-use crate::app::widgets::theme::{ACCENT, QUIET};
+use crate::app::widgets::theme::{ACCENT, QUIET, body_font};
 use crate::frame::Scene;
 use crate::scene::{Bounds, Model};
 use crate::settings::{LightSource, Settings};
@@ -135,8 +136,9 @@ fn parts(
         used.dedup();
         for index in used {
             let name = model.material_key(index);
-            let link = ui.add(Button::new(RichText::new(name).color(ACCENT)).frame(false).truncate());
-            if link.on_hover_text("Select the material").clicked() {
+            let shown = middle(ui.painter(), &name, &body_font(), ui.available_width());
+            let link = ui.add(Button::new(RichText::new(shown).color(ACCENT)).frame(false).truncate());
+            if link.on_hover_text(format!("{name}\nSelect the material")).clicked() {
                 commands.push(SELECT.with(Selected::Material(index)));
             }
         }

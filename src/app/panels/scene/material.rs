@@ -10,7 +10,8 @@ use crate::app::command::spec::Command;
 use crate::app::numbers::Scale;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
-use crate::app::widgets::rows::{Row, color, edit_number, heading, set_option, short};
+use crate::app::widgets::color;
+use crate::app::widgets::rows::{Row, edit_number, heading, set_option, short};
 use crate::app::widgets::theme::{ACCENT, QUIET, WARNING};
 use crate::frame::Scene;
 use crate::scene::{Material, MaterialFactor, material_factors, slot_name};
@@ -97,7 +98,7 @@ fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, fiel
     let row = Row { name: entry.label, doc: entry.doc(), option, is_changed: set.is_some(), is_indented: false };
     let mut now = before;
     let resets = row.show(ui, |ui| match &mut now {
-        FactorValue::Color(linear) => color(ui, linear),
+        FactorValue::Color(linear) => color::edit(ui, linear),
         FactorValue::Number(number) => {
             let mut shown = number.to_string().parse().unwrap_or(f64::from(*number));
             let response = edit_number(ui, entry.label, &mut shown, &Scale::of(entry));

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyl
 
 use super::tree::TreeRow;
 use crate::app::state::selection::Selected;
+use crate::app::widgets::elide;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{EDGE, QUIET, STRONG};
 
@@ -75,9 +76,8 @@ pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Actio
         (.., true) => STRONG.color(),
         _ => ui.visuals().text_color(),
     };
-    let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), body, color);
-    job.wrap = egui::text::TextWrapping::truncate_at_width((detail.left() - 6.0 - x).max(0.0));
-    let galley = painter.layout_job(job);
+    let name = elide::middle(painter, &row.name, &body, (detail.left() - 6.0 - x).max(0.0));
+    let galley = painter.layout_no_wrap(name, body, color);
     let corner = pos2(x, middle - 0.5 * galley.size().y);
     painter.galley(corner, galley, color);
     if action.is_some() {

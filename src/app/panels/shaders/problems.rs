@@ -8,10 +8,11 @@ use crate::app::command::file::EDIT;
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::State;
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, WARNING};
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, WARNING, small_font};
 use crate::shader::{Diagnostic, Severity};
 
 /// Height of a line, in points.
@@ -57,8 +58,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         for line in &lines[range] {
             match line {
                 Line::File(file, count) => {
-                    let text = RichText::new(format!("{file}   {}", plural(*count, "problem"))).small().strong();
-                    ui.add(elided(text)).on_hover_text(*file);
+                    let text = format!("{file}   {}", plural(*count, "problem"));
+                    let shown = middle(ui.painter(), &text, &small_font(), ui.available_width());
+                    ui.add(elided(RichText::new(shown).small().strong())).on_hover_text(*file);
                 }
                 Line::Diagnostic(diagnostic) => one(ui, diagnostic, has_files, commands),
             }

@@ -9,8 +9,9 @@ use crate::app::command::spec::Command;
 use crate::app::state::State;
 use crate::app::state::shaders::stages::{StageRow, StageState};
 use crate::app::widgets::check_box;
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::elided;
-use crate::app::widgets::theme::{ERROR, GOOD, QUIET, WARNING};
+use crate::app::widgets::theme::{ERROR, GOOD, QUIET, WARNING, small_font};
 use crate::pipeline::{Figure, all_statistics, grouped};
 
 /// A list narrower than this has two lines for each stage, in points.
@@ -93,7 +94,8 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
     let (name, meaning) = row.state.words();
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, LINE), Sense::hover());
     ui.painter().circle_filled(rect.center(), 3.5, color(row.state));
-    let label = elided(RichText::new(&row.path).small()).selectable(false).sense(Sense::click());
+    let shown = middle(ui.painter(), &row.path, &small_font(), width.max(60.0));
+    let label = elided(RichText::new(shown).small()).selectable(false).sense(Sense::click());
     let left = egui::Layout::left_to_right(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(egui::vec2(width.max(60.0), LINE), left, |ui| {
         ui.set_min_width(width.max(60.0));

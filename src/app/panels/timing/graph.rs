@@ -3,29 +3,29 @@
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::state::timing::{FRAMES, Timing};
-use crate::app::widgets::theme::{EDGE, QUIET, WARNING, small_font};
+use crate::app::widgets::theme::{EDGE, LINE, QUIET, TEXT, Tone, WARNING, small_font};
 
 /// Heights of the graphs, in points.
 const PASSES: f32 = 64.0;
 const CPU: f32 = 36.0;
 /// Colors of passes, by their place in the frame. The last color is shared by all further passes.
-const COLORS: [Color32; 8] = [
-    Color32::from_rgb(94, 182, 255),
-    Color32::from_rgb(255, 176, 84),
-    Color32::from_rgb(126, 204, 128),
-    Color32::from_rgb(214, 130, 214),
-    Color32::from_rgb(240, 226, 110),
-    Color32::from_rgb(106, 206, 206),
-    Color32::from_rgb(232, 120, 116),
-    Color32::from_rgb(140, 144, 152),
+const COLORS: [Tone; 8] = [
+    Tone::new(0x5eb6ff, 0x1f7fd1),
+    Tone::new(0xffb054, 0xc87400),
+    Tone::new(0x7ecc80, 0x3c8c40),
+    Tone::new(0xd682d6, 0xa04aa0),
+    Tone::new(0xf0e26e, 0x9a8a00),
+    Tone::new(0x6acece, 0x138c8c),
+    Tone::new(0xe87874, 0xc0403a),
+    Tone::new(0x8c9098, 0x6a6e76),
 ];
 /// Colors of the CPU's graph.
-pub(super) const UI: Color32 = COLORS[0];
-pub(super) const RECORD: Color32 = COLORS[1];
+pub(super) const UI: Tone = COLORS[0];
+pub(super) const RECORD: Tone = COLORS[1];
 
 /// The color of the pass at this place.
 pub(super) fn color(index: usize) -> Color32 {
-    COLORS[index.min(COLORS.len() - 1)]
+    COLORS[index.min(COLORS.len() - 1)].color()
 }
 
 /// The value at the top of a graph: a round number above nearly all values, so that one slow frame does not flatten the rest.
@@ -96,7 +96,7 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
             low += ms;
         }
         // Device time outside of all passes.
-        columns.add(edges, (low, sample.device_ms), Color32::from_gray(60));
+        columns.add(edges, (low, sample.device_ms), LINE.color());
     }
     painter.add(Shape::mesh(columns.mesh));
     edits(&painter, rect, timing);
@@ -129,7 +129,7 @@ fn edits(painter: &Painter, rect: Rect, timing: &Timing) {
     let pairs = pictures.iter().zip(pictures.iter().skip(1)).enumerate();
     for (index, _) in pairs.filter(|(_, (old, new))| old.shown.generation != new.shown.generation) {
         let (left, _) = Columns::edges(rect, index + 1, pictures.len());
-        painter.vline(left, rect.y_range(), Stroke::new(1.0, Color32::from_gray(230)));
+        painter.vline(left, rect.y_range(), Stroke::new(1.0, TEXT));
     }
 }
 
@@ -141,8 +141,8 @@ pub(super) fn cpu(ui: &mut Ui, timing: &Timing, limit: f64) {
     let mut columns = Columns { mesh: Mesh::default(), rect, top };
     for (index, frame) in frames.iter().enumerate() {
         let edges = Columns::edges(rect, index, frames.len());
-        columns.add(edges, (0.0, frame.ui_ms), UI);
-        columns.add(edges, (frame.ui_ms, frame.ui_ms + frame.record_ms), RECORD);
+        columns.add(edges, (0.0, frame.ui_ms), UI.color());
+        columns.add(edges, (frame.ui_ms, frame.ui_ms + frame.record_ms), RECORD.color());
     }
     painter.add(Shape::mesh(columns.mesh));
     let y = rect.bottom() - rect.height() * (limit / top) as f32;

@@ -4,7 +4,7 @@ use egui::{Grid, RichText, Sense, Ui, vec2};
 
 use super::graph;
 use crate::app::state::timing::Timing;
-use crate::app::widgets::theme::{GOOD, QUIET, WARNING};
+use crate::app::widgets::theme::{GOOD, QUIET, TEXT, WARNING};
 
 /// Size of the history of a pass, in points.
 const HISTORY: egui::Vec2 = vec2(60.0, 12.0);
@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, timing: &Timing, names: &[String]) {
         let whole =
             std::iter::once(("Whole frame", None)).chain(names.iter().enumerate().map(|(i, n)| (n.as_str(), Some(i))));
         for (name, place) in whole {
-            let color = place.map_or(egui::Color32::from_gray(200), graph::color);
+            let color = place.map_or(TEXT.color(), graph::color);
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(vec2(8.0, 8.0), Sense::hover());
                 ui.painter().rect_filled(rect, 1.0, color);
