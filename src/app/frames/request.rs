@@ -7,7 +7,6 @@ use crate::app::engine::Engine;
 use crate::app::interface::Shown;
 use crate::app::screen::{FrameRequest, OutlineRequest, TextureDraw};
 use crate::app::state::State;
-use crate::app::state::selection::stands_out;
 use crate::app::widgets::theme::SELECTION;
 use crate::render::tools::OutlineStyle;
 use crate::render::{BoundFrame, Redraw};
@@ -55,7 +54,7 @@ fn outline(
 ) -> Option<OutlineRequest> {
     let selected = selected_instances(state);
     let scene = frame.filter(|frame| frame.state.pipelines.draws_model)?.state.scene.as_ref()?;
-    if selected.is_empty() || !stands_out(scene, &selected) {
+    if selected.is_empty() {
         return None;
     }
     let [r, g, b, _] = SELECTION.to_array().map(|channel| f32::from(channel) / 255.0);

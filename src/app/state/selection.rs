@@ -103,14 +103,6 @@ impl Selected {
     }
 }
 
-/// Whether an outline of these instances is informative: others are drawn, too, or they belong to several nodes.
-pub(in crate::app) fn stands_out(scene: &Scene, instances: &[bool]) -> bool {
-    let nodes: Vec<(usize, usize)> =
-        scene.numbered_instances().map(|(index, instance)| (index, instance.node)).collect();
-    let is_other = |(index, node): &(usize, usize)| *node != nodes[0].1 || instances.get(*index) != Some(&true);
-    nodes.iter().any(is_other)
-}
-
 /// The material that all of these instances have.
 pub(in crate::app) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize> {
     let selected = scene.model().instances.iter().zip(instances).filter(|(_, is)| **is);
@@ -129,7 +121,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BUILT_IN, Instance, built_in};
+    use crate::scene::{BUILT_IN, built_in};
     use crate::settings::Settings;
 
     #[test]
@@ -156,21 +148,6 @@ mod tests {
         assert_eq!(selected.clicked(Some(1)), Selected::Instance(1));
         assert_eq!(selected.clicked(Some(2)), Selected::Nothing);
         assert_eq!(selected.clicked(None), Selected::Nothing);
-    }
-
-    #[test]
-    fn a_model_of_one_node_gets_no_outline() {
-        let mut model = built_in(BUILT_IN[0]).unwrap().unwrap();
-        let outlined = |model: &Model, selected: Selected| {
-            let scene = Scene::new(&Arc::new(model.clone()), &Settings::default());
-            stands_out(&scene, &selected.instances(&scene))
-        };
-        assert!(outlined(&model, Selected::Instance(0)), "a part of several");
-        model.instances.truncate(1);
-        assert!(!outlined(&model, Selected::Instance(0)));
-        let other = Instance { node: model.instances[0].node + 1, ..model.instances[0].clone() };
-        model.instances.push(other);
-        assert!(outlined(&model, Selected::Instance(0)));
     }
 
     #[test]
