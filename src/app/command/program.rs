@@ -12,10 +12,6 @@ pub(in crate::app) static LEARN: Spec<LearnCommand> = Spec::act("learn", learn);
 /// Shows a message for a few seconds.
 pub(in crate::app) static SAY: Spec<String> = Spec::act("say", |state, _, text: String| state.say(text));
 
-/// Hides the diagnostics until the next reload.
-pub(in crate::app) static HIDE_DIAGNOSTICS: Spec<()> =
-    Spec::plain("hide-diagnostics", |state, _, ()| state.session.diagnostics.clear());
-
 /// Hides the kept messages and the warnings of the model.
 pub(in crate::app) static HIDE_WARNINGS: Spec<()> = Spec::plain("hide-warnings", |state, _, ()| {
     state.notices.dismiss();

@@ -11,7 +11,7 @@ use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
 use super::panel_ui::PanelSpec;
 use super::timeline::comparison;
-use super::{PANELS, Panel, camera, capture, output};
+use super::{PANELS, Panel, camera, capture, output, overlay};
 use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA, VIEW_FROM, ViewSide};
 use crate::app::command::compare::{COMPARE, CompareFields};
 use crate::app::command::file::CHOOSE;
@@ -29,7 +29,7 @@ use crate::render::BakeReport;
 use crate::scene::{Bounds, CameraView, Model, built_in};
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
 use crate::shader::annotation::ParameterType;
-use crate::shader::{Encode, Mode, Numbers, Parameter, ShaderSet, Source};
+use crate::shader::{Diagnostic, Encode, Mode, Numbers, Parameter, ShaderSet, Source};
 
 fn harness<'a, T: 'a>(state: T, mut show: impl FnMut(&mut egui::Ui, &mut T) + 'a) -> Harness<'a, T> {
     let mut has_theme = false;
@@ -293,6 +293,37 @@ fn frames(size: egui::Vec2, state: &State, mut show: impl FnMut(&mut egui::Ui, &
 struct Shown {
     labels: Vec<String>,
     asked: Vec<Command>,
+}
+
+#[test]
+fn errors_are_hidden_until_they_change() {
+    let mut state = with_a_model();
+    state.session.diagnostics = vec![Diagnostic::error("a.glsl", "the first error")];
+    let mut own = overlay::Overlay::default();
+    let mut harness = harness(state, move |ui, state| {
+        let (thumbnails, baked) = (Thumbnails::default(), BakeReport::default());
+        let readings = Readings {
+            baking: None,
+            baked: &baked,
+            memory: None,
+            thumbnails: &thumbnails,
+            texture: None,
+            pipelines: 0,
+            value: None,
+            title: None,
+            legend: None,
+        };
+        let (egui, picture, mut commands) = (ui.ctx().clone(), ui.max_rect(), Commands::new(&state.session.settings));
+        overlay::show(&egui, &Context::new(state, readings), &mut own, true, picture, &mut commands);
+    });
+    harness.get_by_label("the first error");
+    harness.get_by_role_and_label(Role::Button, "Hide").click();
+    harness.run();
+    assert!(harness.query_by_label("the first error").is_none());
+    harness.state_mut().session.diagnostics.push(Diagnostic::error("a.glsl", "the second error"));
+    harness.run();
+    harness.get_by_label("the second error");
+    assert_eq!(harness.state().session.diagnostics.len(), 2, "hiding forgets nothing");
 }
 
 const SIZES: [egui::Vec2; 2] = [egui::vec2(190.0, 420.0), egui::vec2(900.0, 240.0)];

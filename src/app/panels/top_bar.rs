@@ -1,14 +1,16 @@
 //! The bar above the picture: arrangements of the panels, the command palette and the list of keys.
 
-use egui::{Button, Checkbox, RichText, Ui, vec2};
+use egui::{Button, Checkbox, Label, RichText, ScrollArea, Ui, vec2};
 
 use crate::app::command::file::{CHOOSE, OPEN, Open, RESTORE_ALWAYS, RESTORE_SESSION, SHOW_GALLERY};
 use crate::app::command::spec::Command;
 use crate::app::layout::Layout;
 use crate::app::palette::Palette;
+use crate::app::state::State;
 use crate::app::state::arrangement::{Panel, Preset};
 use crate::app::state::dialog::Dialog;
 use crate::app::state::last_session::LastSessions;
+use crate::app::state::notices::{Notice, Notices};
 use crate::app::state::recent::{Kind, Recent};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{BAR, QUIET, icon, small_mono};
@@ -20,7 +22,7 @@ pub(super) const HEIGHT: f32 = 30.0;
 pub(super) fn show(
     ui: &mut Ui,
     (layout, palette, show_keys): (&mut Layout, &mut Palette, &mut bool),
-    (recent, last): (&Recent, &LastSessions),
+    state: &State,
     commands: &mut Vec<Command>,
 ) {
     let frame = egui::Frame::new().fill(BAR.color()).inner_margin(egui::Margin::symmetric(8, 3));
@@ -29,7 +31,7 @@ pub(super) fn show(
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Specula").strong().color(theme::ACCENT));
             ui.add_space(6.0);
-            open(ui, recent, last, commands);
+            open(ui, &state.recent, &state.last_sessions, commands);
             panels(ui, layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
@@ -55,6 +57,7 @@ pub(super) fn show(
                 if named(ui.button(symbol), hint).on_hover_text(hint).clicked() {
                     layout.set_light(!is_light);
                 }
+                messages(ui, &state.notices);
                 let width = (ui.available_width() - 8.0).min(300.0);
                 if width > 120.0 {
                     let text = RichText::new(format!("{}  Find a mode, setting or command", icon::MAGNIFYING_GLASS))
@@ -104,8 +107,7 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
             ui.separator();
             ui.label(RichText::new(title).small().color(QUIET));
             for path in recent.of(kind) {
-                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                if ui.button(kind.name_of(path)).on_hover_text(path.display().to_string()).clicked() {
                     let path = path.clone();
                     commands.push(match kind {
                         Kind::Model => OPEN.with(Open::Model(path)),
@@ -117,6 +119,23 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
         }
     });
     named(menu.response, "Open").on_hover_text("Open a model, an environment or shaders");
+}
+
+/// The list of the messages so far.
+fn messages(ui: &mut Ui, notices: &Notices) {
+    let menu = ui.menu_button(icon::BELL, |ui| {
+        ui.set_width(420.0);
+        if notices.past().len() == 0 {
+            ui.label(RichText::new("No messages yet").color(QUIET));
+        }
+        ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+            for Notice { text, at, .. } in notices.past() {
+                ui.label(small_mono(at.format("%H:%M:%S").to_string()).color(QUIET));
+                ui.add(Label::new(text).wrap());
+            }
+        });
+    });
+    named(menu.response, "Messages").on_hover_text("The messages so far");
 }
 
 /// The menu that opens and closes panels, and resets their arrangement.

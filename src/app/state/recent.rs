@@ -18,6 +18,17 @@ pub(in crate::app) enum Kind {
     Tree,
 }
 
+impl Kind {
+    /// The name of a file in a list. Many trees are called `shaders` or `image.glsl`, so theirs begins with the folder.
+    pub(in crate::app) fn name_of(self, path: &Path) -> String {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        match path.parent().and_then(Path::file_name).filter(|_| self == Self::Tree) {
+            Some(folder) => format!("{}/{name}", folder.to_string_lossy()),
+            None => name.into_owned(),
+        }
+    }
+}
+
 /// Absolute paths of files that could be opened, the newest first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

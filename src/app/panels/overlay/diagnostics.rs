@@ -41,7 +41,10 @@ pub(super) struct Shown<'a> {
     pub(super) picture: Rect,
 }
 
-/// Shows the card. Returns its rectangle, and whether the user hides it, which is possible only without errors.
+/// Largest part of the picture's height that the list takes, so that the picture stays in sight.
+const PART: f32 = 0.45;
+
+/// Shows the card. Returns its rectangle, and whether the user hides it.
 pub(super) fn show(
     egui: &egui::Context,
     shown: &Shown<'_>,
@@ -58,13 +61,14 @@ pub(super) fn show(
     let response = area.show(egui, |ui| {
         card(if failed { ERROR } else { WARNING }).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).max(200.0));
-            if diagnostics.len() > 1 || !failed {
-                ui.horizontal(|ui| {
-                    ui.label(RichText::new(counts(diagnostics)).strong());
-                    hide = !failed && ui.small_button("Hide").on_hover_text("Hide until the next reload").clicked();
-                });
-            }
-            egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(counts(diagnostics)).strong());
+                let hover = "Hide them until they change. The panel Shaders lists them";
+                hide = ui.small_button("Hide").on_hover_text(hover).clicked();
+            });
+            // The fade has the color of panels, and would lie over the card as a bar.
+            ui.spacing_mut().scroll.fade.strength = 0.0;
+            egui::ScrollArea::vertical().max_height((picture.height() * PART).max(40.0)).show(ui, |ui| {
                 for diagnostic in diagnostics {
                     one(ui, diagnostic, files.is_file(&diagnostic.file), commands);
                 }

@@ -12,20 +12,20 @@ use crate::app::state::exercise::LearnCommand;
 use crate::app::widgets::theme::{ACCENT, QUIET};
 use crate::learn::exercises;
 
-/// Shows the card while the hint is not dismissed.
-pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) {
+/// Shows the card while the hint is not dismissed. Returns its rectangle.
+pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands: &mut Vec<Command>) -> Option<Rect> {
     if !state.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
-        return;
+        return None;
     }
     // Which tree it is is known with the first shaders. A single file is the user's own already.
     if state.shader.tree.is_empty() || state.shader.is_single_file {
-        return;
+        return None;
     }
     let tree = state.shader.location.clone();
     // An area keeps its first size, so another text is another area.
     let id = Id::new(("hint", tree.is_some(), picture.width() as u32));
     let mut is_done = false;
-    area(id, Align2::RIGHT_BOTTOM, picture).fade_in(false).show(egui, |ui| {
+    let shown = area(id, Align2::RIGHT_BOTTOM, picture).fade_in(false).show(egui, |ui| {
         card(ACCENT).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).clamp(200.0, 400.0));
             match tree {
@@ -60,6 +60,7 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
     if is_done {
         commands.push(DISMISS_HINT.with(()));
     }
+    Some(shown.response.rect)
 }
 
 /// A row of buttons: the given ones, the exercises, and the end of the hint.

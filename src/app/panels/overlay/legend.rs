@@ -141,7 +141,9 @@ fn range(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings) {
             ui.label(RichText::new(short(high)).monospace().small());
         }
         None => {
-            let text = format!("{:+.1} EV · {}", -view.ev, choice_name(&view.tonemap));
+            // Adding 0 takes the sign from a number that rounds to -0.
+            let ev = (-10.0 * view.ev).round() / 10.0 + 0.0;
+            let text = format!("{ev:+.1} EV · {}", choice_name(&view.tonemap));
             let label = ui.label(RichText::new(text).monospace().small());
             label.on_hover_text("Exposure compensation and tone map of this light");
         }

@@ -18,13 +18,14 @@ use egui::{Align2, Id, Rect, RichText, TextStyle};
 
 use super::inspector::marker;
 use crate::app::command::layout::PANELS;
-use crate::app::command::program::{HIDE_DIAGNOSTICS, HIDE_WARNINGS};
+use crate::app::command::program::HIDE_WARNINGS;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::State;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme::{LINE, WARNING};
+use crate::shader::Diagnostic;
 use card::{area, card, wrapped};
 use compare::ShownMap;
 use diagnostics::{Files, Shown};
@@ -44,6 +45,8 @@ const NAMES: f32 = 36.0;
 pub(in crate::app) struct Overlay {
     legend: LegendState,
     files: Files,
+    /// The diagnostics that the user has hidden. Others are shown again.
+    hidden: Vec<Diagnostic>,
     gizmo: Gizmo,
     labels: Labels,
     map: ShownMap,
@@ -62,17 +65,20 @@ pub(super) fn show(
     in_picture(egui, context, own, with_panels, picture, commands);
     let diagnostics = &state.session.diagnostics;
     let mut free = picture;
-    if !diagnostics.is_empty() {
+    if diagnostics.is_empty() {
+        own.hidden.clear();
+    }
+    if *diagnostics != own.hidden {
         let shown = Shown { diagnostics, cut_short: state.is_cut_short(), picture };
         let (card, hides) = diagnostics::show(egui, &shown, &mut own.files, &mut commands.list);
         free.max.y = card.top();
         if hides {
-            commands.push(HIDE_DIAGNOSTICS.with(()));
+            own.hidden.clone_from(diagnostics);
         }
     } else if let Some(error) = state.shown_expression_error() {
         free.max.y = watched::show(egui, error, picture, &mut own.files, commands).top();
-    } else if with_panels {
-        hint::show(egui, state, picture, &mut commands.list);
+    } else if let Some(card) = with_panels.then(|| hint::show(egui, state, picture, &mut commands.list)).flatten() {
+        free.max.y = card.top();
     }
     restore::show(egui, state, picture, &mut commands.list);
     version::show(egui, state, picture, &mut commands.list);
@@ -131,17 +137,24 @@ fn warnings(egui: &egui::Context, state: &State, picture: Rect, commands: &mut V
     }
 }
 
-/// The passing message, or that a model is loading. `free` is the part of the picture above the diagnostics.
+/// The passing messages, or that a model is loading. `free` is the part of the picture above the diagnostics.
 fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
     let has_model = state.session.model().is_some_and(|model| !model.instances.is_empty());
     // If no model could be loaded, the message stays.
     let stays = !has_model && !state.model.loading;
-    let notice = state.notices.passing(stays);
-    if let Some((_, left)) = notice.filter(|_| !stays) {
-        egui.request_repaint_after(left);
+    let mut texts: Vec<&str> = Vec::new();
+    for (text, left) in state.notices.passing(stays) {
+        if !stays {
+            egui.request_repaint_after(left);
+        }
+        texts.push(text);
     }
-    let loading = state.model.loading.then_some("Loading the model…");
-    let Some(text) = notice.map(|(text, _)| text).or(loading) else { return };
+    if texts.is_empty() && state.model.loading {
+        texts.push("Loading the model…");
+    }
+    if texts.is_empty() {
+        return;
+    }
     // Where the diagnostics leave no room below, it stands at the top.
     let above_names = if state.compare.is_on() { NAMES } else { 0.0 };
     let (corner, room) = match free.height() >= NOTICE {
@@ -152,7 +165,9 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
         card(LINE.color()).show(ui, |ui| {
             let font = TextStyle::Body.resolve(ui.style());
             let color = ui.visuals().text_color();
-            ui.label(wrapped(ui, text, font, color, room.width().min(620.0)));
+            for text in texts {
+                ui.label(wrapped(ui, text, font.clone(), color, room.width().min(620.0)));
+            }
         });
     });
 }
