@@ -1,8 +1,11 @@
 //! Tells what a file or folder is, by its ending and content, so that a wrong one is answered with what to do with it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::shader::is_specula_tree;
+
+/// Most files of a folder that are listed.
+const MOST_LISTED: usize = 5000;
 
 /// The use that Specula has for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +29,11 @@ pub enum FileKind {
 }
 
 impl FileKind {
+    /// Whether it is a folder.
+    pub fn is_folder(self) -> bool {
+        matches!(self, Self::ShaderTree | Self::Folder)
+    }
+
     /// The kind of `path`. Only folders are read.
     pub fn of(path: &Path) -> Self {
         if path.is_dir() {
@@ -40,4 +48,42 @@ impl FileKind {
             _ => Self::Other,
         }
     }
+}
+
+/// The model in a folder that is no shader tree, if it is the only one.
+pub fn only_model(path: &Path) -> Option<PathBuf> {
+    let mut models = models_in(path).into_iter().filter(|_| FileKind::of(path) == FileKind::Folder);
+    models.next().filter(|_| models.next().is_none()).map(PathBuf::from)
+}
+
+/// Paths of the models in a folder, sorted; none where it cannot be read.
+pub fn models_in(folder: &Path) -> Vec<String> {
+    let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let names = std::fs::read_dir(place).into_iter().flatten().flatten().map(|entry| folder.join(entry.file_name()));
+    let is_model =
+        |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"));
+    let mut models: Vec<String> = names.filter(|path| is_model(path)).map(|path| path.display().to_string()).collect();
+    models.sort();
+    models
+}
+
+/// A file or folder in a folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Listed {
+    pub(crate) name: String,
+    pub(crate) kind: FileKind,
+}
+
+/// The folders in a folder, then its files, by their names.
+///
+/// # Errors
+/// A message: it cannot be read.
+pub(crate) fn list(folder: &Path) -> Result<Vec<Listed>, String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let listed = |entry: std::fs::DirEntry| {
+        Some(Listed { kind: FileKind::of(&entry.path()), name: entry.file_name().into_string().ok()? })
+    };
+    let mut files: Vec<Listed> = entries.flatten().take(MOST_LISTED).filter_map(listed).collect();
+    files.sort_by_key(|file| (!file.kind.is_folder(), file.name.to_lowercase()));
+    Ok(files)
 }

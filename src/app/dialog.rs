@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::state::dialog::Dialog;
 use crate::shader::embedded;
+use crate::threads::NoDialog;
 
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
 const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
@@ -16,8 +17,8 @@ const SHORTEST: Duration = Duration::from_millis(300);
 /// Waits for the user's choice. Returns `None` if the user cancels the dialog.
 ///
 /// # Errors
-/// A message, if the desktop shows no dialog.
-pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, String> {
+/// The desktop shows no dialog.
+pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, NoDialog> {
     let start = Instant::now();
     let chosen = match dialog {
         Dialog::File => {
@@ -35,35 +36,21 @@ pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, String> {
     answer(chosen, start.elapsed())
 }
 
-fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, String> {
-    if chosen.is_none() && after < SHORTEST {
-        return Err(
-            "this desktop has no file dialog (no XDG portal answers). Drop a file or folder on the window, or name it \
-                    on the command line: `specula view MODEL --env MAP --shaders FOLDER`"
-                .into(),
-        );
-    }
-    Ok(chosen)
+fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, NoDialog> {
+    if chosen.is_none() && after < SHORTEST { Err(NoDialog) } else { Ok(chosen) }
 }
 
-/// Writes the built-in shaders, as `specula new` does, and returns their folder. Without a folder, a dialog asks for one. It
-/// blocks, so it runs on a thread of its own.
+/// Writes the built-in shaders, as `specula new` does, and returns their folder: the given one, or if it holds other files, a folder inside
+/// it.
 ///
 /// # Errors
-/// A message: there is no dialog, or the folder cannot be written.
-pub(super) fn write_tree(folder: Option<PathBuf>) -> Result<Option<PathBuf>, String> {
-    let folder = match folder {
-        Some(folder) => Some(folder),
-        // If the chosen folder holds other files, the shaders go into a folder inside it.
-        None => choose(Dialog::New)?.map(|chosen| {
-            let holds_files = std::fs::read_dir(&chosen).is_ok_and(|mut entries| entries.next().is_some());
-            if holds_files { chosen.join("specula-shaders") } else { chosen }
-        }),
-    };
-    let Some(folder) = folder else { return Ok(None) };
+/// A message: the folder cannot be written.
+pub(super) fn write_tree(folder: PathBuf) -> Result<PathBuf, String> {
+    let holds_files = std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some());
+    let folder = if holds_files { folder.join("specula-shaders") } else { folder };
     let folder = std::path::absolute(&folder).unwrap_or(folder);
     embedded::write_to(&folder, None)
-        .map(|_| Some(folder.clone()))
+        .map(|_| folder.clone())
         .map_err(|error| format!("cannot write the shaders to {}: {error}", folder.display()))
 }
 
@@ -76,15 +63,16 @@ mod tests {
         let path = PathBuf::from("a.glb");
         assert_eq!(answer(Some(path.clone()), Duration::ZERO), Ok(Some(path)));
         assert_eq!(answer(None, Duration::from_secs(2)), Ok(None));
-        assert!(answer(None, Duration::from_millis(20)).unwrap_err().contains("Drop a file"));
+        assert_eq!(answer(None, Duration::from_millis(20)), Err(NoDialog));
     }
 
     #[test]
-    fn the_tree_is_written_once() {
+    fn a_tree_is_written_beside_other_files_but_never_over_one() {
         let working = tempfile::tempdir().unwrap();
         let folder = working.path().join("shaders");
-        assert_eq!(write_tree(Some(folder.clone())), Ok(Some(folder.clone())));
+        assert_eq!(write_tree(folder.clone()), Ok(folder.clone()));
         assert!(folder.join("user.glsl").is_file());
-        assert!(write_tree(Some(folder)).unwrap_err().contains("not empty"));
+        assert_eq!(write_tree(folder.clone()), Ok(folder.join("specula-shaders")));
+        assert!(write_tree(folder).unwrap_err().contains("not empty"));
     }
 }

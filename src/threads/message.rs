@@ -12,6 +12,7 @@ use winit::event_loop::EventLoopProxy;
 use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
 use crate::comparison::{Comparison, Picture, Still};
 use crate::control::Asked;
+use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
@@ -21,6 +22,11 @@ use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Diagnostic, Source};
+use crate::write_back::Written;
+
+/// The desktop shows no file dialog: no XDG portal answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NoDialog;
 
 /// Messages of the threads to the window.
 pub(crate) enum Message {
@@ -43,8 +49,8 @@ pub(crate) enum Message {
     SecondTreeFound(u64, Result<Source, String>),
     /// The texts of a version of the shaders have been written to its files, or the reason why not.
     VersionWritten(u64, Result<String, String>),
-    /// A summary of the edits that were written to the shader files, or the reason why none were.
-    Written(Result<String, String>),
+    /// A summary of the edits that were written to the shader files with the files, or the reason why none were.
+    Written(Result<(String, Written), String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
@@ -55,14 +61,16 @@ pub(crate) enum Message {
     Pictures(Box<BuiltInPictures>),
     /// A message for the user.
     Say(String),
-    /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
-    Chosen(Result<Option<PathBuf>, String>),
-    /// A folder with the built-in shaders has been written; `None` if the user cancels the dialog, or a message.
-    NewTree(Result<Option<PathBuf>, String>),
+    /// The file dialog has closed: the chosen path, none if the user cancels it, or there is no dialog.
+    Chosen(Result<Option<PathBuf>, NoDialog>),
+    /// A folder with the built-in shaders has been written, or a message.
+    NewTree(Result<PathBuf, String>),
+    /// The files of a folder, or why it cannot be read.
+    Listed(PathBuf, Result<Vec<Listed>, String>),
     /// The tree of an exercise has been written to this folder, or a message.
-    Prepared(&'static Exercise, Result<PathBuf, String>),
+    Prepared(Arc<Exercise>, Result<PathBuf, String>),
     /// The exercise whose tree is in this folder.
-    Exercise(PathBuf, Option<&'static Exercise>),
+    Exercise(PathBuf, Option<Arc<Exercise>>),
     /// The goals of an exercise were measured.
     Checked(Checked),
     /// A command from outside.

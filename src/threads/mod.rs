@@ -68,7 +68,7 @@ use loader::Loader;
 use measurer::Measurer;
 use worker::Worker;
 
-pub(crate) use message::{Message, MessageSender, TaskKind};
+pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind};
 pub(crate) use results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
 
 /// One of two pictures that are compared.

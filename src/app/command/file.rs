@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::about::{About, Group};
 use super::compare::{COMPARE, CompareFields};
 use super::fields::{Fields, needs};
+use super::program::SAY;
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
 use crate::app::actions::files::{edit, find_tree, load_model};
@@ -15,7 +16,7 @@ use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::dialog::Dialog;
 use crate::app::state::workspace::PanelRequest;
-use crate::file_kind::FileKind;
+use crate::file_kind::{self, FileKind, models_in, only_model};
 use crate::message::did_you_mean;
 use crate::picture::read_checked_look;
 use crate::scene::BUILT_IN;
@@ -67,20 +68,68 @@ pub(in crate::app) static CHOOSE_TREE: Spec<()> =
         .label("Open a shader tree", "folder");
 
 /// Writes the built-in shaders to a folder, or to one that the user chooses, and opens them.
-pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> = Spec::new("new-tree", |state, engine, folder| {
-    ask(state, engine, Dialog::New, move || Message::NewTree(dialog::write_tree(folder)))
+pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> =
+    Spec::new("new-tree", |state, engine, folder| match folder {
+        None => choose(state, engine, Dialog::New),
+        Some(folder) => {
+            engine.threads.wait(move || Some(Message::NewTree(dialog::write_tree(folder))));
+            Ok(Until::DONE)
+        }
+    });
+
+/// Reads a folder for the command palette, on a thread.
+pub(in crate::app) static LIST_FOLDER: Spec<PathBuf> = Spec::act("list-folder", |state, engine, folder: PathBuf| {
+    state.listing.ask(folder.clone());
+    engine.threads.wait(move || {
+        let files = file_kind::list(&folder);
+        Some(Message::Listed(folder, files))
+    });
 });
+
+/// Opens the command palette with the files of the working directory.
+pub(in crate::app) static OPEN_PATH: Spec<()> =
+    Spec::plain("open-path", |state, _, ()| state.workspace.request(PanelRequest::ChooseFile(None)))
+        .label("Open a path", "file folder browse type");
 
 /// Opens a file or folder in the user's editor.
 pub(in crate::app) static EDIT: Spec<Place> =
     Spec::new("edit", |_, engine, place: Place| edit(engine, &place).map(|()| Until::DONE));
 
-/// The command for a file or folder that was dropped on the window. While pictures are compared, another picture takes part.
-pub(in crate::app) fn dropped(state: &State, path: PathBuf) -> Command {
-    match state.compare.takes(&path) {
-        true => COMPARE.with(CompareFields::file(path)),
-        false => OPEN.with(Open::File(path)),
+/// The commands for files and folders that were dropped together. While pictures are compared, another picture takes part.
+pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>) -> Vec<Command> {
+    if let [path] = paths.as_slice() {
+        return vec![match state.compare.takes(path) {
+            true => COMPARE.with(CompareFields::file(path.clone())),
+            false => OPEN.with(Open::File(path.clone())),
+        }];
     }
+    let kinds: Vec<FileKind> = paths.iter().map(|path| FileKind::of(path)).collect();
+    let with_model = kinds.contains(&FileKind::Model);
+    // What a model reads by itself: buffers and textures.
+    let belongs = |kind: FileKind, path: &Path| {
+        let is = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+        with_model && (kind == FileKind::Other || is("bin") || is("png"))
+    };
+    let mut opened: Vec<(FileKind, &PathBuf)> = Vec::new();
+    let mut left: Vec<String> = Vec::new();
+    for (kind, path) in kinds.into_iter().zip(&paths).filter(|(kind, path)| !belongs(*kind, path)) {
+        // Trees and single shaders take one place, models and folders with a model another.
+        let place = |kind: FileKind| match kind {
+            FileKind::Shader => FileKind::ShaderTree,
+            FileKind::Folder => FileKind::Model,
+            other => other,
+        };
+        match kind != FileKind::Other && opened.iter().all(|(other, _)| place(*other) != place(kind)) {
+            true => opened.push((kind, path)),
+            false => left.push(path.file_name().unwrap_or_default().to_string_lossy().into_owned()),
+        }
+    }
+    let mut commands: Vec<Command> = opened.iter().map(|(_, path)| OPEN.with(Open::File((*path).clone()))).collect();
+    if let Some(first) = left.first() {
+        let more = if left.len() > 1 { format!(" and {} more", left.len() - 1) } else { String::new() };
+        commands.push(SAY.with(format!("Not opened: {first}{more}. Drop one file of a kind at a time")));
+    }
+    commands
 }
 
 /// The command for a path that was chosen in a dialog.
@@ -88,26 +137,18 @@ pub(in crate::app) fn chosen(dialog: Option<Dialog>, path: PathBuf) -> Command {
     match dialog {
         Some(Dialog::Picture) => COMPARE.with(CompareFields::file(path)),
         Some(Dialog::SecondTree) => COMPARE.with(CompareFields::tree(path)),
+        Some(Dialog::New) => NEW_TREE.with(Some(path)),
         _ => OPEN.with(Open::File(path)),
     }
 }
 
-fn choose(state: &mut State, engine: &mut Engine, dialog: Dialog) -> Outcome {
-    ask(state, engine, dialog, move || Message::Chosen(dialog::choose(dialog)))
-}
-
 /// Shows a file dialog on a thread.
-fn ask(
-    state: &mut State,
-    engine: &mut Engine,
-    dialog: Dialog,
-    answer: impl FnOnce() -> Message + Send + 'static,
-) -> Outcome {
+fn choose(state: &mut State, engine: &mut Engine, dialog: Dialog) -> Outcome {
     if state.choosing.is_some() {
         return Err("The file dialog is already open".to_owned());
     }
     state.choosing = Some(dialog);
-    engine.threads.wait(move || Some(answer()));
+    engine.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
     Ok(Until::DONE)
 }
 
@@ -119,7 +160,9 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::Model(path)
         }
         Open::Environment(path) => {
-            state.session.settings.environment.name = path.display().to_string();
+            let name = path.display().to_string();
+            state.opened.environment = Some((name.clone(), state.session.shared_settings()));
+            state.session.settings.environment.name = name;
             Until::SHOWN
         }
         Open::Tree(path) => {
@@ -133,6 +176,7 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::Look
         }
         Open::Measured(path) => {
+            state.opened.measured = Some((path.clone(), state.session.shared_settings()));
             state.session.settings.measured = path.display().to_string();
             state.session.settings.mode = "measured".into();
             Until::SHOWN
@@ -150,10 +194,13 @@ fn by_kind(path: PathBuf) -> Result<Open, String> {
         FileKind::Model => Ok(Open::Model(path)),
         FileKind::Environment => Ok(Open::Environment(path)),
         FileKind::Measured => Ok(Open::Measured(path)),
-        FileKind::Folder => Err(format!(
-            "{} is no Specula shader tree: it has no interface.glsl. `specula new DIR` writes one",
-            path.display()
-        )),
+        FileKind::Folder => only_model(&path).map(Open::Model).ok_or_else(|| {
+            let (shown, models) = (path.display(), models_in(&path));
+            match models.len() {
+                0 => format!("{shown} has no interface.glsl, so it is no Specula shader tree, and no model. `specula new DIR` writes a tree"),
+                count => format!("{shown} has {count} models; open one of them: {}", models.join(", ")),
+            }
+        }),
         FileKind::Shader if Source::is_file(&path) => Ok(Open::Tree(path)),
         FileKind::Look => Ok(Open::Look(path)),
         FileKind::Shader | FileKind::Other => Err(format!(
@@ -192,5 +239,43 @@ fn parse(about: &About, fields: Fields) -> Result<Open, String> {
             Err(format!("{}: there is no such file, and no built-in model of this name.{hint}", path.display()))
         }
         open => Ok(open),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+
+    /// The commands for files that are dropped together.
+    fn drop_all(names: &[&str]) -> Vec<Command> {
+        let state = State::new(Settings::of_window(), Source::embedded());
+        dropped(&state, names.iter().map(PathBuf::from).collect())
+    }
+
+    fn open(name: &str) -> Command {
+        OPEN.with(Open::File(name.into()))
+    }
+
+    #[test]
+    fn what_belongs_to_a_dropped_model_is_not_opened_by_itself() {
+        let helmet = ["FlightHelmet.bin", "a.png", "FlightHelmet.gltf", "b.jpg", "notes.txt"];
+        assert_eq!(drop_all(&helmet), [open("FlightHelmet.gltf")]);
+        assert_eq!(drop_all(&["a.glb", "sky.hdr", "look.toml"])[..2], [open("a.glb"), open("sky.hdr")]);
+        let told = SAY.with("Not opened: b.glb and 1 more. Drop one file of a kind at a time".to_owned());
+        assert_eq!(drop_all(&["a.glb", "b.glb", "c.glb"]), [open("a.glb"), told]);
+        assert_eq!(drop_all(&["a.bin"]), [open("a.bin")]);
+    }
+
+    #[test]
+    fn a_folder_with_one_model_is_that_model() {
+        let folder = tempfile::tempdir().unwrap();
+        let kind = || by_kind(folder.path().to_owned());
+        assert!(kind().unwrap_err().contains("no interface.glsl"));
+        let model = folder.path().join("a.glb");
+        std::fs::write(&model, "").unwrap();
+        assert!(matches!(kind(), Ok(Open::Model(path)) if path == model));
+        std::fs::write(folder.path().join("b.gltf"), "").unwrap();
+        assert!(kind().unwrap_err().contains("has 2 models"));
     }
 }

@@ -17,6 +17,7 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
         BakeMessage::Progress(number, done, next) => engine.threads.baker.set_progress(number, done, next),
         BakeMessage::Environment(number, result) => {
             let Some(key) = engine.threads.baker.ended(number) else { return };
+            state.opened.end_environment(&key.name, result.is_ok(), &mut state.session.settings);
             match result {
                 // The shaders are others, and do the same.
                 Ok(environment) if Arc::ptr_eq(&environment, engine.resources.environment()) => {
@@ -57,6 +58,7 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
         }
         BakeMessage::Measured(key, result) => {
             if engine.threads.baker.has_read(&key) {
+                state.opened.end_measured(&key.path, result.is_ok(), &mut state.session.settings);
                 let result = result.map_err(|message| {
                     state.waiting.fail(&message);
                     state.say(message);

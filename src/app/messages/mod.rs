@@ -25,7 +25,9 @@ use crate::app::messages::reloads::{
     arrange_for, check_names, on_completed, on_reload, remember_tree, show_endless_loop,
 };
 use crate::app::state::State;
+use crate::app::state::workspace::PanelRequest;
 use crate::threads::Message;
+use crate::threads::NoDialog;
 use crate::threads::WorkerMessage;
 
 pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message: Message) {
@@ -95,17 +97,13 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
             let dialog = state.choosing.take();
             match answer {
                 Ok(path) => path.into_iter().for_each(|path| execute(state, engine, chosen(dialog, path))),
-                Err(message) => state.say(message),
+                Err(NoDialog) => state.workspace.request(PanelRequest::ChooseFile(dialog)),
             }
         }
-        Message::NewTree(answer) => {
-            state.choosing = None;
-            match answer {
-                Ok(path) => path.into_iter().for_each(|path| execute(state, engine, OPEN.with(Open::Tree(path)))),
-                Err(message) => state.say(message),
-            }
-        }
-        Message::Prepared(exercise, prepared) => on_prepared(state, engine, exercise, prepared),
+        Message::NewTree(Ok(path)) => execute(state, engine, OPEN.with(Open::Tree(path))),
+        Message::NewTree(Err(message)) => state.say(message),
+        Message::Listed(folder, files) => state.listing.take(&folder, files),
+        Message::Prepared(exercise, prepared) => on_prepared(state, engine, &exercise, prepared),
         Message::Exercise(folder, exercise) => on_exercise(state, engine, folder, exercise),
         Message::Checked(checked) => on_checked(state, checked),
         Message::Panicked(task, text) => on_panic(state, engine, task, &text),

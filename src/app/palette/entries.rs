@@ -68,8 +68,9 @@ pub(in crate::app) fn entry_with(entries: &[Entry], title: &str, value: Option<f
             Ok(ask.command(value))
         }
         (Action::Number(ask), None) => Err(format!("`{}` needs a `value`: {}", entry.title, ask.scale.range_text())),
-        (Action::Run(_), Some(_)) => Err(format!("`{}` takes no value", entry.title)),
+        (_, Some(_)) => Err(format!("`{}` takes no value", entry.title)),
         (Action::Run(command), None) => Ok(command.clone()),
+        (Action::Complete(_), None) => Err(format!("`{}` only completes a path", entry.title)),
     }
 }
 
@@ -98,9 +99,8 @@ pub(super) fn of_layout() -> impl Iterator<Item = Entry> {
 
 /// Environments, models and shader trees: the built-in ones and the files that were open.
 fn files(state: &State) -> impl Iterator<Item = Entry> {
-    let entry = |group: &'static str, path: PathBuf, open: fn(PathBuf) -> Open| {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let (title, words) = (format!("{group}: {name}"), path.display().to_string());
+    let entry = |group: &'static str, kind: Kind, path: PathBuf, open: fn(PathBuf) -> Open| {
+        let (title, words) = (format!("{group}: {}", kind.name_of(&path)), path.display().to_string());
         Entry::new(group, title, OPEN.with(open(path))).words(words)
     };
     let recent = |kind| state.recent.of(kind).iter().cloned();
@@ -108,11 +108,11 @@ fn files(state: &State) -> impl Iterator<Item = Entry> {
     let environments = built_in(&BUILT_IN).chain([PathBuf::from("none")]).chain(recent(Kind::Environment));
     let environments = environments.map(move |path| {
         let is_in_force = Path::new(&state.session.settings.environment.name) == path;
-        Entry { is_in_force, ..entry("Environment", path, Open::Environment) }
+        Entry { is_in_force, ..entry("Environment", Kind::Environment, path, Open::Environment) }
     });
     let models = built_in(&crate::scene::BUILT_IN).chain(recent(Kind::Model));
-    let models = models.map(move |path| entry("Model", path, Open::Model));
-    environments.chain(models).chain(recent(Kind::Tree).map(move |path| entry("Shaders", path, Open::Tree)))
+    let models = models.map(move |path| entry("Model", Kind::Model, path, Open::Model));
+    environments.chain(models).chain(recent(Kind::Tree).map(move |path| entry("Shaders", Kind::Tree, path, Open::Tree)))
 }
 
 /// The exercises.
@@ -127,7 +127,6 @@ fn lessons() -> impl Iterator<Item = Entry> {
 /// Entries that depend on the current picture: comparisons, versions to write to the files, views of the model.
 fn of_picture(state: &State) -> Vec<Entry> {
     let compare = |title: String, command| Entry::new("Compare", title, command);
-    let newest = state.shown_generation();
     let toggle = if state.compare.is_on() { "Stop comparing" } else { "Keep this picture and compare" };
     let key = TOGGLE_COMPARE.about().key();
     let mut entries = vec![Entry { key, ..Entry::new("Compare", toggle, TOGGLE_COMPARE.with(())) }];
@@ -138,7 +137,7 @@ fn of_picture(state: &State) -> Vec<Entry> {
     let choose = |title: &str, words: &str, dialog| Entry::new("Compare", title, CHOOSE.with(dialog)).words(words);
     entries.push(choose("Compare with a picture…", "file image PNG JPEG EXR HDR reference", Dialog::Picture));
     entries.push(choose("Compare with another shader tree…", "second folder A B", Dialog::SecondTree));
-    let others = || state.versions.iter().filter(|version| state.versions.can_show(version, newest));
+    let others = || state.versions.iter().filter(|version| state.can_show(version));
     entries.extend(others().map(|version| {
         let title = format!("Compare with version {}: {}", version.number, version.title());
         compare(title, COMPARE.with(CompareFields::version(version.number)))

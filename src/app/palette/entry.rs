@@ -13,6 +13,8 @@ pub(super) enum Action {
     Run(Command),
     /// Asks for a number, and sets it.
     Number(Box<Ask>),
+    /// Replaces the query by this one.
+    Complete(String),
 }
 
 /// A row that the palette can show.

@@ -3,12 +3,15 @@
 
 pub(super) mod entries;
 mod entry;
+mod paths;
 mod row;
 mod search;
 mod settings;
 
 use std::sync::Arc;
 
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 
 use super::command::registry::REGISTRY;
@@ -17,6 +20,8 @@ use super::command::spec::Command;
 use super::source_line::{SourceLine, watch};
 use super::widgets::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
 use crate::app::state::State;
+use crate::app::state::dialog::Dialog;
+use crate::app::state::listing::Listing;
 use crate::scene::Model;
 use crate::settings::Settings;
 use crate::shader::{Expression, ShaderSet};
@@ -30,6 +35,8 @@ const ROWS: usize = 12;
 const WIDTH: f32 = 480.0;
 /// Height without the rows, in points.
 const AROUND: f32 = 90.0;
+/// Name of the field.
+const SEARCH: &str = "palette search";
 
 /// State of the palette between frames.
 #[derive(Default)]
@@ -38,6 +45,8 @@ pub(super) struct Palette {
     query: String,
     /// The chosen row.
     row: usize,
+    /// What a path in the query is chosen for.
+    dialog: Option<Dialog>,
     /// The number that the palette asks for, and the text of its field.
     asks: Option<(Ask, String)>,
     /// Whether it has been shown. The click that opens it does not close it.
@@ -87,6 +96,13 @@ impl Palette {
         *self = Self { is_open: true, ..Self::default() };
     }
 
+    /// Opens it with the files of the working directory.
+    pub(super) fn choose_file(&mut self, dialog: Option<Dialog>) {
+        let folder = std::env::current_dir().unwrap_or_default();
+        let query = format!("{}/", folder.display().to_string().trim_end_matches('/'));
+        *self = Self { is_open: true, query, dialog, ..Self::default() };
+    }
+
     pub(super) fn toggle(&mut self) {
         *self = Self { is_open: !self.is_open, ..Self::default() };
     }
@@ -108,7 +124,7 @@ pub(super) fn show(
         (palette.listed, palette.entries) = (Some(revision), entries(state, REGISTRY));
         palette.shaders = state.session.shaders.clone();
     }
-    let chosen = window(egui, palette, area);
+    let chosen = window(egui, &state.listing, palette, area, commands);
     if chosen.is_some() {
         *palette = Palette::default();
     }
@@ -116,13 +132,20 @@ pub(super) fn show(
 }
 
 /// Shows the search and the list, or asks for a number. Returns the chosen command.
-fn window(egui: &egui::Context, palette: &mut Palette, area: egui::Rect) -> Option<Command> {
+fn window(
+    egui: &egui::Context,
+    listing: &Listing,
+    palette: &mut Palette,
+    area: egui::Rect,
+    commands: &mut Vec<Command>,
+) -> Option<Command> {
+    if !palette.is_shown {
+        // A menu would lie under it.
+        egui::Popup::close_all(egui);
+    }
     if egui.input(|input| input.key_pressed(Key::Escape)) {
-        // Back from a number to the list.
-        palette.is_open = palette.asks.take().is_some();
-        if !palette.is_open {
-            return None;
-        }
+        *palette = Palette::default();
+        return None;
     }
     let width = WIDTH.min(area.width() - 24.0);
     let top = 48.0_f32.min(0.1 * area.height());
@@ -135,7 +158,7 @@ fn window(egui: &egui::Context, palette: &mut Palette, area: egui::Rect) -> Opti
             ui.set_width(width);
             match &mut palette.asks {
                 Some((ask, text)) => number(ui, ask, text),
-                None => list(ui, palette, rows.clamp(3, ROWS)),
+                None => list(ui, listing, palette, rows.clamp(3, ROWS), commands),
             }
         };
         frame.show(ui, content).inner
@@ -147,34 +170,54 @@ fn window(egui: &egui::Context, palette: &mut Palette, area: egui::Rect) -> Opti
     shown.inner
 }
 
+/// Puts the cursor of the search behind its text.
+fn cursor_to_end(egui: &egui::Context, text: &str) {
+    let id = Id::new(SEARCH);
+    let mut state = TextEditState::load(egui, id).unwrap_or_default();
+    state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(text.chars().count()))));
+    state.store(egui, id);
+}
+
 /// A line of text that has the keys.
 fn field(ui: &mut Ui, text: &mut String, hint: &str) -> egui::Response {
-    let id = Id::new("palette search");
+    let id = Id::new(SEARCH);
     // Keys of the same frame are already the search's.
     if !ui.memory(|memory| memory.has_focus(id)) {
         ui.memory_mut(|memory| memory.request_focus(id));
+        cursor_to_end(ui.ctx(), text);
     }
-    let field = TextEdit::singleline(text).id(id).desired_width(f32::INFINITY);
+    let field = TextEdit::singleline(text).id(id).desired_width(f32::INFINITY).margin(vec2(6.0, 5.0));
     ui.add(field.background_color(EDGE.color()).hint_text(hint))
 }
 
 /// Shows the search and the list. Returns the chosen command.
-fn list(ui: &mut Ui, palette: &mut Palette, rows: usize) -> Option<Command> {
-    // Before the field takes the arrows.
-    let step = ui.input_mut(|input| {
+fn list(
+    ui: &mut Ui,
+    listing: &Listing,
+    palette: &mut Palette,
+    rows: usize,
+    commands: &mut Vec<Command>,
+) -> Option<Command> {
+    // Before the field takes the arrows and Tab.
+    let (step, completes) = ui.input_mut(|input| {
         let down = input.count_and_consume_key(egui::Modifiers::NONE, Key::ArrowDown);
-        down as isize - input.count_and_consume_key(egui::Modifiers::NONE, Key::ArrowUp) as isize
+        let step = down as isize - input.count_and_consume_key(egui::Modifiers::NONE, Key::ArrowUp) as isize;
+        (step, input.consume_key(egui::Modifiers::NONE, Key::Tab))
     });
-    if field(ui, &mut palette.query, "Find a mode, setting, panel or command").changed() {
+    if field(ui, &mut palette.query, "Find a mode, setting, panel or command, or type a path").changed() {
         palette.row = 0;
     }
     let query = palette.query.clone();
-    // The text and the Enter behind it may come in one frame, so the entry is made from the text as it is now.
+    // The text and the Enter behind it may come in one frame, so the entries are made from the text as it is now.
     let expression = expression(&query, palette.shaders.as_deref());
-    let found = find(expression.iter().chain(&palette.entries), &query);
+    let paths = paths::entries(listing, &query, palette.dialog, commands);
+    let found = match &paths {
+        Some(paths) => paths.iter().map(|entry| Found { entry, marks: Vec::new(), typed: None }).collect(),
+        None => find(expression.iter().chain(&palette.entries), &query),
+    };
     palette.row = palette.row.saturating_add_signed(step).min(found.len().saturating_sub(1));
     if found.is_empty() {
-        ui.label(RichText::new("No match").color(QUIET));
+        ui.label(RichText::new(if paths.is_some() { "No file that can be opened" } else { "No match" }).color(QUIET));
     }
     let first = (palette.row + 1).saturating_sub(rows);
     let mut chosen = None;
@@ -188,12 +231,20 @@ fn list(ui: &mut Ui, palette: &mut Palette, rows: usize) -> Option<Command> {
         let text = format!("{} to {last} of {}", first + 1, found.len());
         ui.label(RichText::new(text).small().color(QUIET)).on_hover_text("Arrow keys show the others");
     }
-    if ui.input(|input| input.key_pressed(Key::Enter)) {
+    let is_complete = |found: &&Found<'_>| matches!(found.entry.action, Action::Complete(_));
+    if completes {
+        chosen = found.get(palette.row).filter(is_complete).or_else(|| found.iter().find(is_complete));
+    } else if ui.input(|input| input.key_pressed(Key::Enter)) {
         chosen = chosen.or_else(|| found.get(palette.row));
     }
     let Found { entry, typed, .. } = chosen?;
     match &entry.action {
         Action::Run(command) => Some(command.clone()),
+        Action::Complete(query) => {
+            (palette.query, palette.row) = (query.clone(), 0);
+            cursor_to_end(ui.ctx(), query);
+            None
+        }
         Action::Number(ask) => {
             let typed = typed.unwrap_or_default();
             let value = ask.scale.parse(typed);

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::arrangement::{Panel, Preset};
+use super::dialog::Dialog;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::TextureSource;
 
@@ -35,6 +36,8 @@ pub(in crate::app) enum PanelRequest {
     ToggleKeys,
     /// Open or close the command palette.
     TogglePalette,
+    /// Open the command palette with the files of the working directory, in place of a dialog that the desktop lacks.
+    ChooseFile(Option<Dialog>),
     /// Show what can be opened, with pictures.
     ShowGallery,
     /// Ask whether to write this version to the files.

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use specula::file_kind::only_model;
 use specula::message;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings};
 use specula::shader::Source;
 
 use super::look::read_look;
-use super::names::{check_model_path, only_model};
+use super::names::check_model_path;
 use super::{Common, warn_once};
 use crate::commands::Failure;
 

@@ -1,9 +1,9 @@
 //! Interprets the name of a model or an environment: a file, a built-in name, a typing error, or another kind of
 //! file, which is answered with its option.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use specula::file_kind::FileKind;
+use specula::file_kind::{FileKind, models_in};
 use specula::message::nearest;
 use specula::scene::{self, BUILT_IN};
 
@@ -65,23 +65,6 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
         FileKind::Measured | FileKind::Model | FileKind::Other => return Ok(()),
     };
     Err(Failure::Usage(message))
-}
-
-/// The model in a folder that is no shader tree, if it is the only one.
-pub fn only_model(path: &Path) -> Option<PathBuf> {
-    let mut models = models_in(path).into_iter().filter(|_| FileKind::of(path) == FileKind::Folder);
-    models.next().filter(|_| models.next().is_none()).map(PathBuf::from)
-}
-
-/// Paths of the models in a folder, sorted; none where it cannot be read.
-fn models_in(folder: &Path) -> Vec<String> {
-    let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let names = std::fs::read_dir(place).into_iter().flatten().flatten().map(|entry| folder.join(entry.file_name()));
-    let is_model =
-        |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"));
-    let mut models: Vec<String> = names.filter(|path| is_model(path)).map(|path| path.display().to_string()).collect();
-    models.sort();
-    models
 }
 
 /// Fails when an environment is a word but not a built-in name. A missing file is reported where it is opened.

@@ -32,16 +32,23 @@ x11rb::atom_manager! {
     }
 }
 
-/// Drags a file over the pixel `at` of the screen and drops it on the window. Returns once the window has said that it is finished.
+/// Drags files over the pixel `at` of the screen and drops them on the window. Returns once the window has said that it is finished.
 #[track_caller]
-pub fn drop_file(display: &str, window: u32, at: (u32, u32), file: &Path) {
-    let (display, uri) = (display.to_owned(), format!("file://{}\r\n", file.display()));
+pub fn drop_files(display: &str, window: u32, at: (u32, u32), files: &[&Path]) {
+    let uri: String = files.iter().map(|file| format!("file://{}\r\n", file.display())).collect();
+    let display = display.to_owned();
     let (sender, done) = channel();
     std::thread::spawn(move || {
         Source::new(&display, window, uri).drop_at(at);
         let _ = sender.send(());
     });
     done.recv_timeout(PATIENCE).expect("the window finishes the drop");
+}
+
+/// The same of one file.
+#[track_caller]
+pub fn drop_file(display: &str, window: u32, at: (u32, u32), file: &Path) {
+    drop_files(display, window, at, &[file]);
 }
 
 /// A program that something is dragged from.

@@ -1,10 +1,10 @@
 //! Opens dropped files, and restores the last session.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::controls::choose;
 use crate::support::window::Viewer;
-use crate::support::xdnd::drop_file;
+use crate::support::xdnd::{drop_file, drop_files};
 use crate::support::{Tree, glb};
 
 const RECENT: &str = "state/specula/recent.json";
@@ -28,6 +28,30 @@ fn a_dropped_model_opens_and_any_other_file_changes_nothing() {
     viewer.until("the dropped model", |shot| *shot != first);
     let recent: Value = serde_json::from_str(&std::fs::read_to_string(viewer.tree.beside(RECENT)).unwrap()).unwrap();
     assert_eq!(recent["models"][0].as_str(), model.to_str());
+    viewer.quit();
+}
+
+/// As one drops a model with all its files on other viewers. A buffer alone is taken for a measured BRDF, which it is not.
+#[test]
+fn a_model_is_dropped_with_its_files_and_a_damaged_one_changes_no_setting() {
+    let tree = Tree::new();
+    let (model, buffer, note) = (tree.beside("dropped.glb"), tree.beside("dropped.bin"), tree.beside("note.txt"));
+    std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    std::fs::write(&buffer, "no measured BRDF").unwrap();
+    std::fs::write(&note, "no model").unwrap();
+    let mut viewer = Viewer::driven(tree, &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    let before = viewer.running.done(json!({"command": "get"}));
+    let (display, window) = (viewer.display.name().to_owned(), viewer.window());
+    drop_file(&display, window, (300, 200), &buffer);
+    viewer.running.until_stderr("dropped.bin");
+    viewer.until("the picture of before", |shot| *shot == first);
+    assert_eq!(viewer.running.done(json!({"command": "get"})), before, "a file that cannot be read has set something");
+    drop_files(&display, window, (300, 200), &[&buffer, &note, &model]);
+    viewer.until("the dropped model", |shot| *shot != first);
+    assert_eq!(viewer.running.done(json!({"command": "get", "path": "mode"})), "final");
+    viewer.running.end_input();
     viewer.quit();
 }
 
