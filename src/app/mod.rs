@@ -6,6 +6,7 @@
 mod actions;
 mod command;
 mod commands;
+mod comparison_labels;
 mod context;
 mod control;
 mod dialog;
@@ -25,11 +26,13 @@ mod palette;
 mod panels;
 mod readings;
 mod screen;
+mod setting_text;
 mod source_line;
 mod start;
 mod state;
 mod widgets;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -51,16 +54,18 @@ use actions::sessions::remember_session;
 use engine::Engine;
 use frames::background::Next;
 use frames::draw::Drawing;
+use frames::title::of_window;
 use interface::Interface;
 use messages::on_message;
 use options::Early;
 use screen::Screen;
 use start::start;
-use state::State;
+use state::{State, window_size};
 
 pub use command::registry::{Described, described};
 pub use options::{AppOptions, OtherPicture};
 pub use state::last_session::session_to_restore;
+pub use state::window_size::last_size;
 
 /// Why there is no window, or why it closed early.
 #[derive(Debug, thiserror::Error)]
@@ -124,6 +129,10 @@ struct Open {
     drawing: Drawing,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
+    /// The window's title.
+    title: String,
+    /// Files that were dropped together, which come one by one.
+    dropped: Vec<PathBuf>,
 }
 
 impl App {
@@ -153,7 +162,8 @@ impl App {
         interface.init_accessibility(event_loop, &window, &self.sender);
         window.set_visible(true);
         let (state, engine) = start(&gpu, &layouts, options, early, &self.sender)?;
-        Ok(Open { state, engine, drawing: Drawing::new(screen, interface), gpu, window })
+        let (drawing, title, dropped) = (Drawing::new(screen, interface), String::new(), Vec::new());
+        Ok(Open { state, engine, drawing, gpu, window, title, dropped })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
@@ -177,8 +187,9 @@ impl App {
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { mut state, engine, drawing, gpu, window } = open;
+            let Open { mut state, engine, drawing, gpu, window, .. } = open;
             remember_session(&state);
+            window_size::remember(window.inner_size().into());
             engine.recorder.close();
             end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
             assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
@@ -232,6 +243,13 @@ impl ApplicationHandler<Message> for App {
         }
     }
 
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        let Some(open) = self.open.as_mut().filter(|open| !open.dropped.is_empty()) else { return };
+        let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped));
+        dropped.into_iter().for_each(|command| command::execute(&mut open.state, &mut open.engine, command));
+        open.window.request_redraw();
+    }
+
     fn user_event(&mut self, event_loop: &ActiveEventLoop, message: Message) {
         let Some(open) = &mut self.open else { return };
         match message {
@@ -274,11 +292,13 @@ impl App {
                 open.drawing.is_covered = is_covered;
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => {
-                let dropped = command::file::dropped(&open.state, path);
-                command::execute(&mut open.state, &mut open.engine, dropped);
-            }
+            WindowEvent::DroppedFile(path) => open.dropped.push(path),
             WindowEvent::RedrawRequested => {
+                let title = of_window(&open.state);
+                if open.title != title {
+                    open.window.set_title(&title);
+                    open.title = title;
+                }
                 let drawn = open.drawing.draw(&open.window, &mut open.state, &mut open.engine);
                 match drawn {
                     Ok(again) => event_loop.set_control_flow(match again {

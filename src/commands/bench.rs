@@ -159,7 +159,7 @@ fn frame(bench: &Bench<'_>) -> Result<Value, Failure> {
         modes.push(json!({ "slug": slug, "first_ms": round(first_ms), "again_ms": round(again_ms) }));
     }
     Ok(json!({
-        "size": [args.common.size.0, args.common.size.1],
+        "size": [args.common.size().0, args.common.size().1],
         "frame_ms": summary(wall),
         "device_ms": summary(device),
         "cpu_ms": summary(cpu),
@@ -219,7 +219,7 @@ fn load(bench: &Bench<'_>, start: Instant) -> Result<Value, Failure> {
         let (source, settings) = (args.common.source()?, args.common.settings()?);
         let (mut load_ms, mut timing) = (0.0, LoadTiming::default());
         let (mut headless, reload) =
-            Headless::start(bench.gpu, bench.compiler, source, settings, args.common.size, |settings| {
+            Headless::start(bench.gpu, bench.compiler, source, settings, args.common.size(), |settings| {
                 let model = bench.model()?;
                 args.common.fit(&model, settings)?;
                 (load_ms, timing) = (ms(begin), model.timing);

@@ -105,7 +105,7 @@ fn build_choices(
         problems.extend(errors.into_iter().map(|error| source.explained(error)));
         Arc::default()
     });
-    problems.extend(beyond_memory_when_on(shaders, &settings, args.common.size, request));
+    problems.extend(beyond_memory_when_on(shaders, &settings, args.common.size(), request));
     if !problems.is_empty() {
         diagnostics.extend(problems);
         return Ok(None);

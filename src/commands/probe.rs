@@ -56,7 +56,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.take_files(&mut args.model)?;
     let mut slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
-    let (width, height) = args.common.size;
+    let (width, height) = args.common.size();
     if x >= width || y >= height {
         let message = format!(
             "--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {},{}",
@@ -79,7 +79,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.fit(&model, &mut settings)?;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
-    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;
+    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size())?;
     headless.set_sequence(sequence);
     let Chosen { modes, left_out } = chosen(&headless.shaders(), &slugs, args.paths)?;
     let state = headless.frame_state()?;

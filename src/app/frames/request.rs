@@ -44,8 +44,7 @@ fn redraw(state: &mut State, engine: &Engine, frame: Option<&BoundFrame>) -> Red
     }
 }
 
-/// The outline of the selected instances; `None` without a selection, or if that is all of a single node. Screenshots and recordings do not
-/// have it.
+/// The outline of the selected instances; `None` without a selection. Screenshots and recordings do not have it.
 fn outline(
     state: &mut State,
     engine: &mut Engine,
@@ -53,8 +52,7 @@ fn outline(
     pixels_per_point: f32,
 ) -> Option<OutlineRequest> {
     let selected = selected_instances(state);
-    let scene = frame.filter(|frame| frame.state.pipelines.draws_model)?.state.scene.as_ref()?;
-    if selected.is_empty() {
+    if selected.is_empty() || !frame?.state.pipelines.draws_model {
         return None;
     }
     let [r, g, b, _] = SELECTION.to_array().map(|channel| f32::from(channel) / 255.0);

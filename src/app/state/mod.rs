@@ -11,17 +11,21 @@ pub(super) mod hint;
 pub(super) mod history;
 pub(super) mod inspection;
 pub(super) mod last_session;
+pub(super) mod listing;
 pub(super) mod model;
 pub(super) mod notices;
+pub(super) mod opened;
 pub(super) mod picture;
 pub(super) mod playback;
 pub(super) mod recent;
 pub(super) mod selection;
 pub(super) mod shaders;
+mod shown_version;
 pub(super) mod timing;
 pub(super) mod waiting;
 pub(super) mod waits;
 pub(super) mod watched_files;
+pub(super) mod window_size;
 pub(super) mod workspace;
 
 use std::path::{Path, PathBuf};
@@ -49,8 +53,10 @@ use hint::Hint;
 use history::History;
 use inspection::Inspection;
 use last_session::LastSessions;
+use listing::Listing;
 use model::ModelStatus;
 use notices::Notices;
+use opened::Opened;
 use picture::Picture;
 use playback::Playback;
 use recent::Recent;
@@ -141,6 +147,10 @@ pub(super) struct State {
     pub(super) offers_session: bool,
     /// The file dialog that is open.
     pub(super) choosing: Option<Dialog>,
+    /// The folder that the command palette lists.
+    pub(super) listing: Listing,
+    /// Files that are opened and not read yet.
+    pub(super) opened: Opened,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
     /// The name of the device and its version of Vulkan.
@@ -192,6 +202,8 @@ impl State {
             plain: None,
             offers_session: false,
             choosing: None,
+            listing: Listing::default(),
+            opened: Opened::default(),
             screenshot: false,
             quit: false,
             device: String::new(),

@@ -28,7 +28,7 @@ impl Bench<'_> {
     }
 
     pub(super) fn renderer(&self, source: Source, settings: Settings, model: Model) -> Result<Headless, Failure> {
-        let (headless, _) = Headless::new(self.gpu, self.compiler, source, model, settings, self.args.common.size)?;
+        let (headless, _) = Headless::new(self.gpu, self.compiler, source, model, settings, self.args.common.size())?;
         Ok(headless)
     }
 

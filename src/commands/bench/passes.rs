@@ -56,7 +56,7 @@ pub(super) fn passes(bench: &Bench<'_>) -> Result<Value, Failure> {
     let ([plain, with, many], [cpu, _, cpu_many]) = (samples.each_ref().map(least), cpu.each_ref().map(least));
     let [frame, with_passes, with_many] = samples.map(summary);
     Ok(json!({
-        "size": [args.common.size.0, args.common.size.1],
+        "size": [args.common.size().0, args.common.size().1],
         "with": WITH.join(" "),
         "frame_ms": frame,
         "with_passes_ms": with_passes,

@@ -57,3 +57,10 @@ impl Frames {
         })
     }
 }
+
+impl super::Common {
+    /// Width and height of the picture, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        self.size.unwrap_or((1280, 720))
+    }
+}

@@ -51,9 +51,9 @@ pub struct Common {
     /// Vertical field of view in degrees, 1 to 170 [default: 35]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = fovy)]
     fovy: Option<f32>,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", allow_hyphen_values = true, value_parser = size)]
-    pub size: (u32, u32),
+    /// Size of the picture in pixels [default: 1280x720; for a window, the size of the last one]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
+    pub size: Option<(u32, u32)>,
     /// Look through a camera of the model's file: its name, or #0 for the first
     #[arg(long, value_name = "NAME|#N", conflicts_with_all = ["eye", "target", "fovy", "frame_model"])]
     camera: Option<String>,

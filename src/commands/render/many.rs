@@ -45,7 +45,7 @@ pub fn write(headless: &mut Headless, args: &Args) -> Result<(), Failure> {
         true
     };
     let written = draw(headless, args, &args.out, &mut tell);
-    headless.set_size(args.common.size)?;
+    headless.set_size(args.common.size())?;
     written.map_err(|error| match error {
         CaptureError::Render(error) => error.into(),
         CaptureError::Usage(message) => Failure::Usage(message),
@@ -60,7 +60,7 @@ fn draw(
     tell: &mut dyn FnMut(u64, u64) -> bool,
 ) -> Result<(), CaptureError> {
     if let Some(frames) = args.turntable {
-        let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size, args.turn);
+        let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size(), args.turn);
         return Turntable { frames, fps, size, turn }.write(headless, out, tell);
     }
     let session = headless.session();

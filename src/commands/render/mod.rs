@@ -57,7 +57,8 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         args.common.fit(&model, settings)?;
         Ok::<_, Failure>(model)
     };
-    let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
+    let (mut headless, reload) =
+        Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size(), read)?;
     headless.set_sequence(sequence);
     if let Some(watch) = &mut watch {
         watch.follow(&headless);

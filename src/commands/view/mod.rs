@@ -94,7 +94,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     limits::check()?;
     let control = control(&args, folder.is_some())?;
     check_model_path(args.model.as_deref())?;
-    let (width, height) = args.common.size;
+    let (width, height) = args.common.size();
     if width.max(height) > LARGEST_WINDOW {
         let message =
             format!("--size {width}x{height} is too large for a window; at most {LARGEST_WINDOW} pixels a side");
@@ -127,6 +127,8 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         None => Source::embedded(),
     };
     let source = state.source(source, good.clone());
+    // The size of the last window, unless one was given.
+    let last = if args.common.size.is_none() { app::last_size() } else { None };
     let options = AppOptions {
         source,
         compiler: compiler()?,
@@ -135,7 +137,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         follows_lights: follows_lights && state.work.is_none(),
         settings: Arc::unwrap_or_clone(work.settings),
         plain,
-        size: state.window.map_or(args.common.size, |window| window.size),
+        size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),
         at: state.window.and_then(|window| window.at),
         compare,
         load_options: args.common.load_options(),

@@ -2,7 +2,6 @@
 //! a picture from a file. The engine has what draws it, see `crate::app::engine::compared`.
 
 pub(in crate::app) mod file;
-pub(in crate::app) mod labels;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,17 +1,19 @@
 //! The names of both sides of a comparison. Those of a kept picture and the present one tell in what they differ.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::Value;
 
-use super::With;
-use crate::app::state::State;
-use crate::app::state::picture::ShownPicture;
+use super::setting_text::setting_text;
+use super::state::State;
+use super::state::compare::With;
+use super::state::picture::ShownPicture;
 use crate::settings::Settings;
+use crate::shader::ShaderSet;
 
-/// A value of a setting with more characters is left out.
-const LONGEST: usize = 24;
+/// Most settings that are named.
+const NAMED: usize = 3;
 
 /// The contents of a picture.
 struct Shown<'a> {
@@ -19,6 +21,7 @@ struct Shown<'a> {
     mode: &'a str,
     model: &'a str,
     settings: &'a Settings,
+    shaders: &'a ShaderSet,
 }
 
 impl State {
@@ -39,6 +42,7 @@ impl State {
             format!("version {number}")
         })
     }
+
     /// The names of the earlier picture and of the present one, with what differs; `None` if no comparison is shown.
     pub(in crate::app) fn comparison_labels(&self) -> Option<[String; 2]> {
         let earlier = self.reference_label()?;
@@ -48,9 +52,8 @@ impl State {
             return Some([earlier, now]);
         };
         let is_same_text = kept.state.shaders.texts == shown.state.shaders.texts;
-        let version_now = if is_same_text { *version } else { restored.unwrap_or_else(|| self.shown_generation()) };
-        let [kept, now] = differences(&of(kept, *version), &of(shown, version_now));
-        Some([format!("kept: {kept}"), format!("now: {now}")])
+        let version_now = if is_same_text { *version } else { restored.unwrap_or_else(|| self.shown_version()) };
+        Some(differences(&of(kept, *version), &of(shown, version_now)))
     }
 
     /// Short names of the earlier picture and of the present one, for the value under the mouse; `None` if no comparison is shown.
@@ -75,6 +78,7 @@ fn of(picture: &ShownPicture, version: u64) -> Shown<'_> {
         mode: picture.state.mode().map_or("", |mode| mode.name.as_str()),
         model: picture.state.scene.as_ref().map_or("", |scene| &scene.model().name),
         settings: &picture.settings,
+        shaders: &picture.state.shaders,
     }
 }
 
@@ -82,42 +86,36 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The differences, for each side: version, mode, model, environment and a single setting by name, more settings by their number. The
-/// mode if nothing differs.
+/// The differences, for each side: version, mode, model, environment, and settings by their labels. The mode if nothing differs.
 fn differences(kept: &Shown<'_>, now: &Shown<'_>) -> [String; 2] {
     let mut parts: [Vec<String>; 2] = Default::default();
-    let mut add = |a: String, b: String| {
-        if a != b {
-            parts[0].push(a);
-            parts[1].push(b);
+    let mut add = |texts: [String; 2]| {
+        if texts[0] != texts[1] {
+            parts.iter_mut().zip(texts).for_each(|(parts, text)| parts.push(text));
         }
     };
-    let both = |text: &dyn Fn(&Shown<'_>) -> String| (text(kept), text(now));
-    for (a, b) in [
-        both(&|side| format!("version {}", side.version)),
-        both(&|side| side.mode.to_owned()),
-        both(&|side| side.model.to_owned()),
-        both(&|side| file_name(Path::new(&side.settings.environment.name))),
-    ] {
-        add(a, b);
-    }
+    let both = |text: &dyn Fn(&Shown<'_>) -> String| [kept, now].map(text);
+    add(both(&|side| format!("version {}", side.version)));
+    add(both(&|side| side.mode.to_owned()));
+    add(both(&|side| side.model.to_owned()));
+    add(both(&|side| file_name(Path::new(&side.settings.environment.name))));
     let (before, after) = (leaves(kept.settings), leaves(now.settings));
-    let paths = before.keys().chain(after.keys().filter(|path| !before.contains_key(*path)));
-    let changed: Vec<&String> = paths.filter(|path| before.get(*path) != after.get(*path)).collect();
-    match changed.as_slice() {
-        [] => {}
-        [path] => {
-            let value = |leaves: &BTreeMap<String, String>| match leaves.get(*path) {
-                Some(value) if value.chars().count() <= LONGEST => format!("{path} {value}"),
-                Some(_) => format!("another {path}"),
-                None => format!("default {path}"),
-            };
-            parts[0].push(value(&before));
-            parts[1].push(value(&after));
-        }
-        several => parts[1].push(format!("{} other settings", several.len())),
+    let paths: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+    let changed: Vec<&String> = paths.into_iter().filter(|path| before.get(*path) != after.get(*path)).collect();
+    let named = if changed.len() > NAMED { NAMED - 1 } else { changed.len() };
+    for path in &changed[..named] {
+        let of = |side: &Shown<'_>, stored: &BTreeMap<String, String>| {
+            setting_text(path, stored.get(*path).map(String::as_str), side.settings, side.shaders)
+        };
+        add([of(kept, &before), of(now, &after)]);
     }
-    parts.map(|parts| if parts.is_empty() { now.mode.to_owned() } else { parts.join(", ") })
+    if changed.len() > named {
+        parts[1].push(format!("{} other settings", changed.len() - named));
+    }
+    if parts[0].is_empty() {
+        return ["kept", "now"].map(|side| format!("{side}: {}", now.mode));
+    }
+    parts.map(|parts| parts.join(", "))
 }
 
 /// The settings by their paths, except those that the names of a picture or of its parts show and the camera, which a kept
@@ -155,34 +153,63 @@ fn text(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::ShaderValue;
+    use crate::shader::Constant;
+    use crate::shader::spirv::reflect::Scalar;
 
-    fn shown<'a>(version: u64, mode: &'a str, settings: &'a Settings) -> Shown<'a> {
-        Shown { version, mode, model: "shader-ball", settings }
+    fn shown<'a>(version: u64, mode: &'a str, settings: &'a Settings, shaders: &'a ShaderSet) -> Shown<'a> {
+        Shown { version, mode, model: "shader-ball", settings, shaders }
     }
 
     #[test]
     fn the_names_tell_what_differs() {
-        let before = Settings::default();
-        let labels = |kept: Shown<'_>, now: Shown<'_>| differences(&kept, &now);
-        assert_eq!(labels(shown(3, "Final", &before), shown(3, "Final", &before)), ["Final", "Final"]);
-        assert_eq!(labels(shown(3, "Final", &before), shown(4, "Final", &before)), ["version 3", "version 4"]);
-        let modes = labels(shown(3, "Final", &before), shown(4, "Depth", &before));
-        assert_eq!(modes, ["version 3, Final", "version 4, Depth"]);
+        let (before, shaders) = (Settings::default(), ShaderSet::default());
+        let labels = |version, mode, settings: &Settings| {
+            differences(&shown(3, "Final", &before, &shaders), &shown(version, mode, settings, &shaders))
+        };
+        assert_eq!(labels(3, "Final", &before), ["kept: Final", "now: Final"]);
+        assert_eq!(labels(4, "Final", &before), ["version 3", "version 4"]);
+        assert_eq!(labels(4, "Depth", &before), ["version 3, Final", "version 4, Depth"]);
         let mut after = before.clone();
-        after.view.ev = 0.3;
+        after.view.ev = -0.3;
         after.camera.azimuth += 10.0;
-        assert_eq!(labels(shown(3, "Final", &before), shown(3, "Final", &after)), ["view.ev 0.7", "view.ev 0.3"]);
+        assert_eq!(labels(3, "Final", &after), ["Exposure: -0.7 EV", "Exposure: +0.3 EV"]);
         after.environment.name = "/maps/forest.hdr".into();
         after.environment.rotation = 90.0;
-        let [kept, now] = labels(shown(3, "Final", &before), shown(3, "Final", &after));
-        assert_eq!([&*kept, &*now], [&*before.environment.name, "forest.hdr, 2 other settings"]);
+        let [kept, now] = labels(3, "Final", &after);
+        assert!(
+            kept.starts_with(&*before.environment.name) && now.starts_with("forest.hdr, Environment: rot"),
+            "{now}"
+        );
+        after.lights.orbit.iter_mut().for_each(|light| light.strength += 1.0);
+        assert!(labels(3, "Final", &after)[1].ends_with(", 3 other settings"), "{:?}", labels(3, "Final", &after));
     }
 
     #[test]
-    fn a_value_that_only_one_side_has_is_the_default_of_the_other() {
+    fn settings_of_the_shaders_have_their_labels_and_choices() {
+        let choices = vec![("Lambert".to_owned(), 0), ("Minnaert".to_owned(), 5)];
+        let constant = Constant {
+            id: 0,
+            name: "DIFFUSE".into(),
+            label: "Diffuse".into(),
+            scalar: Scalar::Uint,
+            default: 0,
+            range: None,
+            choices,
+            choice_docs: Vec::new(),
+            conserves: None,
+            reciprocal: None,
+            group: String::new(),
+            doc: String::new(),
+            unit: String::new(),
+            file: String::new(),
+            line: 0,
+        };
+        let shaders = ShaderSet { constants: vec![constant], ..ShaderSet::default() };
         let (before, mut after) = (Settings::default(), Settings::default());
+        after.shader.insert("DIFFUSE".into(), ShaderValue::Name("Minnaert".into()));
         after.passes.insert("bloom".into(), true);
-        let labels = differences(&shown(1, "Final", &before), &shown(1, "Final", &after));
-        assert_eq!(labels, ["default passes.bloom", "passes.bloom true"]);
+        let labels = differences(&shown(1, "Final", &before, &shaders), &shown(1, "Final", &after, &shaders));
+        assert_eq!(labels, ["passes.bloom: default, Diffuse: Lambert", "passes.bloom: true, Diffuse: Minnaert"]);
     }
 }
