@@ -75,6 +75,7 @@ impl Panels {
             PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
             PanelRequest::ToggleKeys => self.show_keys ^= true,
             PanelRequest::TogglePalette => self.palette.toggle(),
+            PanelRequest::ChooseFile(dialog) => self.palette.choose_file(dialog),
             PanelRequest::ShowGallery => self.open_gallery.is_open = true,
             PanelRequest::AskDefaults => self.defaults.ask(None),
             _ => self.docked.iter_mut().for_each(|(_, panel)| panel.on_request(request)),
@@ -127,7 +128,7 @@ pub(in crate::app) fn show(
 fn bars(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut Vec<Command>) {
     let state = context.state;
     let Panels { layout, palette, show_keys, .. } = panels;
-    top_bar::show(ui, (layout, palette, show_keys), (&state.recent, &state.last_sessions), commands);
+    top_bar::show(ui, (layout, palette, show_keys), state, commands);
     let status = status_bar::Status {
         shader: &state.shader,
         waits: baking::long_wait(ui.ctx(), context),

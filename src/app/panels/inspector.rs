@@ -18,9 +18,10 @@ use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::State;
 use crate::app::state::inspection::{Inspection, Page, text};
 use crate::app::widgets::check_box;
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::{choose, elided};
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::{ACCENT, QUIET};
+use crate::app::widgets::theme::{ACCENT, QUIET, small_font};
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -100,7 +101,7 @@ fn show(ui: &mut Ui, context: &Context<'_>, panel: &mut InspectorState, commands
 
 /// The pixel, what it shows, and what can be done with it.
 fn header(ui: &mut Ui, own: &Inspection, (modes, is_toy): (&[crate::shader::Mode], bool), commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let at = own.pin.or(own.reading.as_ref().filter(|_| own.follows).map(|reading| reading.at));
         match at {
             Some([x, y]) => {
@@ -112,15 +113,15 @@ fn header(ui: &mut Ui, own: &Inspection, (modes, is_toy): (&[crate::shader::Mode
         if own.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
             commands.push(UNPIN.with(()));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            copy(ui, own, modes);
-            let mut follows = own.follows;
-            let follow = check_box::show(ui, Checkbox::new(&mut follows, "Follow mouse"));
-            let hint = "While no pixel is pinned, read the pixel under the mouse when the mouse stops";
-            if follow.on_hover_text(hint).changed() {
-                commands.push(FOLLOW_MOUSE.with(follows));
-            }
-        });
+        // A control that does not fit goes to the next row as a whole.
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        let mut follows = own.follows;
+        let follow = check_box::show(ui, Checkbox::new(&mut follows, "Follow mouse"));
+        let hint = "While no pixel is pinned, read the pixel under the mouse when the mouse stops";
+        if follow.on_hover_text(hint).changed() {
+            commands.push(FOLLOW_MOUSE.with(follows));
+        }
+        copy(ui, own, modes);
     });
     let Some(reading) = &own.reading else { return };
     let about = match &reading.names {
@@ -131,7 +132,8 @@ fn header(ui: &mut Ui, own: &Inspection, (modes, is_toy): (&[crate::shader::Mode
         None => String::new(),
     };
     let hover = "Node and material of the nearest surface under the pixel. This includes surfaces that a mask or alpha makes invisible";
-    ui.add(elided(RichText::new(&about).small().color(QUIET))).on_hover_text(format!("{about}\n{hover}").trim_start());
+    let shown = middle(ui.painter(), &about, &small_font(), ui.available_width());
+    ui.add(elided(RichText::new(shown).small().color(QUIET))).on_hover_text(format!("{about}\n{hover}").trim_start());
 }
 
 /// The menu that copies all values.

@@ -56,7 +56,8 @@ impl PanelUi for Modes {
             side_by_side(ui, grid, commands);
         }
         let (clicked, hovered) = self.list(ui, context, commands);
-        commands.sight.preview = self.preview.follow(ui.ctx(), hovered);
+        // Cells that change under the mouse would not be those that their names say.
+        commands.sight.preview = self.preview.follow(ui.ctx(), hovered.filter(|_| !grid.is_on()));
         let Some(mode) = clicked else { return };
         if !ui.input(|input| input.modifiers.command) {
             commands.settings.mode.clone_from(&mode.slug);

@@ -11,6 +11,7 @@ use crate::app::context::Context;
 use crate::app::numbers::{component, default_of, of_constant, of_parameter};
 use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::shaders::effects::{is_of_pass, switches};
+use crate::app::widgets::color;
 use crate::app::widgets::rows::{self, Row, edit_number, heading, set_option, short};
 use crate::app::widgets::search;
 use crate::app::widgets::theme::QUIET;
@@ -29,6 +30,11 @@ pub(super) type Values = BTreeMap<String, ShaderValue>;
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
+    // A pass that is still being compiled may have a constant that would otherwise stand here first.
+    if context.shaders.generation == 1 && !context.shaders.is_complete() && !context.state.has_errors() {
+        ui.label(RichText::new("Compiling shaders…").color(QUIET));
+        return;
+    }
     show(ui, &context.shaders, &mut commands.settings.shader, context.state.shader.is_single_file);
 }
 
@@ -219,7 +225,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
         (_, [number]) => edit_number(ui, &parameter.label, number, &scale.unwrap_or_else(|| component(parameter))),
         (ParameterType::Vec3, [r, g, b]) if parameter.color => {
             let mut linear = [*r as f32, *g as f32, *b as f32];
-            let response = rows::color(ui, &mut linear);
+            let response = color::edit(ui, &mut linear);
             (*r, *g, *b) = (linear[0].into(), linear[1].into(), linear[2].into());
             response
         }

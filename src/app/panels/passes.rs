@@ -14,7 +14,8 @@ use crate::app::state::playback::Playback;
 use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own, switches};
 use crate::app::widgets::rows::{INITIAL, Row, check, set_option, skips};
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::QUIET;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::{QUIET, icon};
 use crate::settings::Settings;
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
 
@@ -160,7 +161,8 @@ fn clock(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields> {
         if ui.button("Step").on_hover_text("Advance by 1/60 s").clicked() {
             asked = Some(PlaybackFields { step: true, ..PlaybackFields::default() });
         }
-        if ui.button("0").on_hover_text("Restart at 0 s").clicked() {
+        let restart = named(ui.button(icon::SKIP_BACK), "From the start");
+        if restart.on_hover_text("From the start, at 0 s").clicked() {
             asked = Some(PlaybackFields { restart: true, ..PlaybackFields::default() });
         }
         let mut speed = playback.speed;

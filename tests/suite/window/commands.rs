@@ -179,6 +179,9 @@ fn an_older_version_is_shown_in_place_of_the_newest() {
     assert_eq!(viewer.tree.read(NDF), edit("6.0"), "the file was changed");
     viewer.running.done(json!({"command": "versions", "show": "newest"}));
     assert!(capture(&mut viewer, "back.png") == newest, "not the newest version");
+    let after = viewer.running.done(json!({"command": "versions"}));
+    let numbers_after: Vec<u64> = after.as_array().unwrap().iter().filter_map(|row| row["number"].as_u64()).collect();
+    assert_eq!(numbers_after, numbers, "showing an older version makes none");
 
     // A save ends it.
     viewer.running.done(json!({"command": "versions", "show": oldest}));
@@ -285,7 +288,14 @@ fn numbers_of_a_line_are_commands() {
     running.done(json!({"command": "numbers", "at": at, "values": [9.0]}));
     let written = running.done(json!({"command": "numbers", "write": true}));
     assert_eq!(written["edits"][0]["line"], row);
-    assert_eq!(viewer.tree.read(NDF), text.replace("1.0 * alpha * alpha;", "9.0 * alpha * alpha;"));
+    let edited = text.replace("1.0 * alpha * alpha;", "9.0 * alpha * alpha;");
+    assert_eq!(viewer.tree.read(NDF), edited);
+    // Undo takes back what was written, and redo writes it again.
+    for (command, expected) in [("undo", &text), ("redo", &edited)] {
+        viewer.running.done(json!({"command": command}));
+        viewer.running.reload(true);
+        assert_eq!(viewer.tree.read(NDF), *expected, "{command}");
+    }
     let running = &mut viewer.running;
     for (command, part) in [
         (json!({"command": "numbers", "at": "ndf.glsl:9999"}), "no line ndf.glsl:9999"),
