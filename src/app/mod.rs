@@ -247,6 +247,7 @@ impl ApplicationHandler<Message> for App {
         let Some(open) = self.open.as_mut().filter(|open| !open.dropped.is_empty()) else { return };
         let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped));
         dropped.into_iter().for_each(|command| command::execute(&mut open.state, &mut open.engine, command));
+        open.drawing.interface.outdate();
         open.window.request_redraw();
     }
 

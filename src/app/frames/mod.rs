@@ -15,5 +15,5 @@ mod request;
 mod results;
 mod scan;
 mod stages;
-mod title;
+pub(super) mod title;
 mod toy_pixel;

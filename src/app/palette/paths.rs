@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn a_path_lists_what_can_be_opened() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.glb", "photo.jpg"] {
+        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.hdr", "photo.jpg"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         std::fs::create_dir(folder.path().join("tree")).unwrap();
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(titles(&typed, None)[1..], ["tree/", "a.glb", "b.hdr"]);
         assert_eq!(titles(&typed, None)[0], own);
         assert_eq!(titles(&format!("{typed}B"), None), ["b.hdr"]);
-        assert_eq!(titles(&format!("{typed}."), None), [".hidden.glb"]);
+        assert_eq!(titles(&format!("{typed}."), None), [".hidden.hdr"]);
         assert_eq!(titles(&typed, Some(Dialog::Picture)), ["tree/", "b.hdr", "photo.jpg"]);
         assert_eq!(titles(&typed, Some(Dialog::New)), [own.as_str(), "tree/"]);
         let completed = entries(&listing, &format!("{typed}t"), None, &mut Vec::new()).unwrap().remove(0);

@@ -6,6 +6,8 @@ mod mark;
 
 use egui::{RichText, ScrollArea, Ui};
 
+use lesson::Results;
+
 use crate::app::command::program::LEARN;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
@@ -16,7 +18,8 @@ use crate::app::widgets::theme::{ACCENT, GOOD, QUIET};
 use crate::learn::exercises;
 
 /// How the rest of the window finds the panel.
-pub(super) static PANEL: PanelSpec = PanelSpec::new("Learn", Group::Modes, "exercises lessons", || Box::new(ui));
+pub(super) static PANEL: PanelSpec =
+    PanelSpec::new("Learn", Group::Modes, "exercises lessons", || Box::new(ui)).scrolls_itself();
 
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
@@ -27,17 +30,6 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
         false => Results::New,
     };
     show(ui, &state.learning, results, &mut commands.list);
-}
-
-/// What the measured results are of.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Results {
-    /// The shaders of now.
-    New,
-    /// The shaders before the last edit, which is being measured.
-    Old,
-    /// The shaders before an edit that does not compile.
-    Broken,
 }
 
 /// Shows the panel.

@@ -11,6 +11,7 @@ impl Panel {
     pub(in crate::app) const MODES: Self = Self("Modes");
     pub(in crate::app) const TEXTURE: Self = Self("Texture");
     pub(in crate::app) const LEARN: Self = Self("Learn");
+    pub(in crate::app) const LIGHTS: Self = Self("Lights");
     pub(in crate::app) const SHADERS: Self = Self("Shaders");
     pub(in crate::app) const TIMELINE: Self = Self("Timeline");
     pub(in crate::app) const TIMING: Self = Self("Timing");

@@ -24,7 +24,8 @@ pub(in crate::app) fn edit(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
     if let Some(color) = parse(&text).filter(|_| field.changed()) {
         *linear = color;
     }
-    ui.data_mut(|data| match field.has_focus() {
+    let is_typed = field.has_focus();
+    ui.data_mut(|data| match is_typed {
         true => _ = data.insert_temp(id, text),
         false => data.remove::<String>(id),
     });

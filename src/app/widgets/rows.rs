@@ -8,8 +8,8 @@ use egui::{Button, DragValue, Label, Layout, Response, RichText, Sense, Ui, vec2
 
 use super::controls::HEIGHT;
 pub(in crate::app) use super::controls::{check, choose, drag, edit_number};
-use super::{color, sight};
 use super::theme::{ACCENT, QUIET, small_mono};
+use super::{color, sight};
 use crate::app::numbers::Number;
 use crate::settings::{Setting, Settings, Valid, Value, catalog};
 

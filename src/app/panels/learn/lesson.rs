@@ -1,8 +1,7 @@
 //! An exercise: its text, its goals with what was measured, hints and the solution.
 
-use egui::{Align, Frame, Id, Label, Margin, Panel, RichText, ScrollArea, Ui};
+use egui::{Align, Frame, Id, Label, Margin, RichText, ScrollArea, Ui};
 
-use super::Results;
 use super::mark::mark;
 use crate::app::command::program::LEARN;
 use crate::app::command::spec::Command;
@@ -10,6 +9,17 @@ use crate::app::state::exercise::{LearnCommand, Learning, Measured};
 use crate::app::state::shaders::difference::Kind;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
+
+/// What the measured results are of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Results {
+    /// The shaders of now.
+    New,
+    /// The shaders before the last edit, which is being measured.
+    Old,
+    /// The shaders before an edit that does not compile.
+    Broken,
+}
 
 /// Height of a panel below which the goals scroll with the text, points.
 const LOW: f32 = 260.0;
@@ -34,13 +44,19 @@ pub(super) fn show(
         });
         return;
     }
-    let most = PART * ui.available_height();
-    let below = Panel::bottom("goals").resizable(false).frame(Frame::new()).max_size(most);
-    below.show(ui, |ui| {
-        ui.add_space(4.0);
-        scroll("goals").auto_shrink([false, true]).show(ui, |ui| goals(ui, learning, exercise, results, commands));
-    });
-    scroll("text").show(ui, |ui| about(ui, learning, exercise, commands));
+    // The goals take the height that they had in the last frame.
+    let id = Id::new(("height of the goals", &exercise.name));
+    let whole = ui.available_height();
+    let known = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(0.4 * whole);
+    let below = known.min(PART * whole);
+    let above = whole - below - 3.0 * ui.spacing().item_spacing.y;
+    scroll("text").max_height(above).show(ui, |ui| about(ui, learning, exercise, commands));
+    ui.separator();
+    let shown = scroll("goals").show(ui, |ui| goals(ui, learning, exercise, results, commands));
+    if shown.content_size.y != known {
+        ui.data_mut(|data| data.insert_temp(id, shown.content_size.y));
+        ui.ctx().request_repaint();
+    }
 }
 
 /// The text of the exercise, the hints that were asked for, and the solution.
