@@ -212,7 +212,11 @@ fn request_missing(state: &mut State, engine: &mut Engine, missing: Missing, fra
         (Some(wanted), Some((baked, _))) => baked.is_edit_of(wanted),
         (environment, _) => environment.is_none() && engine.resources.tables().is_some(),
     };
-    state.picture.wait_for(Waits::of(&missing, of_edit));
+    // The stages that bake are compiled once the picture of an edit is on screen.
+    let is_pending = frame_state.shaders.pending.iter().any(|path| path.starts_with("ibl/")) && !state.has_errors();
+    let follows = is_pending && frame_state.environment.is_some();
+    let waits = Waits::of(&missing, of_edit);
+    state.picture.wait_for(waits.or(follows.then_some(Waits::Light { of_edit: true })));
     if missing.pipelines {
         engine.threads.worker.build(set, &frame_state.pipelines);
     }

@@ -7,14 +7,15 @@ use crate::app::state::waits::Waits;
 
 /// The bars and the picture say what the picture waits for after this long.
 const LONG: Duration = Duration::from_millis(250);
-/// Time between two texts with other numbers.
-const STEP: Duration = Duration::from_millis(100);
+/// Time between two texts with other numbers. A frame takes time from a bake on a software device.
+const STEP: Duration = Duration::from_millis(250);
 
 /// The work that has delayed the picture for longer than [`LONG`], and since when.
 pub(super) fn long_wait(egui: &egui::Context, context: &Context<'_>) -> Option<(Waits, Duration)> {
     let (waits, time) = context.state.picture.waits_for()?;
     let left = LONG.checked_sub(time);
-    egui.request_repaint_after(left.unwrap_or(STEP));
+    let next = left.or(matches!(waits, Waits::Light { .. }).then_some(STEP));
+    next.into_iter().for_each(|next| egui.request_repaint_after(next));
     left.is_none().then_some((waits, time))
 }
 

@@ -1,6 +1,6 @@
 //! A small card that says that the picture has not got its light yet.
 
-use egui::{Align2, Id, Rect, RichText};
+use egui::{Align2, Id, Label, Rect, RichText};
 
 use super::card::{area, card};
 use crate::app::context::Context;
@@ -14,6 +14,8 @@ pub(super) fn show(egui: &egui::Context, context: &Context<'_>, picture: Rect) {
     let done = context.readings.baking.map(|(done, _)| format!(", {:.0} %", 100.0 * done)).unwrap_or_default();
     let light = if of_edit { "Light of before the edit" } else { "Light not baked yet" };
     area(Id::new("old light"), Align2::CENTER_TOP, picture).fade_in(false).interactable(false).show(egui, |ui| {
-        card(WARNING).show(ui, |ui| ui.label(RichText::new(format!("{light}{done}")).small()));
+        card(WARNING).show(ui, |ui| {
+            ui.add(Label::new(RichText::new(format!("{light}{done}")).small()).extend());
+        });
     });
 }
