@@ -11,7 +11,7 @@ use json::validation::{Checked, USize64};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::{MAX_DECODED_BYTES, add_buffer, failed, spend};
+use super::stream::{MAX_DECODED_BYTES, add_buffer, failed, spend};
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
 use crate::scene::gltf::place::place;
