@@ -21,7 +21,7 @@ mod material;
 mod print;
 mod specialization;
 
-pub use access::{Resource, StageRole, table as access_table};
+pub use access::{Resource, StageRole};
 pub use binding::{Binding, BindingKind};
 pub use bindings::*;
 pub use blocks::{

@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 pub use assign::unknown_setting;
 pub use camera::CameraSettings;
-pub use catalog::{catalog, setting, table};
+pub use catalog::{catalog, setting};
 use declare::settings;
 pub use display::{Channels, Colormap, ViewRange, linear_from_srgb};
 pub use entry::{Curve, Entry, Slider, Unit, Valid};

@@ -3,8 +3,6 @@
 //! A stage that reads a resource which nothing binds for it would read 0 or crash the driver. [`StageRole::binds`] says what is
 //! bound; the contract check refuses everything else at its line, and `pipeline` refuses a module that slipped through.
 
-use std::fmt::Write as _;
-
 /// The purpose that a stage is run for. It decides which resources are bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StageRole {
@@ -50,10 +48,6 @@ pub enum Resource {
 }
 
 impl StageRole {
-    /// Every role, in the order of the documentation.
-    pub const ALL: [Self; 7] =
-        [Self::Model, Self::Paths, Self::Quads, Self::Screen, Self::Compute, Self::Bake, Self::Measure];
-
     /// The role of a compute stage that no pass declares, by its path.
     pub fn of_compute(path: &str) -> Self {
         if path.starts_with("measure/") { Self::Measure } else { Self::Bake }
@@ -82,19 +76,6 @@ impl StageRole {
             Self::Compute => "a compute pass",
             Self::Bake => "a bake",
             Self::Measure => "a measurement of the BRDF",
-        }
-    }
-
-    /// The stage as the head of a column in the documentation.
-    fn column(self) -> &'static str {
-        match self {
-            Self::Model => "model",
-            Self::Paths => "paths.frag",
-            Self::Quads => "draw=quads",
-            Self::Screen => "full screen",
-            Self::Compute => ".comp pass",
-            Self::Bake => "ibl/",
-            Self::Measure => "measure/",
         }
     }
 }
@@ -129,48 +110,78 @@ impl Resource {
             Self::Task => "task of a bake",
         }
     }
-
-    /// The resource as the head of a row in the documentation.
-    fn row(self) -> &'static str {
-        match self {
-            Self::Params => "members of `Params` (`user/params.glsl`)",
-            Self::Frame => "`frame.*`",
-            Self::Lights => "`lights[]`",
-            Self::Material => "`material.*` and its textures",
-            Self::Draw => "`draw.*`",
-            Self::Environment => "the environment's images (`lighting/environment_map.glsl`)",
-            Self::Tables => "BRDF tables, measured BRDF (`brdf/energy/dfg.glsl`, `brdf/measured.glsl`)",
-            Self::Scene => "the traced scene (`paths/scene.glsl`)",
-            Self::Pass => "images of passes, `//@texture`, buffers, blocks of one's own",
-            Self::Task => "`task.*`",
-        }
-    }
-}
-
-/// The table of resources and stages, in Markdown: part of `shaders/README.md`.
-pub fn table() -> String {
-    let mut out = String::from("| read in |");
-    let mut rule = String::from("|---|");
-    for role in StageRole::ALL {
-        // A `String` takes everything.
-        let _ = write!(out, " {} |", role.column());
-        rule.push_str("---|");
-    }
-    let constants = std::iter::repeat_n(" works |", StageRole::ALL.len()).collect::<String>();
-    let _ = write!(out, "\n{rule}\n| constants with `//@ui` |{constants}\n");
-    for resource in Resource::ALL {
-        let _ = write!(out, "| {} |", resource.row());
-        for role in StageRole::ALL {
-            out.push_str(if role.binds(resource) { " works |" } else { " refused |" });
-        }
-        out.push('\n');
-    }
-    out
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
+
+    impl StageRole {
+        /// Every role, in the order of the documentation.
+        const ALL: [Self; 7] =
+            [Self::Model, Self::Paths, Self::Quads, Self::Screen, Self::Compute, Self::Bake, Self::Measure];
+
+        /// The stage as the head of a column in the documentation.
+        fn column(self) -> &'static str {
+            match self {
+                Self::Model => "model",
+                Self::Paths => "paths.frag",
+                Self::Quads => "draw=quads",
+                Self::Screen => "full screen",
+                Self::Compute => ".comp pass",
+                Self::Bake => "ibl/",
+                Self::Measure => "measure/",
+            }
+        }
+    }
+
+    impl Resource {
+        /// The resource as the head of a row in the documentation.
+        fn row(self) -> &'static str {
+            match self {
+                Self::Params => "members of `Params` (`user/params.glsl`)",
+                Self::Frame => "`frame.*`",
+                Self::Lights => "`lights[]`",
+                Self::Material => "`material.*` and its textures",
+                Self::Draw => "`draw.*`",
+                Self::Environment => "the environment's images (`lighting/environment_map.glsl`)",
+                Self::Tables => "BRDF tables, measured BRDF (`brdf/energy/dfg.glsl`, `brdf/measured.glsl`)",
+                Self::Scene => "the traced scene (`paths/scene.glsl`)",
+                Self::Pass => "images of passes, `//@texture`, buffers, blocks of one's own",
+                Self::Task => "`task.*`",
+            }
+        }
+    }
+
+    /// The table of resources and stages, in Markdown: part of `shaders/README.md`.
+    fn table() -> String {
+        let mut out = String::from("| read in |");
+        let mut rule = String::from("|---|");
+        for role in StageRole::ALL {
+            // A `String` takes everything.
+            let _ = write!(out, " {} |", role.column());
+            rule.push_str("---|");
+        }
+        let constants = std::iter::repeat_n(" works |", StageRole::ALL.len()).collect::<String>();
+        let _ = write!(out, "\n{rule}\n| constants with `//@ui` |{constants}\n");
+        for resource in Resource::ALL {
+            let _ = write!(out, "| {} |", resource.row());
+            for role in StageRole::ALL {
+                out.push_str(if role.binds(resource) { " works |" } else { " refused |" });
+            }
+            out.push('\n');
+        }
+        out
+    }
+
+    #[test]
+    fn the_table_of_resources_is_current() {
+        let page = include_str!("../../shaders/README.md");
+        let table = table();
+        assert!(page.contains(&table), "shaders/README.md lacks this table:\n{table}");
+    }
 
     #[test]
     fn every_resource_is_bound_somewhere() {

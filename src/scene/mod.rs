@@ -42,7 +42,7 @@ pub use load_options::{Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
-pub use pick::{Hit, Sides, near_pixel, pick, point_at, ray};
+pub use pick::{Hit, Sides, near_pixel, pick, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
 pub use replace::{material_factors, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};

@@ -204,18 +204,6 @@ impl Model {
             format!("the model has no variant '{name}': {known}.{hint} An empty name is the model in its own materials")
         })
     }
-
-    /// Selects the variant with this name for every primitive; the empty name selects the default materials.
-    ///
-    /// # Errors
-    /// As [`Model::variant`]. The model is unchanged then.
-    pub fn select_variant(&mut self, name: &str) -> Result<(), String> {
-        let variant = self.variant(name)?;
-        for primitive in Arc::make_mut(&mut self.primitives) {
-            primitive.material = primitive.material_in(variant);
-        }
-        Ok(())
-    }
 }
 
 /// A node of the scene.

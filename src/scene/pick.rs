@@ -134,11 +134,6 @@ fn enters(ray: Vec3, eye: Vec3, placed: &Instance, primitive: &Primitive) -> boo
     first <= last
 }
 
-/// The nearest point of the model's triangles at a pixel: [`pick`] with both sides of all instances.
-pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
-    pick(model, view, size, at, |_| Sides::Both).map(|hit| hit.point)
-}
-
 /// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997), and the weights of its second and third
 /// corner there.
 fn distance(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, [f32; 2])> {
@@ -181,6 +176,11 @@ fn reaches(places: impl Iterator<Item = Option<Vec2>>) -> bool {
 mod tests {
     use super::super::{BUILT_IN, Bounds, built_in};
     use super::*;
+
+    /// The nearest point of the model's triangles at a pixel: [`pick`] with both sides of all instances.
+    fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
+        pick(model, view, size, at, |_| Sides::Both).map(|hit| hit.point)
+    }
 
     #[test]
     fn what_a_pixel_shows_is_near_and_what_lies_elsewhere_is_not() {

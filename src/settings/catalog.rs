@@ -31,19 +31,6 @@ pub fn setting(path: &str) -> Option<&'static Setting> {
     })
 }
 
-/// The table of all settings, in Markdown: part of `assets/manual/settings.md`.
-pub fn table() -> String {
-    let mut out = String::from("| setting | takes | default | range | unit | meaning |\n|---|---|---|---|---|---|\n");
-    for setting in catalog() {
-        let Setting { path, entry, takes, default, .. } = setting;
-        let default = default.to_string();
-        let default = if default.is_empty() { default } else { format!("`{default}`") };
-        let (range, unit, doc) = (entry.valid.text(), entry.unit.name, setting.doc());
-        out += &format!("| `{path}` | {takes} | {default} | {range} | {unit} | {doc} |\n");
-    }
-    out
-}
-
 /// The setting that is most like an unknown path, and how alike they are, 0..1. A path without a dot is also compared with the last parts of all
 /// paths, since that is how people abbreviate them.
 pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
@@ -62,6 +49,32 @@ mod tests {
     use super::super::entry::When;
     use super::super::value::Value;
     use super::*;
+
+    /// The table of all settings, in Markdown: part of `assets/manual/settings.md`.
+    fn table() -> String {
+        let mut out =
+            String::from("| setting | takes | default | range | unit | meaning |\n|---|---|---|---|---|---|\n");
+        for setting in catalog() {
+            let Setting { path, entry, takes, default, .. } = setting;
+            let default = default.to_string();
+            let default = if default.is_empty() { default } else { format!("`{default}`") };
+            let (range, unit, doc) = (entry.valid.text(), entry.unit.name, setting.doc());
+            out += &format!("| `{path}` | {takes} | {default} | {range} | {unit} | {doc} |\n");
+        }
+        out
+    }
+
+    /// Run with `SPECULA_BLESS=1` to write the table anew after a change of a setting.
+    #[test]
+    fn the_page_about_settings_lists_all() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual/settings.md");
+        let (page, table) = (std::fs::read_to_string(path).unwrap(), table());
+        if std::env::var_os("SPECULA_BLESS").is_some() {
+            let above = page.split("| setting |").next().unwrap();
+            return std::fs::write(path, format!("{above}{table}")).unwrap();
+        }
+        assert!(page.ends_with(&table), "{path} is stale; run this test with SPECULA_BLESS=1");
+    }
 
     /// How `--set` and a look file read a path and its value.
     #[test]

@@ -29,16 +29,6 @@ impl Encoder {
         self.blit((from, level), (to, 0), layer);
     }
 
-    /// Halves each level of an image in [`Use::CopyTo`], whose level 0 is filled, into the next. Leaves it in [`Use::CopyFrom`].
-    pub fn fill_lower_levels(&mut self, image: &Arc<Image>) {
-        self.keep(image);
-        for level in 1..image.desc().mips {
-            self.transition_level(image, level - 1, Use::CopyTo, Use::CopyFrom);
-            self.blit((image, level - 1), (image, level), 0);
-        }
-        self.transition_level(image, image.desc().mips - 1, Use::CopyTo, Use::CopyFrom);
-    }
-
     /// Scales an image in [`Use::CopyFrom`] to one in [`Use::CopyTo`], with a linear filter.
     pub fn scale(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
         self.keep(from);

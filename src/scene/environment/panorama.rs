@@ -1,11 +1,9 @@
-//! An environment as an equirectangular image, and integrals over all of its texels.
+//! An environment as an equirectangular image.
 
-use std::f64::consts::PI;
-
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
-use super::direction::{TexelDirections, texel_solid_angle};
+use super::direction::TexelDirections;
 
 /// Radiance from every direction, linear RGB times cd/m^2, as an equirectangular image. [`super::direction_from_uv`] maps texels to
 /// directions.
@@ -39,30 +37,6 @@ impl Environment {
         });
         let peak = peak(&pixels);
         Self { name: String::new(), width, height: width / 2, pixels, peak, warnings: Vec::new() }
-    }
-
-    /// Mean radiance over the sphere, linear RGB, weighted by solid angle.
-    pub fn mean_radiance(&self) -> Vec3 {
-        (self.integrate(|_| 1.0) / (4.0 * PI)).as_vec3()
-    }
-
-    /// Irradiance of a surface with the unit normal `n`, linear RGB: the integral of radiance times cos(theta) over the
-    /// hemisphere. Sums over every texel, as a reference for faster methods.
-    pub fn irradiance(&self, n: Vec3) -> Vec3 {
-        self.integrate(|direction| f64::from(direction.dot(n).max(0.0))).as_vec3()
-    }
-
-    /// Integral of radiance times `weight` over the sphere.
-    fn integrate(&self, weight: impl Fn(Vec3) -> f64 + Sync) -> DVec3 {
-        let (width, height) = (self.width as usize, self.height as usize);
-        let directions = TexelDirections::new(width, height);
-        let sums = self.pixels.par_chunks_exact(width.max(1)).enumerate().map(|(y, row)| {
-            let texels = row.iter().zip(directions.row(y));
-            let sum: DVec3 = texels.map(|(&[r, g, b, _], at)| Vec3::new(r, g, b).as_dvec3() * weight(at)).sum();
-            sum * texel_solid_angle(y, width, height)
-        });
-        // Collecting the rows before summing gives the same bits for any number of threads.
-        sums.collect::<Vec<_>>().into_iter().sum()
     }
 }
 

@@ -1,5 +1,7 @@
 //! Values as both formats store them: planes of doubles.
 
+use glam::Vec3;
+
 use super::error::MeasuredProblem;
 
 /// Negative values are failed measurements. If more than this fraction of all values is negative, the user is warned.
@@ -39,4 +41,9 @@ pub(super) fn warn_of_negative(negative: usize, all: usize) -> Option<String> {
             100.0 * part
         )
     })
+}
+
+/// The RGB triple at `cell`.
+pub(super) fn triple(values: &[f32], cell: usize) -> Vec3 {
+    Vec3::from_slice(&values[cell * 3..])
 }

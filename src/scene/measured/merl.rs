@@ -13,22 +13,16 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 
-use super::decoded::{Decoded, interleave, warn_of_negative};
+use super::decoded::{Decoded, interleave, triple, warn_of_negative};
 use super::error::MeasuredProblem;
-use super::grid::{Between, triple};
-use super::kind::{
-    MERL_CELLS as CELLS, MERL_DIMENSIONS as DIMENSIONS, MERL_HEADER_BYTES as HEADER_BYTES, MeasuredKind,
-};
+use super::kind::{MERL_CELLS as CELLS, MERL_DIMENSIONS as DIMENSIONS, MERL_HEADER_BYTES as HEADER_BYTES};
 
-const THETA_H: usize = DIMENSIONS[0] as usize;
-const THETA_D: usize = DIMENSIONS[1] as usize;
-const PHI_D: usize = DIMENSIONS[2] as usize;
+pub(super) const THETA_H: usize = DIMENSIONS[0] as usize;
+pub(super) const THETA_D: usize = DIMENSIONS[1] as usize;
+pub(super) const PHI_D: usize = DIMENSIONS[2] as usize;
 
 /// Converts stored values to 1/sr: one factor per channel (from the database's reader).
-const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
-
-/// The database's value for directions below the horizon.
-const BELOW_HORIZON: f64 = -1.0;
+pub(super) const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 
 /// The header's three numbers; `None` if it is too short.
 pub(super) fn dimensions(header: &[u8]) -> Option<[i32; 3]> {
@@ -44,7 +38,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, MeasuredProblem> {
     Ok(Decoded { values, warnings: warn_of_negative(negative, 3 * CELLS).into_iter().collect() })
 }
 
-fn cell(theta_h: usize, theta_d: usize, phi_d: usize) -> usize {
+pub(super) fn cell(theta_h: usize, theta_d: usize, phi_d: usize) -> usize {
     (theta_h * THETA_D + theta_d) * PHI_D + phi_d
 }
 
@@ -79,7 +73,7 @@ fn fill(values: &mut [f32]) -> usize {
 }
 
 /// l and v at the center of a bin, with phi_h = 0.
-fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
+pub(super) fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
     let middle = |i: usize, count: usize| (i as f32 + 0.5) / count as f32;
     let (sin_h, cos_h) = (FRAC_PI_2 * middle(theta_h, THETA_H).powi(2)).sin_cos();
     let (sin_d, cos_d) = (FRAC_PI_2 * middle(theta_d, THETA_D)).sin_cos();
@@ -87,45 +81,4 @@ fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
     let h = Vec3::new(sin_h, 0.0, cos_h);
     let aside = sin_d * Vec3::new(cos_phi * cos_h, sin_phi, -cos_phi * sin_h);
     (cos_d * h + aside, cos_d * h - aside)
-}
-
-/// Looks up l and v, both above the horizon.
-///
-/// With l + v = 2 cos(theta_d) h and l - v = 2 sin(theta_d) (across h, towards phi_d), all angles come from
-/// arctangents. They are exact at the highlight's peak, where the arccosine of a dot product is not.
-pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
-    let (sum, difference) = (l + v, l - v);
-    let aside = sum.truncate().length();
-    let theta_h = aside.atan2(sum.z);
-    let theta_d = difference.length().atan2(sum.length());
-
-    // Components along the meridian through h and across it. At the pole any meridian will do: this takes x.
-    let (cos_phi, sin_phi) = if aside > 0.0 { (sum.x / aside, sum.y / aside) } else { (1.0, 0.0) };
-    let (sin_h, cos_h) = theta_h.sin_cos();
-    let along = difference.dot(Vec3::new(cos_h * cos_phi, cos_h * sin_phi, -sin_h));
-    let across = difference.dot(Vec3::new(-sin_phi, cos_phi, 0.0));
-    let phi_d = across.atan2(along);
-    let phi_d = if phi_d < 0.0 { phi_d + PI } else { phi_d };
-
-    let h = Between::clamped(THETA_H as f32 * (theta_h / FRAC_PI_2).sqrt() - 0.5, THETA_H);
-    let d = Between::clamped(THETA_D as f32 * (theta_d / FRAC_PI_2) - 0.5, THETA_D);
-    let phi = Between::around(PHI_D as f32 * (phi_d / PI) - 0.5, PHI_D);
-    h.mix(|h| d.mix(|d| phi.mix(|phi| triple(values, cell(h, d, phi)))))
-}
-
-/// Encodes `f` as a file.
-pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
-    let mut bytes: Vec<u8> = DIMENSIONS.iter().flat_map(|n| n.to_le_bytes()).collect();
-    bytes.resize(MeasuredKind::Merl.file_bytes(), 0);
-    for index in 0..CELLS {
-        let (l, v) = directions(index / (THETA_D * PHI_D), index / PHI_D % THETA_D, index % PHI_D);
-        let above = l.z > 0.0 && v.z > 0.0;
-        let value = if above { f(l, v).as_dvec3().to_array() } else { [0.0; 3] };
-        for (channel, (value, scale)) in value.iter().zip(SCALE).enumerate() {
-            let stored = if above { value / scale } else { BELOW_HORIZON };
-            let at = HEADER_BYTES + (channel * CELLS + index) * size_of::<f64>();
-            bytes[at..at + size_of::<f64>()].copy_from_slice(&stored.to_le_bytes());
-        }
-    }
-    bytes
 }

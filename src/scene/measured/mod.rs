@@ -7,15 +7,15 @@
 //! - **UTIA** (`.bin`): anisotropic, over the angles of light and view. Filip & Vávra 2014, "Template-Based Sampling of
 //!   Anisotropic BRDFs".
 //!
-//! `shaders/brdf/measured.glsl` reads [`Measured::values`]; [`Measured::evaluate`] does the same lookup on the CPU. All
-//! directions here are unit vectors in tangent space (x tangent, y bitangent, z normal) that point away from the
-//! surface.
+//! `shaders/brdf/measured.glsl` reads [`MeasuredBrdf::values`]. All directions here are unit vectors in tangent space (x tangent, y bitangent,
+//! z normal) that point away from the surface.
 
 mod decoded;
 mod error;
-mod grid;
 mod kind;
 mod merl;
+#[cfg(test)]
+mod reference_tests;
 #[cfg(test)]
 mod tests;
 mod utia;
@@ -24,22 +24,9 @@ use std::ffi::OsStr;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
-
 use crate::regular_file;
 pub use error::{MeasuredError, MeasuredProblem};
 pub use kind::MeasuredKind;
-
-impl MeasuredKind {
-    /// Encodes `f(l, v)`, in 1/sr for directions above the horizon, as a file of this format. Other programs can read
-    /// it, and the tests read it back.
-    pub fn encode(self, f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
-        match self {
-            Self::Merl => merl::encode(f),
-            Self::Utia => utia::encode(f),
-        }
-    }
-}
 
 /// A measured BRDF.
 #[derive(Clone, Debug)]
@@ -74,17 +61,6 @@ impl MeasuredBrdf {
             Ok(Self { name, kind, values: decoded.values, files: vec![file], warnings: decoded.warnings })
         };
         open().map_err(|problem| MeasuredError { file: path.to_owned(), problem })
-    }
-
-    /// f(l, v) in 1/sr, linearly interpolated; black if either direction is below the horizon.
-    pub fn evaluate(&self, l: Vec3, v: Vec3) -> Vec3 {
-        if !(l.z > 0.0 && v.z > 0.0) {
-            return Vec3::ZERO;
-        }
-        match self.kind {
-            MeasuredKind::Merl => merl::evaluate(&self.values, l, v),
-            MeasuredKind::Utia => utia::evaluate(&self.values, l, v),
-        }
     }
 }
 

@@ -10,19 +10,17 @@
 //! Specula takes the values as linear and in 1/sr, as the database's own reader does. Some programs read them as sRGB
 //! encoded, and the files do not say which is right; hence the warning if they reflect more light than they receive.
 
-use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 
-use super::decoded::{Decoded, interleave, warn_of_negative};
+use super::decoded::{Decoded, interleave, triple, warn_of_negative};
 use super::error::MeasuredProblem;
-use super::grid::{Between, triple};
-use super::kind::{MeasuredKind, UTIA_DIRECTIONS as DIRECTIONS, UTIA_STEPS};
+use super::kind::{UTIA_DIRECTIONS as DIRECTIONS, UTIA_STEPS};
 
-const THETA: usize = UTIA_STEPS[0];
-const PHI: usize = UTIA_STEPS[1];
-const THETA_STEP: f32 = PI / 12.0;
-const PHI_STEP: f32 = TAU / PHI as f32;
+pub(super) const THETA: usize = UTIA_STEPS[0];
+pub(super) const PHI: usize = UTIA_STEPS[1];
+pub(super) const THETA_STEP: f32 = PI / 12.0;
 
 /// Albedos up to this are within the accuracy of such a measurement.
 const LARGEST_ALBEDO: f32 = 1.05;
@@ -63,39 +61,4 @@ fn warn_of_albedo(albedo: f32) -> Option<String> {
              values may not be linear, or not in 1/sr. Compare its shape, not its brightness."
         )
     })
-}
-
-/// The samples between which `direction`, above the horizon, lies.
-fn between(direction: Vec3) -> (Between, Between) {
-    let theta = direction.truncate().length().atan2(direction.z);
-    let phi = direction.y.atan2(direction.x);
-    let phi = if phi < 0.0 { phi + TAU } else { phi };
-    (Between::clamped(theta / THETA_STEP, THETA), Between::around(phi / PHI_STEP, PHI))
-}
-
-/// Looks up l and v, both above the horizon.
-pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
-    let (theta_l, phi_l) = between(l);
-    let (theta_v, phi_v) = between(v);
-    let seen = |l: usize| theta_v.mix(|theta| phi_v.mix(|phi| triple(values, l * DIRECTIONS + theta * PHI + phi)));
-    theta_l.mix(|theta| phi_l.mix(|phi| seen(theta * PHI + phi)))
-}
-
-/// Encodes `f` as a file.
-pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
-    let direction = |index: usize| {
-        let (sin_theta, cos_theta) = (THETA_STEP * (index / PHI) as f32).sin_cos();
-        let (sin_phi, cos_phi) = (PHI_STEP * (index % PHI) as f32).sin_cos();
-        Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
-    };
-    let cells = DIRECTIONS * DIRECTIONS;
-    let mut bytes = vec![0; MeasuredKind::Utia.file_bytes()];
-    for cell in 0..cells {
-        let value = f(direction(cell / DIRECTIONS), direction(cell % DIRECTIONS)).as_dvec3().to_array();
-        for (channel, stored) in value.iter().enumerate() {
-            let at = (channel * cells + cell) * size_of::<f64>();
-            bytes[at..at + size_of::<f64>()].copy_from_slice(&stored.to_le_bytes());
-        }
-    }
-    bytes
 }

@@ -12,7 +12,6 @@ mod unbound;
 mod uniform;
 
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 use serde::Serialize;
 use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
@@ -110,8 +109,6 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
     /// All paths that the result depends on, including paths where no include was found.
     pub dependencies: BTreeSet<TreePath>,
-    /// Wall time of the compilation in milliseconds.
-    pub ms: f64,
 }
 
 /// A shaderc compiler. Threads can share it.
@@ -157,8 +154,7 @@ impl Compiler {
     pub fn compile(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Compiled {
         let file = || snapshot.display_path(stage);
         let dependencies = BTreeSet::from([stage.clone()]);
-        let failed =
-            |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
+        let failed = |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies };
         let Some(kind) = StageKind::of(stage) else {
             let message =
                 "not a shader stage: the extension must be .vert, .tesc, .tese, .geom, .task, .mesh, .frag or .comp";
@@ -222,10 +218,8 @@ impl Compiler {
     }
 
     fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
-        let start = Instant::now();
         let includes = Includes::new(snapshot, path.clone());
         let outcome = options(kind).and_then(|options| self.run(options, &includes, path, text, kind));
-        let ms = start.elapsed().as_secs_f64() * 1e3;
         let unreadable = includes.take_unreadable();
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
@@ -248,7 +242,7 @@ impl Compiler {
         } else if errors.is_empty() {
             errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
         }
-        Compiled { result: result.map_err(|()| errors), warnings, dependencies, ms }
+        Compiled { result: result.map_err(|()| errors), warnings, dependencies }
     }
 
     /// Returns the module and the log of warnings, or the log of errors. File names in the log are tree paths.

@@ -5,7 +5,6 @@
 //! each start reports it again.
 
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 use super::Compiled;
 use crate::disk_cache;
@@ -21,13 +20,11 @@ const COMPILER: &str = env!("SPECULA_COMPILER");
 
 /// The stage as an earlier process compiled it, if its text and all that it includes are the same.
 pub fn load(snapshot: &Snapshot<'_>, stage: &TreePath) -> Option<Compiled> {
-    let start = Instant::now();
     let list = disk_cache::read(FOLDER, &key(LIST, snapshot, stage, [stage])?)?;
     let dependencies: BTreeSet<TreePath> = String::from_utf8(list).ok()?.lines().map(TreePath::from).collect();
     let module = disk_cache::read(FOLDER, &key(MODULE, snapshot, stage, &dependencies)?)?;
     let spirv = bytemuck::pod_collect_to_vec(&module);
-    let ms = start.elapsed().as_secs_f64() * 1e3;
-    Some(Compiled { result: Ok(spirv), warnings: Vec::new(), dependencies, ms })
+    Some(Compiled { result: Ok(spirv), warnings: Vec::new(), dependencies })
 }
 
 /// Stores a stage that compiled without a warning.

@@ -206,12 +206,6 @@ impl Graph {
         self.passes.iter().find(|pass| pass.desc.draws(image))
     }
 
-    /// Whether another pass reads the image of the pass with this name.
-    pub fn is_read(&self, name: &str) -> bool {
-        let inputs = self.passes.iter().flat_map(|pass| pass.inputs.values());
-        inputs.into_iter().any(|input| matches!(input, Input::Image(read) if read == name))
-    }
-
     /// The passes to draw, in order: the built-in ones for which `is_base` returns true, with `is_picture` those that change the
     /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for whose
     /// index `is_on` returns false are left out, except `shown` itself, and so are those whose picture a later one covers. A pass

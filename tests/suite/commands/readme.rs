@@ -20,18 +20,6 @@ fn declare(session: &mut Session, member: &str) {
     ready(&session.save("user/params.glsl", &params));
 }
 
-/// Run with `SPECULA_BLESS=1` to write the table anew after a change of a setting.
-#[test]
-fn the_page_about_settings_lists_all() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual/settings.md");
-    let (page, table) = (std::fs::read_to_string(path).unwrap(), specula::settings::table());
-    if std::env::var_os("SPECULA_BLESS").is_some() {
-        let above = page.split("| setting |").next().unwrap();
-        return std::fs::write(path, format!("{above}{table}")).unwrap();
-    }
-    assert!(page.ends_with(&table), "{path} is stale; run this test with SPECULA_BLESS=1");
-}
-
 #[test]
 fn the_slider_of_the_readme() {
     let mut session = Session::new(model(BUILT_IN[0]), settings(&["environment.name=studio"]));

@@ -1,4 +1,4 @@
-//! The committed `shaders/interface.glsl` and the table of resources in `shaders/README.md` are what Rust prints.
+//! The committed `shaders/interface.glsl` is what Rust prints.
 
 use specula::interface;
 
@@ -14,13 +14,4 @@ fn interface_glsl_is_current() {
         committed == interface::glsl(),
         "shaders/interface.glsl is stale; write it anew with: SPECULA_BLESS=1 cargo test --release --test suite interface"
     );
-}
-
-/// The page of the shader tree has the table that the contract check enforces.
-#[test]
-fn the_table_of_resources_is_current() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
-    let page = std::fs::read_to_string(path).unwrap();
-    let table = interface::access_table();
-    assert!(page.contains(&table), "shaders/README.md lacks this table:\n{table}");
 }

@@ -1,8 +1,6 @@
 //! The picture is shown whole or not at all: while anything about it changes, the one before stays.
 
-use glam::Vec3;
 use image::RgbaImage;
-use specula::scene::MeasuredKind;
 
 use super::NDF;
 use super::controls::{choose, count};
@@ -100,7 +98,7 @@ fn a_mode_asked_for_during_a_broken_edit_is_shown() {
 
 /// A measured BRDF of one value for all directions, in UTIA's format.
 fn measured(value: f32) -> Vec<u8> {
-    MeasuredKind::Utia.encode(|_, _| Vec3::splat(value))
+    f64::from(value).to_le_bytes().repeat(3 * 288 * 288)
 }
 
 #[test]

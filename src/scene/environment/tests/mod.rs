@@ -5,8 +5,36 @@ mod hdr;
 mod open_exr;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
+use super::direction::{TexelDirections, texel_solid_angle};
 use super::*;
+
+impl Environment {
+    /// Mean radiance over the sphere, linear RGB, weighted by solid angle.
+    pub fn mean_radiance(&self) -> Vec3 {
+        (self.integrate(|_| 1.0) / (4.0 * std::f64::consts::PI)).as_vec3()
+    }
+
+    /// Irradiance of a surface with the unit normal `n`, linear RGB: the integral of radiance times cos(theta) over the
+    /// hemisphere. Sums over every texel, as a reference for faster methods.
+    pub fn irradiance(&self, n: Vec3) -> Vec3 {
+        self.integrate(|direction| f64::from(direction.dot(n).max(0.0))).as_vec3()
+    }
+
+    /// Integral of radiance times `weight` over the sphere.
+    fn integrate(&self, weight: impl Fn(Vec3) -> f64 + Sync) -> glam::DVec3 {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let directions = TexelDirections::new(width, height);
+        let sums = self.pixels.par_chunks_exact(width.max(1)).enumerate().map(|(y, row)| {
+            let texels = row.iter().zip(directions.row(y));
+            let sum: glam::DVec3 = texels.map(|(&[r, g, b, _], at)| Vec3::new(r, g, b).as_dvec3() * weight(at)).sum();
+            sum * texel_solid_angle(y, width, height)
+        });
+        // Collecting the rows before summing gives the same bits for any number of threads.
+        sums.collect::<Vec<_>>().into_iter().sum()
+    }
+}
 
 /// Writes bytes to a file and loads it as an environment.
 fn load(name: &str, bytes: &[u8]) -> Result<Environment, String> {

@@ -5,6 +5,20 @@ use super::super::super::model::Topology;
 use super::*;
 use crate::interface as contract;
 
+impl Model {
+    /// Selects the variant with this name for every primitive; the empty name selects the default materials.
+    ///
+    /// # Errors
+    /// As [`Model::variant`]. The model is unchanged then.
+    fn select_variant(&mut self, name: &str) -> Result<(), String> {
+        let variant = self.variant(name)?;
+        for primitive in std::sync::Arc::make_mut(&mut self.primitives) {
+            primitive.material = primitive.material_in(variant);
+        }
+        Ok(())
+    }
+}
+
 /// The features of the only material of a square, except for how its occlusion is read.
 fn bits(builder: &Builder) -> u32 {
     let model = builder.model();
