@@ -58,10 +58,13 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
             out!("No exercise counts as solved any more. Their folders stay as they are.");
             Ok(())
         }
-        Some(name) => open(args.common, args.dir, &find(name).map_err(Failure::Usage)?, start),
+        Some(name) => {
+            let exercise = find(name).map_err(Failure::Usage)?;
+            open(args.common, args.dir, &exercise, start)
+        }
         None => {
-            let next = Progress::load().next();
-            open(args.common, args.dir, &next.ok_or_else(|| Failure::Usage("there is no exercise".into()))?, start)
+            let next = Progress::load().next().ok_or_else(|| Failure::Usage("there is no exercise".into()))?;
+            open(args.common, args.dir, &next, start)
         }
     }
 }

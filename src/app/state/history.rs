@@ -117,14 +117,14 @@ mod tests {
         }
         assert!(history.undo(&mut now).is_some() && now.view.ev == 1.0);
         assert!(history.undo(&mut now).is_some() && now.view.ev == 0.0);
-        assert!(!history.undo(&mut now).is_some() && now.view.ev == 0.0, "nothing is left");
+        assert!(history.undo(&mut now).is_none() && now.view.ev == 0.0, "nothing is left");
         assert!(history.redo(&mut now).is_some() && history.redo(&mut now).is_some() && now.view.ev == 2.0);
-        assert!(!history.redo(&mut now).is_some());
+        assert!(history.redo(&mut now).is_none());
         // A change after an undo discards the undone steps.
         assert!(history.undo(&mut now).is_some());
         now.view.ev = 5.0;
         record(&mut history, &now, false);
-        assert!(!history.redo(&mut now).is_some() && now.view.ev == 5.0);
+        assert!(history.redo(&mut now).is_none() && now.view.ev == 5.0);
     }
 
     #[test]
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(now.lights.orbit[0].azimuth, azimuth);
         // The previous step is that the lights began to orbit.
         assert!(history.undo(&mut now).is_some() && now.lights.spin == 0.0);
-        assert!(!history.undo(&mut now).is_some());
+        assert!(history.undo(&mut now).is_none());
     }
 
     #[test]
