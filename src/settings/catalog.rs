@@ -95,7 +95,10 @@ mod tests {
                 Value::Whole(number) => Value::Whole(number + 1),
                 Value::Unset | Value::Numbers(_) => Value::Numbers([0.25, 0.5, 1.0]),
                 Value::Text(_) if setting.path == "view.range" => Value::Text("0..5".into()),
-                Value::Text(_) => Value::Text(setting.names.last().map_or("other", String::as_str).into()),
+                Value::Text(default) => {
+                    let other = setting.names.iter().find(|name| *name != default);
+                    Value::Text(other.map_or("other", String::as_str).into())
+                }
                 Value::Names(_) => Value::Names(vec!["roughness".into()]),
             };
             settings.set_value(&setting.path, &other);
