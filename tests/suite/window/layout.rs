@@ -109,7 +109,7 @@ fn the_palette_reaches_modes_switches_commands_and_numbers() {
     viewer.until("the picture, by a letter that no palette takes", |shot| *shot == picture);
 
     // Numbers.
-    choose(&viewer, "expsoure -2 EV");
+    choose(&viewer, "expsoure -4 EV");
     viewer.until("a darker picture", |shot| brightness(shot) < 0.6 * brightness(&picture));
     let dark = viewer.screenshot();
     choose(&viewer, "undo");
