@@ -5,7 +5,7 @@ use std::io::Read;
 
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use half::f16;
-use ktx2::{Format, Header, Reader, SupercompressionScheme};
+use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
 
 use crate::scene::mips::encode_srgb;
 
@@ -19,8 +19,9 @@ pub fn is_ktx2(bytes: &[u8]) -> bool {
 
 /// Width, height and pixels of the largest level, or the reason of a failure. `largest`: the maximum of width and height.
 pub fn pixels(bytes: &[u8], largest: u32) -> Result<(u32, u32, Vec<u8>), String> {
-    let reader = Reader::new(bytes).map_err(|error| format!("damaged KTX2: {error}"))?;
-    let header = reader.header();
+    // Only the header and the first level, since the crate's reader panics on some damaged descriptors.
+    let header = bytes.first_chunk().ok_or("damaged KTX2: it is cut short")?;
+    let header = Header::from_bytes(header).map_err(|error| format!("damaged KTX2: {error}"))?;
     let (width, height) = (header.pixel_width, header.pixel_height);
     if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
         return Err(format!("it has {width}x{height} pixels"));
@@ -31,7 +32,7 @@ pub fn pixels(bytes: &[u8], largest: u32) -> Result<(u32, u32, Vec<u8>), String>
     let rgba8 = match header.format {
         None => transcode(bytes)?,
         Some(format) if is_astc(format) => transcode(bytes)?,
-        Some(format) => plain(&reader, &header, format)?,
+        Some(format) => plain(level(bytes)?, &header, format)?,
     };
     let expected = width as usize * height as usize * 4;
     if rgba8.len() == expected { Ok((width, height, rgba8)) } else { Err("damaged KTX2: too little data".into()) }
@@ -47,17 +48,26 @@ fn transcode(bytes: &[u8]) -> Result<Vec<u8>, String> {
     transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(damaged)
 }
 
+/// The stored bytes of the largest level, which the index lists first.
+fn level(bytes: &[u8]) -> Result<&[u8], String> {
+    let index = bytes.get(Header::LENGTH..).and_then(<[u8]>::first_chunk).map(LevelIndex::from_bytes);
+    let range = index.and_then(|index| {
+        let start = usize::try_from(index.byte_offset).ok()?;
+        Some(start..start.checked_add(usize::try_from(index.byte_length).ok()?)?)
+    });
+    range.and_then(|range| bytes.get(range)).ok_or_else(|| "damaged KTX2: it is cut short".into())
+}
+
 fn is_astc(format: Format) -> bool {
     (Format::ASTC_4x4_UNORM_BLOCK.value()..=Format::ASTC_12x12_SRGB_BLOCK.value()).contains(&format.value())
 }
 
 /// Decodes a format of Vulkan. Floats are linear light, and become sRGB, as 8-bit colors are.
-fn plain(reader: &Reader<&[u8]>, header: &Header, format: Format) -> Result<Vec<u8>, String> {
+fn plain(level: &[u8], header: &Header, format: Format) -> Result<Vec<u8>, String> {
     let unsupported = || format!("the KTX2 format {format:?} is not supported");
-    let level = reader.levels().next().ok_or("damaged KTX2: it has no level")?;
     let (width, height) = (header.pixel_width as usize, header.pixel_height as usize);
     let size = stored_size(format, width, height).ok_or_else(unsupported)?;
-    let data = decompress(level.data, header.supercompression_scheme, size)?;
+    let data = decompress(level, header.supercompression_scheme, size)?;
     if data.len() < size {
         return Err("damaged KTX2: too little data".into());
     }
