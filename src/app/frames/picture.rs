@@ -125,9 +125,10 @@ fn keep_version(state: &mut State, engine: &mut Engine, last: Option<LastComplet
             engine.generations.retire(last);
         }
     }
-    // An older version that is shown again is no new one.
-    let is_new = |shaders| has_model && state.edits.restored.is_none() && !state.versions.has(shaders);
-    if let Some(set) = engine.resources.pipelines().filter(|set| is_new(&set.shaders)) {
+    let Some(set) = engine.resources.pipelines() else { return };
+    if state.edits.restored.is_some() {
+        state.versions.shows_again(&set.shaders);
+    } else if has_model && state.versions.is_new(&set.shaders) {
         let edit = state.first_frame.as_ref().filter(|first| first.generation == generation);
         let reload = edit.map(|first| first.event.clone()).or_else(|| state.shader.last.clone()).unwrap_or_default();
         state.versions.add(&set.shaders, reload, state.edits.draft.is_some());

@@ -209,7 +209,7 @@ impl Viewer {
 
     #[track_caller]
     fn find_window(&mut self) {
-        let found = self.display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
+        let found = self.display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "Specula$"]);
         found.stdout.lines().next().unwrap().clone_into(&mut self.window);
         // Without a window manager, nothing else gives the window the keyboard focus.
         self.give_focus();

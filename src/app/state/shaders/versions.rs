@@ -61,6 +61,8 @@ impl Version {
 #[derive(Default)]
 pub(in crate::app) struct Versions {
     list: VecDeque<Version>,
+    /// The shaders of an older version that was shown again. They are on screen for some frames after that has ended.
+    again: Option<Arc<ShaderSet>>,
 }
 
 impl Versions {
@@ -158,6 +160,17 @@ impl Versions {
     /// Whether a version is the one of these shaders: generation numbers may restart.
     pub(in crate::app) fn has(&self, shaders: &Arc<ShaderSet>) -> bool {
         self.list.iter().any(|version| Arc::ptr_eq(&version.shaders, shaders))
+    }
+
+    /// Notes shaders that show an older version again, so that they make no version.
+    pub(in crate::app) fn shows_again(&mut self, shaders: &Arc<ShaderSet>) {
+        self.again = Some(shaders.clone());
+    }
+
+    /// Whether these shaders make a version.
+    pub(in crate::app) fn is_new(&self, shaders: &Arc<ShaderSet>) -> bool {
+        let is_again = |again: &Arc<ShaderSet>| again.generation == shaders.generation && again.texts == shaders.texts;
+        !self.has(shaders) && !self.again.as_ref().is_some_and(is_again)
     }
 
     /// Versions that lack a thumbnail, the newest first.
