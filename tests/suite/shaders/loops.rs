@@ -257,7 +257,7 @@ fn watching_goes_on_after_an_endless_loop() {
 
 #[test]
 fn the_window_names_the_loop_and_goes_on() {
-    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--tonemap", "aces"]);
     viewer.running.event("ready");
     let good = viewer.screenshot();
     let original = viewer.tree.read(USER);
