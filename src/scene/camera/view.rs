@@ -16,7 +16,7 @@ const LENSES: (f32, f32) = (1e-3, 3.1);
 /// Field of view if the setting is not finite, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or [`view_of`], which
+/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or `view_of`, which
 /// never return a degenerate view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
