@@ -293,7 +293,6 @@ fn numbers_of_a_line_are_commands() {
     // Undo takes back what was written, and redo writes it again.
     for (command, expected) in [("undo", &text), ("redo", &edited)] {
         viewer.running.done(json!({"command": command}));
-        viewer.running.reload(true);
         assert_eq!(viewer.tree.read(NDF), *expected, "{command}");
     }
     let running = &mut viewer.running;

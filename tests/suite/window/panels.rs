@@ -32,10 +32,10 @@ fn a_click_on_an_error_opens_the_editor() {
     viewer.tree.write(NDF, &text);
     let error = viewer.running.event("diagnostic");
     viewer.running.reload(false);
-    // The card has an edge of the same color over its whole width. The position is its first line.
+    // The card has an edge of the same color over its whole width. The position is its second line.
     let edge = |screen: &RgbaImage| TILES.into_iter().find(|y| count(screen, 0..left, *y..*y + 1, ERROR) > 100);
     let screen = viewer.until_screen("the card with the error", |screen| edge(screen).is_some());
-    viewer.click((40, edge(&screen).unwrap() + 17));
+    viewer.click((40, edge(&screen).unwrap() + 40));
     viewer.until("the editor", |_| opened.exists());
     let told = std::fs::read_to_string(&opened).unwrap();
     let file = viewer.tree.beside(error["file"].as_str().unwrap());
