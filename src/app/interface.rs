@@ -41,11 +41,11 @@ pub(super) struct Interface {
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     freshness: Freshness<Followed>,
-    /// What the panels have shown last.
+    /// The output of the panels when they last ran.
     pub(super) shown: Shown,
 }
 
-/// What panels show at once although no event tells of it: settings that move by themselves, and what the device has read.
+/// Values that panels show at once although no event tells of them: settings that move by themselves, and what the device has read.
 #[derive(PartialEq)]
 pub(super) struct Followed {
     pub(super) settings: *const Settings,
@@ -55,7 +55,7 @@ pub(super) struct Followed {
     pub(super) waits: Option<Waits>,
 }
 
-/// What the panels show in a frame, and what they ask for.
+/// The output of the panels in a frame.
 #[derive(Default)]
 pub(super) struct Shown {
     pub(super) primitives: Vec<egui::ClippedPrimitive>,

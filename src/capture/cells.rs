@@ -8,11 +8,11 @@ use crate::shader::Mode;
 /// A picture of a sheet.
 #[derive(Clone, Debug, Default)]
 pub struct Cell {
-    /// What the picture shows.
+    /// Name of the picture.
     pub settings: Settings,
     /// Its name, as `Roughness 0.25`.
     pub name: String,
-    /// What follows the name in a quieter color.
+    /// Text after the name, in a quieter color.
     pub note: String,
 }
 

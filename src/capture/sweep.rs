@@ -26,7 +26,7 @@ enum Values {
     Range(f64, f64, u32),
 }
 
-/// What the values of a setting can be.
+/// The kinds of values of a setting.
 #[derive(Default)]
 struct Takes {
     title: String,
@@ -103,7 +103,7 @@ impl Sweep {
         settings.check()
     }
 
-    /// What is written below a picture: the setting with its value and unit, and its valid values.
+    /// The caption of a picture: the setting with its value and unit, and its valid values.
     pub(super) fn label(&self, value: &str, session: &Session) -> (String, String) {
         let takes = self.takes(session);
         (format!("{} {value}{}", takes.title, takes.unit), takes.valid)

@@ -59,7 +59,7 @@ pub struct LoadTiming {
     pub tangents_ms: f64,
 }
 
-/// What a file has, shown or not.
+/// Contents of a file, shown or not.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Contents {
     /// Scenes.

@@ -105,7 +105,7 @@ pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>) -> Vec<Command
     }
     let kinds: Vec<FileKind> = paths.iter().map(|path| FileKind::of(path)).collect();
     let with_model = kinds.contains(&FileKind::Model);
-    // What a model reads by itself: buffers and textures.
+    // Files that a model reads by itself: buffers and textures.
     let belongs = |kind: FileKind, path: &Path| {
         let is = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
         with_model && (kind == FileKind::Other || is("bin") || is("png"))

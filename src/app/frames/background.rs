@@ -1,4 +1,4 @@
-//! What is drawn between frames: thumbnails and values of pixels.
+//! Draws between frames: thumbnails and values of pixels.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! What the screen draws in a frame, extracted from state and engine.
+//! Extracts the request of a frame from state and engine.
 
 use super::progress::is_settled;
 use super::results::shown;

@@ -1,4 +1,4 @@
-//! What finished and submitted frames mean for state and engine.
+//! Applies finished and submitted frames to state and engine.
 
 use std::time::Instant;
 

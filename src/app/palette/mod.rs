@@ -45,7 +45,7 @@ pub(super) struct Palette {
     query: String,
     /// The chosen row.
     row: usize,
-    /// What a path in the query is chosen for.
+    /// The kind of file that a path in the query is chosen for.
     dialog: Option<Dialog>,
     /// The number that the palette asks for, and the text of its field.
     asks: Option<(Ask, String)>,

@@ -16,7 +16,7 @@ use crate::render::Resources;
 /// Polling interval for a submission's end, for which drivers send no event.
 pub(in crate::app) const POLL: Duration = Duration::from_millis(2);
 
-/// What draws between frames.
+/// The renderers that draw between frames.
 pub(in crate::app) struct Between {
     background: Background,
     gallery: Gallery,

@@ -1,4 +1,4 @@
-//! What is drawn between frames, extracted from the state as plain values, and what comes of it.
+//! The request to draw between frames, extracted from the state as plain values, and its results.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use crate::frame::{FrameState, PipelineRequest};
 use crate::render::{BoundFrame, Capture, Texel};
 use crate::shader::{Mode, PixelValue};
 
-/// What there is to draw between two frames.
+/// The request to draw between two frames.
 pub(in crate::app) struct BetweenRequest<'a> {
     /// The picture that the thumbnails and values show; `None` while it is incomplete, or nobody sees them.
     pub(in crate::app) picture: Option<&'a RestingPicture>,
@@ -41,7 +41,7 @@ pub(in crate::app) struct InspectorRequest {
     pub(in crate::app) reading: Option<u64>,
 }
 
-/// What came of drawing between frames.
+/// The result of drawing between frames.
 #[derive(Default)]
 pub(in crate::app) struct Drawn {
     /// The time until there is more to draw.

@@ -8,7 +8,7 @@ use crate::gpu::{GpuError, Rect, Use};
 use crate::render::{BoundFrame, Output, Redraw};
 use crate::threads::Side;
 
-/// What a frame means for the measured difference.
+/// Effect of a frame on the measured difference.
 #[derive(Default)]
 pub(in crate::app) struct Measurement {
     /// Whether the last difference belongs to other pictures.

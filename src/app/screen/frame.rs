@@ -161,7 +161,7 @@ impl Screen {
         }
     }
 
-    /// What became of the loops since the last call.
+    /// The results of loops since the last call.
     pub(in crate::app) fn take_ended(&mut self) -> Vec<Ended> {
         self.loops.take()
     }

@@ -6,7 +6,7 @@ use super::request::FRAMES_IN_FLIGHT;
 use crate::frame::FrameState;
 use crate::gpu::Frames;
 
-/// What became of the loops in something that the device has drawn.
+/// Whether the loops ended in something that the device has drawn.
 pub(in crate::app) enum Ended {
     /// All loops of a frame have ended.
     Frame {
@@ -52,7 +52,7 @@ impl LoopChecks {
         self.ended.push(Ended::EndlessThumbnail(version));
     }
 
-    /// What became of the loops since the last call, in the order of the frames.
+    /// The results of loops since the last call, in the order of the frames.
     pub(super) fn take(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)
     }

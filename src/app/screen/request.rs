@@ -1,4 +1,4 @@
-//! What a frame draws, extracted from the state as plain values, and what comes of it.
+//! The request of a frame, extracted from the state as plain values, and its results.
 
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub(in crate::app) struct TextureDraw {
     pub(in crate::app) request: TextureRequest,
 }
 
-/// What came of recording a frame.
+/// The result of recording a frame.
 #[derive(Default)]
 pub(in crate::app) struct Recorded {
     /// Whether memory was short for the grid, which has ended.

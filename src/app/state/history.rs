@@ -25,7 +25,7 @@ pub(in crate::app) struct History {
     last: Option<Arc<Settings>>,
 }
 
-/// What a step changes besides the settings.
+/// The changes of a step besides the settings.
 pub(in crate::app) type Files = Option<Arc<Written>>;
 
 impl History {

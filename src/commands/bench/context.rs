@@ -14,7 +14,7 @@ use super::folder::{TempFolder, copy_tree};
 use crate::commands::Failure;
 use crate::commands::progress::Progress;
 
-/// What all measurements share.
+/// State that all measurements share.
 pub(super) struct Bench<'a> {
     pub(super) args: &'a Args,
     pub(super) gpu: &'a Arc<Gpu>,

@@ -17,7 +17,7 @@ use super::reach::file_of;
 /// Longer arrays are not told.
 const MOST_ELEMENTS: u32 = 64;
 
-/// What an instruction does with a value.
+/// How an instruction uses a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Stores it to the variable of this name, or a part of it.
@@ -37,7 +37,7 @@ pub struct Place {
     pub file: String,
     /// From 1.
     pub line: u32,
-    /// What is done with the value.
+    /// How the value is used.
     pub purpose: Purpose,
 }
 

@@ -10,7 +10,7 @@ use crate::app::state::shaders::difference::Kind;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING, small_mono};
 use crate::learn::{Exercise, Finding, exercises};
 
-/// What the measured results are of.
+/// The shaders that the results were measured on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Results {
     /// The shaders of now.
@@ -82,7 +82,7 @@ fn about(ui: &mut Ui, learning: &Learning, exercise: &Exercise, commands: &mut V
         ask(LearnCommand::Solve);
     }
     ui.add_space(8.0);
-    // What a button has just opened stands at the end of the text.
+    // A button has just opened the end of the text.
     if ui.data_mut(|data| data.remove_temp::<()>(asked_id())).is_some() {
         ui.scroll_to_cursor(Some(Align::BOTTOM));
     }
