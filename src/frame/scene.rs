@@ -14,7 +14,8 @@ use super::material_variant::shared_features;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR};
 use crate::scene::{
-    self, AlphaMode, Instance, Material, Model, Sides, Topology, override_material, replace_channels, replace_factors,
+    self, AlphaMode, Instance, Material, Model, Pose, Sides, Topology, override_material, replace_channels,
+    replace_factors,
 };
 use crate::settings::{MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings};
 
@@ -59,6 +60,8 @@ pub struct Scene {
     /// The model at the place that the settings give it.
     model: Arc<Model>,
     look: Arc<Look>,
+    /// Where the parts of the model are at the moment, with the place that the settings give it. `model` stands there.
+    pose: Arc<Pose>,
     /// Whether each instance is drawn. `None` draws all.
     visible: Option<Arc<[bool]>>,
     /// The materials that differ from those of the model, by index; empty if none does.
@@ -68,9 +71,7 @@ pub struct Scene {
 
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.loaded, &other.loaded)
-            && (Arc::ptr_eq(&self.look, &other.look) || self.look == other.look)
-            && self.visible == other.visible
+        self.has_same_draws(other) && (Arc::ptr_eq(&self.pose, &other.pose) || self.pose == other.pose)
     }
 }
 
@@ -113,7 +114,9 @@ impl Scene {
             (Some(_), Some(previous)) => previous.model.clone(),
             (Some(transform), None) => Arc::new(loaded.placed(transform)),
         };
+        let pose = Arc::new(model.rest_pose());
         let scene = Self {
+            pose,
             visible: model.visible(&look.parts).map(Into::into),
             changed: changed(&model, &look),
             loaded: loaded.clone(),
@@ -136,6 +139,18 @@ impl Scene {
     /// The model at the place that the settings give it.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// Where the parts of the model are.
+    pub fn pose(&self) -> &Arc<Pose> {
+        &self.pose
+    }
+
+    /// Whether both draw the same primitives with the same materials, wherever they are.
+    pub fn has_same_draws(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.loaded, &other.loaded)
+            && (Arc::ptr_eq(&self.look, &other.look) || self.look == other.look)
+            && self.visible == other.visible
     }
 
     /// The model that was loaded.

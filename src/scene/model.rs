@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 pub use super::material::*;
+use super::motion::Deformation;
 pub use crate::interface::Vertex;
 use crate::message::did_you_mean;
 
@@ -165,6 +166,8 @@ pub struct Primitive {
     pub attributes: u32,
     /// Object-space bounds.
     pub bounds: Bounds,
+    /// What joints and morph targets do to the vertices; `None` if they keep their shape.
+    pub deformation: Option<Arc<Deformation>>,
 }
 
 impl Primitive {
@@ -234,6 +237,10 @@ pub struct Instance {
     pub node: usize,
     /// Name of the node, or empty.
     pub node_name: String,
+    /// Index of its skin's first joint in `Pose::joints`.
+    pub first_joint: Option<u32>,
+    /// Index of the weight of its first morph target in `Pose::weights`.
+    pub first_weight: Option<u32>,
 }
 
 /// A decoded image: RGBA, 8 bits per channel, rows from the top. The color space depends on the use, so it is not converted.

@@ -133,12 +133,20 @@ mod tests {
             variant_materials: Vec::new(),
             attributes: 0,
             bounds,
+            deformation: None,
         }
     }
 
     fn row(primitive: Primitive, count: usize) -> Model {
         let at = |x: usize| Mat4::from_translation(Vec3::X * x as f32);
-        let place = |x| Instance { primitive: 0, world_from_object: at(x), node: x, node_name: String::new() };
+        let place = |x| Instance {
+            primitive: 0,
+            world_from_object: at(x),
+            node: x,
+            node_name: String::new(),
+            first_joint: None,
+            first_weight: None,
+        };
         Model { primitives: vec![primitive].into(), instances: (0..count).map(place).collect(), ..Model::default() }
     }
 

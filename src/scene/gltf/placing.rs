@@ -54,7 +54,9 @@ pub fn place(
         let world_from_object = (DMat4::from_translation(-shift) * mesh.world_from_object).as_mat4();
         for primitive in primitives(&mesh) {
             let node_name = mesh.name.clone();
-            model.instances.push(Instance { primitive, world_from_object, node: mesh.node, node_name });
+            let (first_joint, first_weight) = (None, None);
+            let node = mesh.node;
+            model.instances.push(Instance { primitive, world_from_object, node, node_name, first_joint, first_weight });
         }
     }
     model.bounds = model.instance_bounds();

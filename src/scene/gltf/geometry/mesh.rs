@@ -113,6 +113,7 @@ impl Source<'_> {
             variant_materials: Vec::new(),
             attributes,
             bounds: Bounds::default(),
+            deformation: None,
         };
         if attributes & contract::ATTRIBUTE_NORMAL == 0 && triangles::has_faces(topology) {
             make_flat(&mut primitive);
