@@ -42,6 +42,8 @@ void main() {
     // where nothing covers the pixel, the color is 0.
     value /= max(coverage, 1e-6);
     vec3 front = ranged ? saturate(in_range(value)) : display_value(value, uv);
+    // Most curves would make this magenta white.
+    if (is_cut_short(scene)) front = vec3(1.0, 0.0, 1.0);
     if (is_mapped) {
         front = chosen_channels(front, is_pass ? saturate(scene.a) : coverage);
         if (frame.has_colormap != 0u) {

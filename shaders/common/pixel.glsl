@@ -18,6 +18,11 @@ vec4 hdr_pixel(vec3 value, float coverage, bool no_data) {
     return vec4(value * coverage, coverage + flag);
 }
 
+// Whether Specula ended a loop of this pixel early. Such a pixel is (60000, -60000, 60000) with FLAG_NOT_FINITE.
+bool is_cut_short(vec4 pixel) {
+    return pixel.a >= float(FLAG_NOT_FINITE) / 8.0 && pixel.g < 0.0 && min(pixel.r, pixel.b) > 0.0;
+}
+
 // Coverage 0..1 of the alpha of a pixel.
 float coverage_of(float alpha) { return 2.0 * fract(0.5 * alpha); }
 

@@ -38,8 +38,9 @@ const MOST_ON_CPU: u32 = 60_000;
 /// Iterations of each invocation that begins after another has exceeded its limit.
 const ROUNDS_AFTER: u32 = 1024;
 const ROUNDS_AFTER_ON_CPU: u32 = 256;
-/// Scene color of a pixel whose loops were cut short: magenta at every exposure, with the flag of common/pixel.glsl.
-const MARK: [f32; 4] = [60_000.0, 0.0, 60_000.0, 1.0 + FLAG_NOT_FINITE as f32];
+/// Scene color of a pixel whose loops were cut short. `is_cut_short` in common/pixel.glsl knows it by its sign and flag, and
+/// the tone map shows it as magenta.
+const MARK: [f32; 4] = [60_000.0, -60_000.0, 60_000.0, 1.0 + FLAG_NOT_FINITE as f32];
 /// The same color in the LDR output.
 const MARK_ON_DISPLAY: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde_json::json;
+
 use crate::support::process::{Running, finish, run, specula};
 use crate::support::window::Viewer;
 use crate::support::{Session, Tree, assert_same, assert_validated, glb, line_of, lines, load, ready, settings};
@@ -257,7 +259,7 @@ fn watching_goes_on_after_an_endless_loop() {
 
 #[test]
 fn the_window_names_the_loop_and_goes_on() {
-    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--tonemap", "aces"]);
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let good = viewer.screenshot();
     let original = viewer.tree.read(USER);
@@ -272,6 +274,26 @@ fn the_window_names_the_loop_and_goes_on() {
         viewer.tree.write(USER, &original);
         viewer.running.reload(true);
         assert!(viewer.screenshot() == good, "the repair brings the picture back");
+    }
+    viewer.quit();
+}
+
+#[test]
+fn a_cut_loop_is_magenta_in_every_tone_map_at_every_exposure() {
+    const CURVES: [&str; 8] =
+        ["none", "reinhard", "reinhard-luminance", "uncharted2", "aces", "aces-hill", "agx", "neutral"];
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--size", "160x120"]);
+    viewer.running.event("ready");
+    let text = edited(&viewer.tree, ENDLESS[0].0);
+    viewer.tree.write(USER, &text);
+    viewer.running.event("diagnostic");
+    for curve in CURVES {
+        for ev in [-30.0, 0.7, 30.0] {
+            let values = json!({"view.tonemap": curve, "view.ev": ev});
+            viewer.running.done(json!({"command": "set", "values": values}));
+            let marked = viewer.screenshot().pixels().filter(|pixel| pixel.0 == [255, 0, 255, 255]).count();
+            assert!(marked > 1000, "{curve} at EV100 {ev}: {marked} pixels are marked");
+        }
     }
     viewer.quit();
 }
