@@ -328,9 +328,9 @@ fn forward(pipe: impl Read + Send + 'static, to: Sender<String>) {
 
 /// KiB that the mappings of a process hold: their resident pages, but blocks of device memory as a whole. The software device takes such a
 /// block of 64 MiB from the heap, and a page of it becomes resident when an allocation first lies there. So the resident part of a block
-/// grows with the places of what is allocated, although no more is.
+/// grows with the places of what is allocated, although no more is. The mappings of glibc's arenas are smaller.
 fn held_kib(smaps: &str) -> u64 {
-    const LEAST_BLOCK: u64 = 32 * 1024;
+    const LEAST_BLOCK: u64 = 64 * 1024;
     let number = |text: &str| text.trim().trim_end_matches(" kB").parse::<u64>().unwrap();
     let (mut held, mut is_anonymous, mut size) = (0, false, 0);
     for line in smaps.lines() {
