@@ -94,6 +94,7 @@ pub struct Resources {
     layouts: Arc<SetLayouts>,
     pipelines: Option<Arc<PipelineSet>>,
     model: Option<Arc<GpuModel>>,
+    /// The draws of the last scene, in any pose.
     scene: Option<(Scene, Arc<GpuScene>)>,
     tables: LastGood<Arc<TablesKey>, Tables>,
     environment: LastGood<Arc<EnvironmentKey>, GpuEnvironment>,
@@ -357,7 +358,7 @@ impl Resources {
     }
 
     fn scene_of(&mut self, scene: &Scene) -> Result<Option<Arc<GpuScene>>, GpuError> {
-        if let Some((_, drawn)) = self.scene.as_ref().filter(|(of, _)| of == scene) {
+        if let Some((_, drawn)) = self.scene.as_ref().filter(|(of, _)| of.has_same_draws(scene)) {
             return Ok(Some(drawn.clone()));
         }
         let Some(model) = self.model.as_ref().filter(|model| Arc::ptr_eq(model.model(), scene.loaded())) else {

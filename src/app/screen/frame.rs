@@ -96,9 +96,10 @@ impl Screen {
             Some(outline) => outline,
             None => Outline::new(tools, frame.state.size)?,
         };
+        let Some(placed) = self.view.placed() else { return Ok(()) };
         let is_selected = |instance: usize| selected.get(instance) == Some(&true);
         encoder.pass("outline", |encoder| {
-            outline.draw(encoder, frame, is_selected, (target, self.rect.at), *style);
+            outline.draw(encoder, (frame, placed), is_selected, (target, self.rect.at), *style);
         });
         self.outline = Some(outline);
         Ok(())

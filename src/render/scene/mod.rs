@@ -2,12 +2,13 @@
 
 mod error;
 mod materials;
+mod placed;
 mod upload;
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::Mat3;
+use glam::Vec3;
 
 use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
@@ -15,22 +16,24 @@ use crate::interface::{Draw, Vertex};
 use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
 pub use error::UploadError;
 use materials::{MaterialSets, Textures};
+pub(crate) use placed::{PlacedDraw, PlacedScene, normals_from};
 use upload::{Range, Uploaded, upload};
 
-/// One draw call.
+/// One draw call, wherever the pose of a frame puts it.
 #[derive(Clone)]
 pub(crate) struct GpuDraw {
     /// Index into `Model::instances`.
     pub(crate) instance: usize,
+    /// The push constants that do not depend on the pose.
     pub(crate) push: Draw,
     pub(crate) first_index: u32,
     pub(crate) index_count: u32,
     pub(crate) topology: vk::PrimitiveTopology,
-    pub(crate) front_face: vk::FrontFace,
     pub(crate) double_sided: bool,
     pub(crate) material: Arc<DescriptorSet>,
     pub(crate) variant: MaterialVariant,
-    pub(crate) center_ws: glam::Vec3,
+    /// Center of the primitive's bounds, object space.
+    pub(crate) center: Vec3,
 }
 
 /// A model on the device: geometry, textures and a descriptor set per material.
@@ -96,7 +99,7 @@ impl GpuModel {
     }
 }
 
-/// A [`Scene`] on the device, ready to draw.
+/// The draws of a [`Scene`]. They stay while the scene's pose changes.
 pub struct GpuScene {
     pub(crate) vertices: Arc<Buffer>,
     pub(crate) indices: Arc<Buffer>,
@@ -112,15 +115,10 @@ fn draw(
     material: Arc<DescriptorSet>,
 ) -> GpuDraw {
     let primitive = &model.primitives[instance.primitive];
-    let world = instance.world_from_object;
-    let linear = Mat3::from_mat4(world);
-    let determinant = linear.determinant();
     GpuDraw {
         instance: 0,
         push: Draw {
             vertices: vertices + range.first_vertex * size_of::<Vertex>() as u64,
-            world_from_object: world.to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),
-            normal_ws_from_object: normals_from(linear).to_cols_array_2d(),
             attributes: appearance.attributes,
             primitive_id: instance.primitive as u32,
             node_id: instance.node as u32,
@@ -130,27 +128,16 @@ fn draw(
             } else {
                 0
             },
-            first_triangle: 0,
+            ..Draw::default()
         },
         first_index: range.first_index,
         index_count: primitive.indices.len() as u32,
         topology: topology(primitive.topology),
-        front_face: if determinant < 0.0 { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE },
         double_sided: appearance.double_sided,
         material,
         variant: appearance.variant,
-        center_ws: world.transform_point3(primitive.bounds.center()),
+        center: primitive.bounds.center(),
     }
-}
-
-/// Transforms normals as `linear` transforms positions. The result is not normalized.
-///
-/// The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse, it also exists for a flattened
-/// object. Only the sign of the determinant matters.
-pub(crate) fn normals_from(linear: Mat3) -> Mat3 {
-    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
-    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-    Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
 /// Turns a strip or fan of triangles into a list, since a tessellation stage takes triangles one by one.

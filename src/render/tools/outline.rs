@@ -15,6 +15,7 @@ use crate::gpu::{
     SamplerDesc, Use, vk,
 };
 use crate::render::BoundFrame;
+use crate::render::scene::{GpuDraw, PlacedDraw, PlacedScene};
 
 /// The style of an outline.
 #[derive(Clone, Copy, Debug)]
@@ -75,17 +76,17 @@ impl Outline {
         (self.mask.desc().width, self.mask.desc().height) == size
     }
 
-    /// Draws the outline of the instances for which `is_selected` holds, over the frame that lies at `at` in `target`, which is
-    /// in [`Use::Color`] before and after.
+    /// Draws the outline of the instances of `placed` for which `is_selected` holds, over the frame that lies at `at` in
+    /// `target`, which is in [`Use::Color`] before and after.
     pub fn draw(
         &self,
         encoder: &mut Encoder,
-        frame: &BoundFrame,
+        (frame, placed): (&BoundFrame, &PlacedScene),
         is_selected: impl Fn(usize) -> bool,
         (target, at): (&Arc<Image>, (u32, u32)),
         style: OutlineStyle,
     ) {
-        let Some(scene) = &frame.scene else { return };
+        let scene = &placed.scene;
         let Self { tools, mask, multisampled, set } = self;
         encoder.transition(mask, Use::Undefined, Use::Color);
         let (drawn, resolve) = match multisampled {
@@ -101,11 +102,12 @@ impl Outline {
         encoder.bind_indices(&scene.indices);
         let clip_from_world = frame.state.camera.clip_from_world();
         let triangles = |class| class == PrimitiveClass::Triangles;
-        for draw in scene.draws.iter().filter(|draw| is_selected(draw.instance) && triangles(draw.variant.class)) {
-            let [x, y, z, w] = draw.push.world_from_object.map(Vec3::from);
+        let is_drawn = |draw: &GpuDraw| is_selected(draw.instance) && triangles(draw.variant.class);
+        for PlacedDraw { draw, placement } in placed.draws().filter(|placed| is_drawn(placed.draw)) {
+            let [x, y, z, w] = placement.push.world_from_object.map(Vec3::from);
             let world = Mat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), w.extend(1.0));
             let clip_from_object = (clip_from_world * world).to_cols_array_2d();
-            encoder.push(&tools.layouts, &MaskPush { clip_from_object, vertices: draw.push.vertices });
+            encoder.push(&tools.layouts, &MaskPush { clip_from_object, vertices: placement.push.vertices });
             encoder.draw_indexed(draw.index_count, draw.first_index, 1);
         }
         encoder.end_rendering();

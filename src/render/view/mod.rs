@@ -18,6 +18,7 @@ mod capture;
 mod declared;
 mod limits;
 mod model_draws;
+mod motion;
 mod passes;
 mod pixel_modes;
 mod range_sample;
@@ -46,8 +47,10 @@ use range_sample::RangeSampleReadback;
 use scan::Scan;
 
 use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
+use motion::Motion;
 
 use super::bound_frame::BoundFrame;
+use super::scene::PlacedScene;
 use crate::frame::{Display, Limits, TargetFormat};
 use crate::gpu::{
     DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
@@ -87,6 +90,7 @@ pub struct View {
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
     declared: DeclaredPasses,
+    motion: Motion,
     /// The frame that the HDR target holds, and the part of it that was shaded. `None` is all of it.
     drawn: Option<(BoundFrame, Option<Rect>)>,
     /// The cameras of the last picture and of the one before, as `clip_from_world`.
@@ -144,6 +148,7 @@ impl View {
             layouts: layouts.clone(),
             declared: DeclaredPasses::new(gpu, layouts, &shared.linear, &nearest)?,
             shared,
+            motion: Motion::default(),
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
@@ -237,7 +242,9 @@ impl View {
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let context = PassContext { frame, frame_set: &set, blocks, constants: &constants, depth };
+        let placed = self.motion.place(frame);
+        let placed = placed.as_deref();
+        let context = PassContext { frame, placed, frame_set: &set, blocks, constants: &constants, depth };
         if redrawn {
             self.declared.before_model(encoder, &context)?;
         }
@@ -245,7 +252,7 @@ impl View {
         let images = FrameImages { picture: Some(&targets.color), samples, opaque_scene, ..FrameImages::default() };
         let keys = redrawn.then(|| frame.state.pipelines.model_keys()).into_iter().flatten();
         let sets = self.declared.sets_of(&context, &images, keys)?;
-        let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
+        let passes = passes::Passes { layouts: &self.layouts, targets, frame, placed, sets: &sets, only, more: &[] };
         if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
@@ -372,6 +379,11 @@ impl View {
     pub fn restart_passes(&mut self) {
         self.cameras = None;
         self.declared.restart();
+    }
+
+    /// The model of the last frame, in its pose.
+    pub(crate) fn placed(&self) -> Option<&PlacedScene> {
+        self.motion.placed()
     }
 
     /// Fills an output with black while there is no frame to draw.

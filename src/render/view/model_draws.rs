@@ -18,10 +18,10 @@ use std::sync::Arc;
 
 use super::declared::PassSets;
 use crate::frame::{MaterialVariant, PipelineKey, QUADS};
-use crate::gpu::{Encoder, SetLayouts, vk};
+use crate::gpu::{DescriptorSet, Encoder, Pipeline, SetLayouts, vk};
 use crate::interface::{ALPHA_BLEND, Draw, MAX_LIGHT_VIEWS};
 use crate::render::bound_frame::BoundFrame;
-use crate::render::scene::GpuDraw;
+use crate::render::scene::{PlacedDraw, PlacedScene};
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Cull, Instances};
 use crate::shader::graph::MeshStages;
@@ -34,10 +34,19 @@ const MOST_WORKGROUPS: u32 = 1 << 22;
 pub(super) struct ModelDraws<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) frame: &'a BoundFrame,
+    pub(super) placed: Option<&'a PlacedScene>,
     pub(super) sets: &'a PassSets,
     /// How often each is drawn.
     pub(super) instances: u32,
     pub(super) pass: &'a Arc<GraphPass>,
+}
+
+/// State that stays between draws. Only changes are recorded, since a scene may have many draws and few materials.
+#[derive(Default)]
+struct Bound<'a> {
+    material: Option<&'a Arc<DescriptorSet>>,
+    pipeline: Option<&'a Arc<Pipeline>>,
+    raster: Option<(vk::PrimitiveTopology, vk::CullModeFlags, vk::FrontFace)>,
 }
 
 impl ModelDraws<'_> {
@@ -45,19 +54,28 @@ impl ModelDraws<'_> {
     pub(super) fn draw<'d>(
         &self,
         encoder: &mut Encoder,
-        draws: impl IntoIterator<Item = &'d GpuDraw>,
+        draws: impl IntoIterator<Item = PlacedDraw<'d>>,
         key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
     ) {
-        let Some(scene) = &self.frame.scene else { return };
+        let Some(PlacedScene { scene, .. }) = self.placed else { return };
         encoder.keep(&scene.vertices);
         encoder.bind_indices(&scene.indices);
         let pipeline_of = |material| key(material).and_then(|key| self.frame.pipelines.get(&key));
-        let mut known = HashMap::new();
-        for draw in draws {
-            if let Some(pipeline) = *known.entry(draw.variant).or_insert_with(|| pipeline_of(draw.variant)) {
-                encoder.bind_set(self.layouts, &draw.material);
-                self.sets.bind(encoder, pipeline);
-                self.draw_one(encoder, draw);
+        let (mut known, mut bound) = (HashMap::new(), Bound::default());
+        for placed in draws {
+            let variant = placed.draw.variant;
+            if let Some(pipeline) = *known.entry(variant).or_insert_with(|| pipeline_of(variant)) {
+                if bound
+                    .material
+                    .replace(&placed.draw.material)
+                    .is_none_or(|last| !Arc::ptr_eq(last, &placed.draw.material))
+                {
+                    encoder.bind_set(self.layouts, &placed.draw.material);
+                }
+                if bound.pipeline.replace(pipeline).is_none_or(|last| !Arc::ptr_eq(last, pipeline)) {
+                    self.sets.bind(encoder, pipeline);
+                }
+                self.draw_one(encoder, &mut bound, placed);
             }
         }
     }
@@ -66,7 +84,7 @@ impl ModelDraws<'_> {
     pub(super) fn draw_pass(&self, encoder: &mut Encoder) {
         let request = &self.frame.state.pipelines;
         if !self.pass.desc.quads {
-            let draws = self.frame.scene.iter().flat_map(|scene| &scene.draws);
+            let draws = self.placed.into_iter().flat_map(PlacedScene::draws);
             return self.draw(encoder, draws, |material| Some(request.model_pass_key(self.pass, material)));
         }
         let Some(pipeline) = self.frame.pipelines.get(&request.model_pass_key(self.pass, QUADS)) else { return };
@@ -89,9 +107,10 @@ impl ModelDraws<'_> {
         encoder.draw_quads(self.instances);
     }
 
-    fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
+    fn draw_one(&self, encoder: &mut Encoder, bound: &mut Bound<'_>, placed: PlacedDraw<'_>) {
+        let PlacedDraw { draw, placement } = placed;
         if self.pass.pre_rasterization.mesh.is_none() {
-            encoder.push(self.layouts, &draw.push);
+            encoder.push(self.layouts, &placement.push);
         }
         // A blended double-sided surface is drawn back faces first, since they lie behind.
         let passes: &[vk::CullModeFlags] = match (self.pass.desc.cull, draw.double_sided, draw.variant.alpha) {
@@ -106,25 +125,31 @@ impl ModelDraws<'_> {
             None => draw.topology,
         };
         for cull in passes {
+            let raster = (topology, *cull, placement.front_face);
+            let is_new = bound.raster.replace(raster) != Some(raster);
             if let Some(mesh) = &self.pass.pre_rasterization.mesh {
-                encoder.set_facing(*cull, draw.front_face);
-                self.draw_mesh(encoder, draw, mesh);
+                if is_new {
+                    encoder.set_facing(*cull, placement.front_face);
+                }
+                self.draw_mesh(encoder, &placement.push, mesh);
             } else {
-                encoder.set_raster(topology, *cull, draw.front_face);
+                if is_new {
+                    encoder.set_raster(topology, *cull, placement.front_face);
+                }
                 encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
             }
         }
     }
 
     /// Draws the triangles of a primitive with mesh stages, in as many draws as a device may require.
-    fn draw_mesh(&self, encoder: &mut Encoder, draw: &GpuDraw, mesh: &MeshStages) {
+    fn draw_mesh(&self, encoder: &mut Encoder, push: &Draw, mesh: &MeshStages) {
         let each = mesh.triangles.saturating_mul(mesh.groups).max(1);
         let workgroups = (MOST_WORKGROUPS / self.instances.max(1)).clamp(1, MOST_ALONG_X);
-        let (most, all) = (workgroups.saturating_mul(each), draw.push.triangle_count);
+        let (most, all) = (workgroups.saturating_mul(each), push.triangle_count);
         let mut first_triangle = 0;
         while first_triangle < all {
             let triangles = most.min(all - first_triangle);
-            encoder.push(self.layouts, &Draw { first_triangle, ..draw.push });
+            encoder.push(self.layouts, &Draw { first_triangle, ..*push });
             encoder.draw_mesh(triangles.div_ceil(each), self.instances, triangles);
             first_triangle += triangles;
         }

@@ -20,7 +20,8 @@ use crate::frame::{FrameState, MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::ALPHA_BLEND;
 use crate::render::bound_frame::BoundFrame;
-use crate::render::scene::{GpuDraw, GpuScene};
+use crate::render::scene::{PlacedDraw, PlacedScene};
+use crate::shader::GraphPass;
 
 /// The destination of a view's output.
 pub struct Output<'a> {
@@ -37,6 +38,8 @@ pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
+    /// The model in the pose of the frame.
+    pub(super) placed: Option<&'a PlacedScene>,
     /// The sets of the stages of the model, the sky and the accumulation.
     pub(super) sets: &'a PassSets,
     /// The part of the frame to shade; `None` is all of it.
@@ -49,11 +52,11 @@ pub(super) struct Passes<'a> {
 #[derive(Default)]
 pub(super) struct Sorted<'a> {
     /// Opaque and masked, front to back, so that the depth test rejects hidden fragments.
-    pub(super) opaque: Vec<&'a GpuDraw>,
+    pub(super) opaque: Vec<PlacedDraw<'a>>,
     /// Transmissive, back to front.
-    pub(super) transmissive: Vec<&'a GpuDraw>,
+    pub(super) transmissive: Vec<PlacedDraw<'a>>,
     /// Alpha-blended, back to front.
-    pub(super) blended: Vec<&'a GpuDraw>,
+    pub(super) blended: Vec<PlacedDraw<'a>>,
 }
 
 impl Passes<'_> {
@@ -65,7 +68,7 @@ impl Passes<'_> {
         if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
         }
-        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, &self.frame.state)).unwrap_or_default();
+        let sorted = sort(self.placed, &self.frame.state);
         if let Some(opaque_scene) = &targets.opaque_scene {
             encoder.pass("behind", |encoder| self.opaque_scene(encoder, &sorted.opaque, opaque_scene));
         }
@@ -82,7 +85,7 @@ impl Passes<'_> {
             encoder.transition(image, Use::Undefined, Use::Color);
         }
         encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
-        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, &self.frame.state)).unwrap_or_default();
+        let sorted = sort(self.placed, &self.frame.state);
         let drawn: Vec<Arc<Image>> = self.more.iter().map(|target| target.drawn().clone()).collect();
         let attachments = Attachments {
             more: &drawn,
@@ -151,7 +154,7 @@ impl Passes<'_> {
     }
 
     /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
-    fn opaque_scene(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], opaque_scene: &Arc<Image>) {
+    fn opaque_scene(&self, encoder: &mut Encoder, opaque: &[PlacedDraw<'_>], opaque_scene: &Arc<Image>) {
         let targets = self.targets;
         encoder.transition(opaque_scene, Use::Undefined, Use::Sampled);
         encoder.begin_rendering(&Attachments { keeps_contents: true, ..self.hdr() });
@@ -173,16 +176,16 @@ impl Passes<'_> {
     pub(super) fn added(&self, encoder: &mut Encoder, blend: bool) {
         for pass in self.request().added_passes().filter(|pass| pass.desc.blend == blend) {
             let instances = instances(self.frame, pass);
-            let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
+            let model = self.model_draws(pass, instances);
             model.draw_pass(encoder);
         }
     }
 
     /// Draws the wireframe of all triangles over the picture, if the settings say so.
     fn wireframe(&self, encoder: &mut Encoder) {
-        let (Some(pass), Some(scene)) = (&self.request().wireframe, &self.frame.scene) else { return };
-        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1, pass };
-        model.draw(encoder, &scene.draws, |material| self.request().wireframe_key(material));
+        let (Some(pass), Some(placed)) = (&self.request().wireframe, self.placed) else { return };
+        let model = self.model_draws(pass, 1);
+        model.draw(encoder, placed.draws(), |material| self.request().wireframe_key(material));
     }
 
     /// Draws the background where nothing covers it.
@@ -272,16 +275,21 @@ impl Passes<'_> {
         Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), ..Attachments::of(color) }
     }
 
+    fn model_draws<'p>(&'p self, pass: &'p Arc<GraphPass>, instances: u32) -> ModelDraws<'p> {
+        let Self { layouts, frame, placed, sets, .. } = self;
+        ModelDraws { layouts, frame, placed: *placed, sets, instances, pass }
+    }
+
     /// Draws surfaces with the pipelines that `key` selects.
     pub(super) fn draw(
         &self,
         encoder: &mut Encoder,
-        draws: &[&GpuDraw],
+        draws: &[PlacedDraw<'_>],
         key: fn(&PipelineRequest, MaterialVariant) -> Option<PipelineKey>,
     ) {
         let Some(pass) = self.request().model_pass() else { return };
         let instances = instances(self.frame, pass);
-        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
+        let model = self.model_draws(pass, instances);
         model.draw(encoder, draws.iter().copied(), |material| key(self.request(), material));
     }
 }
@@ -319,16 +327,18 @@ fn within(rect: Rect, area: Rect) -> Rect {
 }
 
 /// The draws of a scene in the order that blending and depth require.
-pub(super) fn sort<'a>(scene: &'a GpuScene, state: &FrameState) -> Sorted<'a> {
+pub(super) fn sort<'a>(placed: Option<&'a PlacedScene>, state: &FrameState) -> Sorted<'a> {
     let eye = state.camera.eye;
-    let mut by_distance: Vec<_> = scene.draws.iter().collect();
-    by_distance.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
+    let distance = |placed: &PlacedDraw<'_>| placed.placement.center_ws.distance_squared(eye);
+    let draws = placed.into_iter().flat_map(PlacedScene::draws);
+    let mut by_distance: Vec<_> = draws.map(|placed| (distance(&placed), placed)).collect();
+    by_distance.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut sorted = Sorted::default();
-    for draw in by_distance {
-        match draw.variant {
-            v if v.alpha == ALPHA_BLEND => sorted.blended.push(draw),
-            v if state.pipelines.is_transmissive(v) => sorted.transmissive.push(draw),
-            _ => sorted.opaque.push(draw),
+    for (_, placed) in by_distance {
+        match placed.draw.variant {
+            v if v.alpha == ALPHA_BLEND => sorted.blended.push(placed),
+            v if state.pipelines.is_transmissive(v) => sorted.transmissive.push(placed),
+            _ => sorted.opaque.push(placed),
         }
     }
     sorted.blended.reverse();

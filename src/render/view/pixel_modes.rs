@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::capture::PixelReadback;
 use super::declared::{FrameImages, PassContext};
-use super::passes::{Passes, Sorted, sort};
+use super::passes::{Passes, sort};
 use super::targets::ColorTarget;
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -72,9 +72,11 @@ impl PixelModes {
             view.in_flight[slot].uniforms.write(constants, &frame.lights(), state.params());
         }
 
+        let placed = view.motion.place(frame);
+        let placed = placed.as_deref();
         let context = |slot: usize| {
             let (frame_set, constants) = (&sets[slot % 2], if slot == of_pixel { &at_pixel } else { &constants });
-            PassContext { frame, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }
+            PassContext { frame, placed, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }
         };
         encoder.bind_set(&view.layouts, &sets[0]);
         view.declared.before_model(encoder, &context(of_passes))?;
@@ -82,7 +84,7 @@ impl PixelModes {
         let images = FrameImages { picture: Some(&targets.color), ..FrameImages::default() };
         let pass_sets = view.declared.sets_of(&context(of_pixel), &images, state.pipelines.model_keys())?;
         let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
-        let passes = Passes { layouts: &view.layouts, targets, frame, sets: &pass_sets, only: None, more };
+        let passes = Passes { layouts: &view.layouts, targets, frame, placed, sets: &pass_sets, only: None, more };
         let all: Vec<&Arc<Image>> =
             std::iter::once(&targets.color).chain(more.iter().map(|target| &target.color)).collect();
         encoder.pass("inspector", |encoder| draw_pixel(encoder, &passes, &all, origin));
@@ -142,7 +144,7 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
     let (frame, depth) = (passes.frame, &passes.targets.depth);
     all.iter().for_each(|image| encoder.transition(image, Use::Undefined, Use::Color));
     encoder.transition(depth, Use::Undefined, Use::Depth);
-    let sorted: Sorted<'_> = frame.scene.as_ref().map(|scene| sort(scene, &frame.state)).unwrap_or_default();
+    let sorted = sort(passes.placed, &frame.state);
     let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
     let Some(first) = all.first() else { return };
     let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {

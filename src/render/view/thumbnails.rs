@@ -113,14 +113,16 @@ impl Thumbnails {
 
         let depth = targets.read_depth();
         let blocks = in_flight.blocks.clone();
-        let context = PassContext { frame, frame_set: &set, blocks: &blocks, constants: &constants, depth };
+        let placed = view.motion.place(frame);
+        let placed = placed.as_deref();
+        let context = PassContext { frame, placed, frame_set: &set, blocks: &blocks, constants: &constants, depth };
         view.declared.before_model(encoder, &context)?;
         let request = &frame.state.pipelines;
         let opaque_scene = targets.opaque_scene.as_ref().filter(|_| request.modes.is_empty());
         let images = FrameImages { picture: Some(&targets.color), opaque_scene, ..FrameImages::default() };
         let sets = view.declared.sets_of(&context, &images, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
-        let passes = Passes { layouts: &view.layouts, targets, frame, sets: &sets, only: None, more };
+        let passes = Passes { layouts: &view.layouts, targets, frame, placed, sets: &sets, only: None, more };
         match &*request.modes {
             [] => passes.model(encoder),
             _ => encoder.pass("thumbnails", |encoder| passes.modes(encoder)),

@@ -9,6 +9,7 @@ use super::sets::Sets;
 use crate::gpu::{DescriptorSet, Gpu, Image, Sampler, SetLayouts};
 use crate::interface::Frame;
 use crate::render::bound_frame::BoundFrame;
+use crate::render::scene::PlacedScene;
 use crate::shader::graph::TextureKind;
 
 /// Draws the declared passes of a view, and keeps their images, buffers and descriptor sets between frames.
@@ -35,6 +36,8 @@ pub(in crate::render::view) struct DeclaredPasses {
 /// The arguments of a frame's passes.
 pub(in crate::render::view) struct PassContext<'a> {
     pub(in crate::render::view) frame: &'a BoundFrame,
+    /// The model in the pose of the frame.
+    pub(in crate::render::view) placed: Option<&'a PlacedScene>,
     pub(in crate::render::view) frame_set: &'a Arc<DescriptorSet>,
     pub(in crate::render::view) blocks: &'a Blocks,
     /// The content of the block `Frame`.

@@ -98,7 +98,8 @@ impl DeclaredPasses {
                 encoder.begin_rendering(&Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..attachments });
                 encoder.bind_set(&self.layouts, context.frame_set);
                 let instances = instances(context.frame, pass);
-                let model = ModelDraws { layouts: &self.layouts, frame: context.frame, sets: &sets, instances, pass };
+                let (layouts, frame, placed) = (&self.layouts, context.frame, context.placed);
+                let model = ModelDraws { layouts, frame, placed, sets: &sets, instances, pass };
                 model.draw_pass(encoder);
             }
             None => {
