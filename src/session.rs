@@ -3,7 +3,7 @@
 
 mod recent;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,6 +29,8 @@ pub struct Session {
     model: Option<Arc<Model>>,
     /// The last scene, kept because a scene of a large model takes time to create.
     scene: RefCell<Option<Scene>>,
+    /// The time of the last frame, seconds.
+    time_s: Cell<f32>,
     recent: RefCell<Recent>,
 }
 
@@ -43,7 +45,7 @@ impl Session {
         self.model.as_ref()
     }
 
-    /// The model at the place that the settings give it.
+    /// The model at the place that the settings give it, in the pose of the last frame.
     pub fn placed_model(&self) -> Option<Arc<Model>> {
         self.scene().map(|scene| scene.model().clone())
     }
@@ -66,11 +68,11 @@ impl Session {
         self.shaders.as_ref()?.modes.iter().find(|mode| mode.slug == self.settings.mode)
     }
 
-    /// The model with the selected variant, materials and transform.
+    /// The model with the selected variant, materials and transform, in the pose of the last frame.
     pub fn scene(&self) -> Option<Scene> {
         let model = self.model.as_ref()?;
         let mut last = self.scene.borrow_mut();
-        let scene = Scene::update(last.as_ref(), model, &self.settings);
+        let scene = Scene::update(last.as_ref(), model, &self.settings, self.time_s.get());
         *last = Some(scene.clone());
         Some(scene)
     }
@@ -100,6 +102,7 @@ impl Session {
         size: (u32, u32),
         target: TargetFormat,
     ) -> Arc<FrameState> {
+        self.time_s.set(clock.time_s);
         let (settings, scene) = (self.shared_settings(), self.scene());
         let inputs = FrameInputs { settings: &settings, ..self.inputs(shaders, scene.as_ref(), clock, size, target) };
         self.recent.borrow_mut().pictures.state(&settings, &inputs)
@@ -145,6 +148,7 @@ impl Session {
             problems.extend(model.unknown_part(&self.settings.scene));
             problems.extend(model.unknown_material(self.settings.materials.keys()));
             problems.extend(model.unknown_camera(&self.settings.camera));
+            problems.extend(model.unknown_clip(&self.settings.animation));
         }
         problems
     }

@@ -1,6 +1,7 @@
 //! All settings of the user in one serde struct. The window, `--set`, look files and the tests all use it.
 
 mod alike;
+mod animation;
 mod assign;
 mod camera;
 mod catalog;
@@ -25,6 +26,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use animation::AnimationSettings;
 pub use assign::unknown_setting;
 pub use camera::CameraSettings;
 pub use catalog::{catalog, setting};
@@ -65,6 +67,8 @@ settings! {
         scene: SceneSettings;
         /// Where the model stands.
         model: ModelSettings;
+        /// Animations of the model.
+        animation: AnimationSettings;
         /// Environment.
         environment: EnvironmentSettings;
         /// File of a measured BRDF, for the modes `measured...`.

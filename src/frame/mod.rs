@@ -68,6 +68,13 @@ pub struct FrameInputs<'a> {
     pub target: TargetFormat,
 }
 
+impl FrameInputs<'_> {
+    /// The scene in the pose of the time.
+    fn posed_scene(&self) -> Option<Scene> {
+        self.scene.map(|scene| scene.at(&self.settings.animation, self.clock.time_s))
+    }
+}
+
 /// [`Clock::cursor_px`] while the mouse is not over the picture.
 pub(crate) const BEYOND: [f32; 2] = [-1.0; 2];
 
@@ -205,12 +212,14 @@ pub struct FrameState {
 impl FrameState {
     /// Describes a frame. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
+        let scene = inputs.posed_scene();
+        let inputs = &FrameInputs { scene: scene.as_ref(), ..*inputs };
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         Self::with_needs(inputs, Needs::new(inputs, PipelineRequest::new(settings, shaders, scene, target)))
     }
 
-    /// The same picture from another camera, with orbiting lights in other directions, at another time or size: `settings` are alike
-    /// ([`Settings::is_alike`]).
+    /// The same picture from another camera, with orbiting lights in other directions, at another time or size, so that the model is in
+    /// another pose: `settings` are alike ([`Settings::is_alike`]).
     #[must_use]
     pub fn moved(&self, settings: &Settings, clock: Clock, size: (u32, u32)) -> Self {
         let needs = Needs {
@@ -220,7 +229,11 @@ impl FrameState {
             environment: self.environment.clone(),
             measured: self.measured.clone(),
         };
-        let (shaders, scene, target) = (&self.shaders, self.scene.as_ref(), self.pipelines.target);
+        let posed = self.scene.as_ref().map(|scene| scene.at(&settings.animation, clock.time_s));
+        // A material that needs other pipelines than this picture has waits for the next one.
+        let fits = |posed: &Scene| self.scene.as_ref().is_some_and(|scene| scene.materials() == posed.materials());
+        let posed = posed.filter(fits).or_else(|| self.scene.clone());
+        let (shaders, scene, target) = (&self.shaders, posed.as_ref(), self.pipelines.target);
         let revisions = Revisions::default();
         Self::with_needs(&FrameInputs { settings, shaders, scene, revisions, clock, size, target }, needs)
     }
@@ -228,6 +241,8 @@ impl FrameState {
     /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model except the tone map are
     /// left out.
     pub fn of_modes(inputs: &FrameInputs<'_>, modes: &[&Mode]) -> Self {
+        let scene = inputs.posed_scene();
+        let inputs = &FrameInputs { scene: scene.as_ref(), ..*inputs };
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
         let pipelines = PipelineRequest::of_modes(settings, shaders, scene, target, modes);

@@ -1,8 +1,8 @@
 //! The model as the settings show it: variant (KHR_materials_variants), materials, place, and what is drawn of it.
 //!
 //! `Scene::loaded` identifies the resources. `Scene::model` stands where `model.*` places it, with its bounds, lights
-//! and cameras, and shares the primitives, so framing, shadows, path tracing and picking need not know of the
-//! transform. Materials that `materials.*` or `material.override` change get a uniform block and a descriptor set with
+//! and cameras, in the pose of a moment, and shares what does not move, so framing, shadows, path tracing and picking need
+//! not know of either. Materials that `materials.*` or `material.override` change get a uniform block and a descriptor set with
 //! the same images; nothing is compiled unless a feature appears. A channel of the override reads its texture as 1 by a
 //! view of the image with other components (`Image::with_ones`).
 
@@ -14,10 +14,12 @@ use super::material_variant::shared_features;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR};
 use crate::scene::{
-    self, AlphaMode, Instance, Material, Model, Pose, Sides, Topology, override_material, replace_channels,
-    replace_factors,
+    self, AlphaMode, Instance, Material, Model, Playing, Pose, Sides, Topology, moved_materials, override_material,
+    replace_channels, replace_factors,
 };
-use crate::settings::{MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings};
+use crate::settings::{
+    AnimationSettings, MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings,
+};
 
 /// The settings that turn a model into a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,11 +59,15 @@ impl Look {
 pub struct Scene {
     /// The model that was loaded.
     loaded: Arc<Model>,
-    /// The model at the place that the settings give it.
+    /// The model at the place that the settings give it, in the pose of the moment.
     model: Arc<Model>,
     look: Arc<Look>,
-    /// Where the parts of the model are at the moment, with the place that the settings give it. `model` stands there.
-    pose: Arc<Pose>,
+    /// The clips that give the pose, with their time.
+    playing: Arc<[Playing]>,
+    /// Whether the pose depends on the time.
+    is_animated: bool,
+    /// Whether it changes as the clock goes on. A clip that is not repeated ends.
+    is_playing: bool,
     /// Whether each instance is drawn. `None` draws all.
     visible: Option<Arc<[bool]>>,
     /// The materials that differ from those of the model, by index; empty if none does.
@@ -71,7 +77,7 @@ pub struct Scene {
 
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
-        self.has_same_draws(other) && (Arc::ptr_eq(&self.pose, &other.pose) || self.pose == other.pose)
+        self.has_same_draws(other) && (Arc::ptr_eq(&self.model, &other.model) || self.model.pose == other.model.pose)
     }
 }
 
@@ -86,17 +92,37 @@ pub(crate) struct Appearance {
 }
 
 impl Scene {
-    /// The scene that `settings` select. A variant that the model lacks is ignored: see [`Model::variant`].
+    /// The scene that `settings` select when the clock is at 0. A variant that the model lacks is ignored: see [`Model::variant`].
     pub fn new(model: &Arc<Model>, settings: &Settings) -> Self {
-        Self::with(None, model, settings)
+        Self::with(model, settings, 0.0)
     }
 
-    /// [`Scene::new`], or a clone of `previous` if that is the same scene. Collecting the materials of a large model takes
-    /// time.
-    pub fn update(previous: Option<&Self>, model: &Arc<Model>, settings: &Settings) -> Self {
-        let previous = previous.filter(|scene| Arc::ptr_eq(&scene.loaded, model));
-        let is_same = |scene: &&Self| scene.look.is_of(model, settings);
-        previous.filter(is_same).cloned().unwrap_or_else(|| Self::with(previous, model, settings))
+    /// The scene when the clock is at `time_s`: `previous` in another pose if only that differs. Collecting the materials of a large
+    /// model takes time.
+    pub fn update(previous: Option<&Self>, model: &Arc<Model>, settings: &Settings, time_s: f32) -> Self {
+        let is_same = |scene: &&Self| Arc::ptr_eq(&scene.loaded, model) && scene.look.is_of(model, settings);
+        match previous.filter(is_same) {
+            Some(scene) => scene.at(&settings.animation, time_s),
+            None => Self::with(model, settings, time_s),
+        }
+    }
+
+    /// The same scene when the clock is at `time_s`, with these animations.
+    #[must_use]
+    pub fn at(&self, animation: &AnimationSettings, time_s: f32) -> Self {
+        let playing = self.loaded.playing(animation, time_s);
+        let is_animated = self.loaded.is_animated(animation, &playing);
+        let is_playing = self.loaded.is_playing(animation, &playing);
+        if *self.playing == *playing {
+            return Self { is_animated, is_playing, ..self.clone() };
+        }
+        let model: Arc<Model> = self.loaded.at(&playing, self.look.place.transform()).into();
+        let has_same_materials = model.pose.has_same_materials(&self.model.pose);
+        let scene = Self { model, playing: playing.into(), is_animated, is_playing, ..self.clone() };
+        if has_same_materials {
+            return scene;
+        }
+        Self { changed: changed(&scene.model, &scene.look), ..scene }.collected()
     }
 
     /// The same scene with only the instances whose entry is `true`, as far as it draws them.
@@ -107,16 +133,18 @@ impl Scene {
         Self { visible: Some(visible.into()), ..self.clone() }.collected()
     }
 
-    fn with(previous: Option<&Self>, loaded: &Arc<Model>, settings: &Settings) -> Self {
+    fn with(loaded: &Arc<Model>, settings: &Settings, time_s: f32) -> Self {
         let look = Look::new(loaded, settings);
-        let model = match (look.place.transform(), previous.filter(|scene| scene.look.place == look.place)) {
-            (None, _) => loaded.clone(),
-            (Some(_), Some(previous)) => previous.model.clone(),
-            (Some(transform), None) => Arc::new(loaded.placed(transform)),
+        let playing = loaded.playing(&settings.animation, time_s);
+        let model = match (look.place.transform(), playing.as_slice()) {
+            (None, []) => loaded.clone(),
+            (Some(place), []) => Arc::new(loaded.placed(place)),
+            (place, playing) => Arc::new(loaded.at(playing, place)),
         };
-        let pose = Arc::new(model.rest_pose());
         let scene = Self {
-            pose,
+            is_animated: loaded.is_animated(&settings.animation, &playing),
+            is_playing: loaded.is_playing(&settings.animation, &playing),
+            playing: playing.into(),
             visible: model.visible(&look.parts).map(Into::into),
             changed: changed(&model, &look),
             loaded: loaded.clone(),
@@ -136,14 +164,24 @@ impl Scene {
         self
     }
 
-    /// The model at the place that the settings give it.
+    /// The model at the place that the settings give it, in the pose of the moment.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
     /// Where the parts of the model are.
     pub fn pose(&self) -> &Arc<Pose> {
-        &self.pose
+        &self.model.pose
+    }
+
+    /// Whether the pose depends on the time.
+    pub fn is_animated(&self) -> bool {
+        self.is_animated
+    }
+
+    /// Whether the pose changes as the clock goes on.
+    pub fn is_playing(&self) -> bool {
+        self.is_playing
     }
 
     /// Whether both draw the same primitives with the same materials, wherever they are.
@@ -151,6 +189,7 @@ impl Scene {
         Arc::ptr_eq(&self.loaded, &other.loaded)
             && (Arc::ptr_eq(&self.look, &other.look) || self.look == other.look)
             && self.visible == other.visible
+            && self.model.pose.has_same_materials(&other.model.pose)
     }
 
     /// The model that was loaded.
@@ -242,18 +281,20 @@ impl Scene {
     }
 }
 
-/// The materials that the settings change, by their indices; empty if they change none.
+/// The materials that the settings or animations change, by their indices; empty if they change none.
 fn changed(model: &Model, look: &Look) -> Arc<[Option<Material>]> {
     let channels = look.material.as_ref().filter(|material| !material.enabled);
-    if channels.is_none() && look.materials.is_empty() {
+    let moved: BTreeMap<usize, Material> = moved_materials(model, &model.pose.values).into_iter().collect();
+    if channels.is_none() && look.materials.is_empty() && moved.is_empty() {
         return Arc::default();
     }
     let change = |(index, material): (usize, &Material)| {
         let values = model.material_values(index, &look.materials);
-        if channels.is_none() && values.is_none() {
+        let moved = moved.get(&index);
+        if channels.is_none() && values.is_none() && moved.is_none() {
             return None;
         }
-        let mut material = material.clone();
+        let mut material = moved.unwrap_or(material).clone();
         values.into_iter().for_each(|values| replace_factors(&mut material, values));
         channels.into_iter().for_each(|channels| replace_channels(&mut material, channels));
         Some(material)

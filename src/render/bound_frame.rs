@@ -59,8 +59,18 @@ impl BoundFrame {
         }
     }
 
-    /// Whether the frame changes as time passes: a stage reads the clock, or a pass reads its previous output.
+    /// Whether the frame depends on the time: a stage reads the clock, a pass reads its previous output, or the model has an animation.
     pub fn is_animated(&self) -> bool {
+        self.has_moving_shaders() || self.state.scene.as_ref().is_some_and(|scene| scene.is_animated())
+    }
+
+    /// Whether the frame stays the same as time passes. An animation that is not repeated ends.
+    pub fn rests(&self) -> bool {
+        !self.has_moving_shaders() && self.state.scene.as_ref().is_none_or(|scene| !scene.is_playing())
+    }
+
+    /// Whether a stage reads the clock, or a pass its previous output.
+    fn has_moving_shaders(&self) -> bool {
         self.pipelines.read_clock || self.state.pipelines.passes.iter().any(|pass| pass.moves)
     }
 

@@ -20,6 +20,12 @@ impl Model {
             settings.camera.name.clear();
             told.push(problem);
         }
+        if settings.animation.clips == look.animation.clips
+            && let Some(problem) = self.unknown_clip(&look.animation)
+        {
+            settings.animation.clips.clear();
+            told.push(problem);
+        }
         let is_known = |name: &String| self.unknown_material(std::iter::once(name)).is_none();
         let lacking: Vec<&String> = look.materials.keys().filter(|name| !is_known(name)).collect();
         settings

@@ -167,7 +167,7 @@ mod tests {
 
     fn own(kind: LightKind) -> model::Light {
         let (position, direction, intensity) = (Vec3::ONE, Vec3::NEG_Y, Vec3::splat(5.0));
-        model::Light { name: String::new(), kind, position, direction, intensity, range: Some(7.0) }
+        model::Light { name: "".into(), kind, position, direction, intensity, range: Some(7.0) }
     }
 
     fn light(azimuth: f32, polar: f32) -> OrbitLight {

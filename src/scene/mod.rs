@@ -42,7 +42,9 @@ pub use lights::{light_count, light_direction, lights, rectangle_corners, view_o
 pub use load_options::{Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
-pub use motion::{Deformation, Displacement, Influence, Pose};
+pub use motion::{
+    Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Skin, Target, moved_materials,
+};
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 pub use super::material::*;
-use super::motion::Deformation;
+use super::motion::{Deformation, Motion, Pose};
 pub use crate::interface::Vertex;
 use crate::message::did_you_mean;
 
@@ -15,36 +15,40 @@ use crate::message::did_you_mean;
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     /// File stem, or the built-in name.
-    pub name: String,
-    /// Geometry, each primitive once. Models that only stand elsewhere share it.
+    pub name: Arc<str>,
+    /// Geometry, each primitive once. A model in another pose shares it, as it shares all that does not move.
     pub primitives: Arc<Vec<Primitive>>,
     /// Materials; index 0 is glTF's default material.
-    pub materials: Vec<Material>,
+    pub materials: Arc<Vec<Material>>,
     /// Images paired with samplers.
-    pub textures: Vec<Texture>,
+    pub textures: Arc<Vec<Texture>>,
     /// Decoded images.
-    pub images: Vec<Image>,
+    pub images: Arc<Vec<Image>>,
     /// Names of the variants (KHR_materials_variants).
-    pub variants: Vec<String>,
+    pub variants: Arc<Vec<String>>,
     /// The nodes of the scene. A parent comes before its children, and all below a node follow it.
-    pub nodes: Vec<Node>,
+    pub nodes: Arc<Vec<Node>>,
     /// Primitives placed in the world: the draws.
     pub instances: Vec<Instance>,
     /// KHR_lights_punctual, placed in the world.
     pub lights: Vec<Light>,
     /// Cameras, placed in the world.
     pub cameras: Vec<Camera>,
+    /// How the model can move.
+    pub motion: Arc<Motion>,
+    /// Where everything is: the instances, lights and cameras above, and the joints and morph weights of deformed instances.
+    pub pose: Arc<Pose>,
     /// Contents of the file beside the scene.
-    pub contents: Contents,
-    /// World bounds of all instances.
+    pub contents: Arc<Contents>,
+    /// World bounds of all instances, during the whole of the clips that play.
     pub bounds: Bounds,
     /// The outermost vertices in world space (hull points), for framing. If empty, framing uses the corners of `bounds`.
-    pub outline: Vec<Vec3>,
+    pub outline: Arc<[Vec3]>,
     /// Absolute paths of all files that were read. The window watches them.
-    pub files: Vec<PathBuf>,
+    pub files: Arc<Vec<PathBuf>>,
     /// Warnings, one sentence for each part that the loader ignored or replaced: unknown extensions, images that cannot be
     /// decoded, repaired tangents.
-    pub warnings: Vec<String>,
+    pub warnings: Arc<Vec<String>>,
     /// Loading times.
     pub timing: LoadTiming,
 }
@@ -231,12 +235,12 @@ pub struct Node {
 pub struct Instance {
     /// Index into `Model::primitives`.
     pub primitive: usize,
-    /// Object to world. Finite; a negative determinant flips the winding.
+    /// Object to world. Finite; a negative determinant flips the winding. With joints, the space to which they bring the vertices to world.
     pub world_from_object: Mat4,
     /// Index of the glTF node.
     pub node: usize,
     /// Name of the node, or empty.
-    pub node_name: String,
+    pub node_name: Arc<str>,
     /// Index of its skin's first joint in `Pose::joints`.
     pub first_joint: Option<u32>,
     /// Index of the weight of its first morph target in `Pose::weights`.
@@ -273,10 +277,10 @@ pub enum LightKind {
 }
 
 /// A punctual light in world space.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     /// Name, or empty.
-    pub name: String,
+    pub name: Arc<str>,
     /// Kind and cone.
     pub kind: LightKind,
     /// World position, meters.
@@ -290,10 +294,10 @@ pub struct Light {
 }
 
 /// A camera of the model in world space.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Name, or empty.
-    pub name: String,
+    pub name: Arc<str>,
     /// Position.
     pub eye: Vec3,
     /// View direction, unit.

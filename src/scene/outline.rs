@@ -10,7 +10,7 @@ use super::model::{Instance, Model, Primitive};
 const DIRECTIONS: usize = 192;
 /// In a model with more instances than this, the corners of its bounds stand for each primitive. A box that is too
 /// large for its primitive hardly matters among so many.
-const MOST_INSTANCES: usize = 2000;
+pub const MOST_INSTANCES: usize = 2000;
 /// If the instances have more points than this in total, each primitive is searched once in its own space, and its
 /// instances place only the points found there. These are still vertices of the model, but the fit is less close
 /// around instances that are stretched or rotated.
@@ -39,12 +39,21 @@ pub fn outline(model: &Model) -> Vec<Vec3> {
     directions.farthest(&points_ws)
 }
 
-/// The positions that indices refer to, in the order of the vertices.
-fn referred(primitive: &Primitive) -> Vec<Vec3> {
+/// The farthest point in each of many directions.
+pub fn hull(points: &[Vec3]) -> Vec<Vec3> {
+    Directions::new().farthest(points)
+}
+
+/// The vertices that indices refer to, in their order.
+pub fn used_vertices(primitive: &Primitive) -> impl Iterator<Item = u32> + use<> {
     let mut is_used = vec![false; primitive.vertices.len()];
     primitive.indices.iter().for_each(|&index| is_used[index as usize] = true);
-    let used = primitive.vertices.iter().zip(is_used).filter(|(_, is_used)| *is_used);
-    used.map(|(vertex, _)| Vec3::from(vertex.position)).collect()
+    (0..).zip(is_used).filter(|(_, is_used)| *is_used).map(|(index, _)| index)
+}
+
+/// The positions that indices refer to, in the order of the vertices.
+fn referred(primitive: &Primitive) -> Vec<Vec3> {
+    used_vertices(primitive).map(|index| Vec3::from(primitive.vertices[index as usize].position)).collect()
 }
 
 /// Unit vectors spread evenly over the sphere. Each component has an array of its own, so that the compiler compares
@@ -143,7 +152,7 @@ mod tests {
             primitive: 0,
             world_from_object: at(x),
             node: x,
-            node_name: String::new(),
+            node_name: "".into(),
             first_joint: None,
             first_weight: None,
         };

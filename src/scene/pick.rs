@@ -26,7 +26,7 @@ pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u
             let clip = clip_from_object * glam::Vec3::from(position).extend(1.0);
             (clip.w > 0.0).then(|| (clip.xy() / clip.w + 1.0) * half - pixel)
         };
-        let places: Vec<Option<Vec2>> = primitive.vertices.iter().map(|v| place(v.position)).collect();
+        let places: Vec<Option<Vec2>> = model.vertices(instance).iter().map(|v| place(v.position)).collect();
         pieces(primitive).any(|piece| reaches(piece.iter().map(|index| places[*index as usize])))
     };
     model.instances.iter().map(is_near).collect()
@@ -69,12 +69,14 @@ pub fn pick(
     let near = |(instance, placed): (usize, &Instance)| {
         let sides = sides(instance);
         let primitive = &model.primitives[placed.primitive];
-        if sides == Sides::None || !enters(ray, view.eye, placed, primitive) {
+        // Joints and morph targets may move a primitive out of its box.
+        let has_box = model.deformers(placed) == (&[], &[]);
+        if sides == Sides::None || (has_box && !enters(ray, view.eye, placed, primitive)) {
             return None;
         }
-        let place = |index: u32| {
-            placed.world_from_object.transform_point3(primitive.vertices[index as usize].position.into()) - view.eye
-        };
+        let vertices = model.vertices(placed);
+        let place =
+            |index: u32| placed.world_from_object.transform_point3(vertices[index as usize].position.into()) - view.eye;
         // The renderer reverses the winding of mirrored meshes.
         let mirror = if placed.world_from_object.determinant() < 0.0 { -1.0 } else { 1.0 };
         let hit = |triangle: &[u32; 3]| {

@@ -1,37 +1,71 @@
-//! A model that stands elsewhere than in its file.
+//! A model, its lights and its cameras elsewhere than in the file.
 
-use glam::{Mat4, Vec3};
+use glam::{DMat4, Mat4, Vec3};
 
-use super::model::{Bounds, Lens, Model};
+use super::model::{Bounds, Camera, Lens, Light, Model};
 
-impl Model {
-    /// The model moved by `transform`, which preserves angles, with its lights and cameras. It shares the geometry.
+impl Light {
+    /// The light of a node.
+    #[must_use]
+    pub fn at(&self, world_from_node: &DMat4) -> Self {
+        let world = world_from_node.as_mat4();
+        // Lights shine along -Z of their node.
+        let direction = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
+        Self { position: world.w_axis.truncate(), direction, ..self.clone() }
+    }
+
+    /// The light moved by a transform that preserves angles.
     #[must_use]
     pub fn placed(&self, transform: Mat4) -> Self {
-        let mut model = self.clone();
-        for instance in &mut model.instances {
-            instance.world_from_object = transform * instance.world_from_object;
+        let direction = turned(transform, self.direction);
+        Self { position: transform.transform_point3(self.position), direction, ..self.clone() }
+    }
+}
+
+impl Camera {
+    /// The camera of a node.
+    #[must_use]
+    pub fn at(&self, world_from_node: &DMat4) -> Self {
+        let world = world_from_node.as_mat4();
+        let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
+        let up = world.transform_vector3(Vec3::Y).reject_from_normalized(forward);
+        let up = up.normalize_or(forward.any_orthonormal_vector());
+        Self { eye: world.w_axis.truncate(), forward, up, ..self.clone() }
+    }
+
+    /// The camera moved by a transform that preserves angles.
+    #[must_use]
+    pub fn placed(&self, transform: Mat4) -> Self {
+        let [forward, up] = [self.forward, self.up].map(|direction| turned(transform, direction));
+        Self { eye: transform.transform_point3(self.eye), forward, up, ..self.clone() }.scaled(transform)
+    }
+
+    /// The same place with a visible area that grows as the model does.
+    #[must_use]
+    pub fn scaled(mut self, transform: Mat4) -> Self {
+        if let Lens::Orthographic { height } = &mut self.lens {
+            *height *= transform.x_axis.length();
         }
-        model.bounds = model.instance_bounds();
-        // The hull points remain the hull points.
-        let place = |point: &mut Vec3| *point = transform.transform_point3(*point);
-        model.outline.iter_mut().for_each(place);
-        let turn = |direction: Vec3| transform.transform_vector3(direction).normalize_or(direction);
-        for light in &mut model.lights {
-            place(&mut light.position);
-            light.direction = turn(light.direction);
-        }
-        for camera in &mut model.cameras {
-            place(&mut camera.eye);
-            (camera.forward, camera.up) = (turn(camera.forward), turn(camera.up));
-            if let Lens::Orthographic { height } = &mut camera.lens {
-                *height *= transform.x_axis.length();
-            }
+        self
+    }
+}
+
+fn turned(transform: Mat4, direction: Vec3) -> Vec3 {
+    transform.transform_vector3(direction).normalize_or(direction)
+}
+
+impl Model {
+    /// The model in its own pose moved by `transform`, which preserves angles, with its lights and cameras. It shares the geometry.
+    #[must_use]
+    pub fn placed(&self, transform: Mat4) -> Self {
+        let mut model = self.at(&[], Some(transform));
+        if model.pose.joints.is_empty() && model.pose.weights.is_empty() {
+            model.bounds = model.instance_bounds();
         }
         model
     }
 
-    /// World bounds of all instances.
+    /// World bounds of all instances, as they are without joints and morph targets.
     pub fn instance_bounds(&self) -> Bounds {
         let mut bounds = Bounds::default();
         for instance in &self.instances {

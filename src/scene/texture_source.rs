@@ -118,6 +118,8 @@ pub fn texture_sources(model: &Model) -> BTreeSet<TextureSource> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::interface::{TEXTURE_BASE_COLOR, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_NORMAL};
     use crate::scene::{Sampler, Texture, TextureUse};
@@ -130,8 +132,8 @@ mod tests {
         };
         let texture = |image| Texture { image, sampler: Sampler::default() };
         Model {
-            images: sizes.iter().enumerate().map(image).collect(),
-            textures: (0..sizes.len()).map(texture).collect(),
+            images: Arc::new(sizes.iter().enumerate().map(image).collect()),
+            textures: Arc::new((0..sizes.len()).map(texture).collect()),
             ..Model::default()
         }
     }
@@ -151,7 +153,7 @@ mod tests {
         let size = (411, 333);
         let mut model = model(&[size, size]);
         let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
-        model.materials = vec![material.clone(), self::material(&[(TEXTURE_BASE_COLOR, 0)])];
+        model.materials = vec![material.clone(), self::material(&[(TEXTURE_BASE_COLOR, 0)])].into();
         let packed = TextureSource::Packed { metallic_roughness: 0, occlusion: 1 };
         let of = |slot: u32| TextureSource::of(&model, &material, slot as usize);
         assert_eq!([of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)], [packed; 2]);
@@ -188,7 +190,7 @@ mod tests {
         let glossy = Material { specular_glossiness: true, ..material.clone() };
         assert_eq!(apart(&model(&[(4, 4), (4, 4)]), &glossy), both(true));
         let mut nearest = model(&[(4, 4), (4, 4)]);
-        nearest.textures[1].sampler.mag_linear = false;
+        Arc::make_mut(&mut nearest.textures)[1].sampler.mag_linear = false;
         assert_eq!(apart(&nearest, &material), both(false));
         let mut second = material.clone();
         second.textures[TEXTURE_OCCLUSION as usize].as_mut().unwrap().uv_set = 1;

@@ -26,7 +26,7 @@ impl Model {
         let names: HashSet<&str> = names.iter().map(String::as_str).collect();
         let is_named = |name: &str| names.contains(name);
         let mut nodes = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
+        for node in self.nodes.iter() {
             // Parents come first.
             let is_below = node.parent.is_some_and(|parent| nodes[parent]);
             nodes.push(is_below || is_named(&node.name) || is_named(&number(node)));
@@ -104,7 +104,7 @@ impl Model {
 
     /// The name by which settings refer to a camera: its own if no other has it, or its number.
     pub fn camera_key(&self, index: usize) -> String {
-        let name = unique_name(self.cameras.iter().map(|camera| camera.name.as_str()), index);
+        let name = unique_name(self.cameras.iter().map(|camera| &*camera.name), index);
         name.unwrap_or_else(|| format!("#{index}"))
     }
 
@@ -112,7 +112,7 @@ impl Model {
     pub fn camera(&self, name: &str) -> Option<&Camera> {
         match name.strip_prefix('#').and_then(|number| number.parse::<usize>().ok()) {
             Some(index) => self.cameras.get(index),
-            None => self.cameras.iter().find(|camera| !name.is_empty() && camera.name == name),
+            None => self.cameras.iter().find(|camera| !name.is_empty() && *camera.name == *name),
         }
     }
 
@@ -239,7 +239,7 @@ mod tests {
     fn materials_of_equal_name_have_keys_of_their_own_and_a_name_in_common() {
         let named = |name: &str| Material { name: name.into(), ..Material::default() };
         let materials = ["", "Paint", "Glass", "Paint", ""].map(named).to_vec();
-        let model = Model { materials, ..Model::default() };
+        let model = Model { materials: materials.into(), ..Model::default() };
         let keys: Vec<String> = (0..5).map(|index| model.material_key(index)).collect();
         assert_eq!(keys, ["#default", "Paint#0", "Glass", "Paint#2", "#3"]);
         let changed = |key: &str| {

@@ -44,13 +44,16 @@ struct Picture {
 }
 
 impl Picture {
-    /// Whether the inputs give the same picture, apart from camera, directions of orbiting lights, time and size.
+    /// Whether the inputs give the same picture, apart from camera, directions of orbiting lights, pose, time and size.
     fn has_needs_of(&self, settings: &Arc<Settings>, inputs: &FrameInputs<'_>) -> bool {
         let state = &*self.state;
         Arc::ptr_eq(&state.shaders, inputs.shaders)
             && (self.revisions, state.pipelines.target) == (inputs.revisions, inputs.target)
             && (Arc::ptr_eq(&self.settings, settings) || self.settings.is_alike(settings))
-            && state.scene.as_ref() == inputs.scene
+            && match (&state.scene, inputs.scene) {
+                (Some(known), Some(scene)) => known.has_same_draws(scene),
+                (known, scene) => known.is_none() && scene.is_none(),
+            }
     }
 }
 
@@ -97,7 +100,9 @@ impl RecentPictures {
 mod tests {
     use super::*;
     use crate::frame::TargetFormat;
+    use crate::scene::{Model, load_bytes};
     use crate::session::Session;
+    use crate::settings::ModelSettings;
 
     fn state(session: &Session) -> Arc<FrameState> {
         session.frame_state(Clock::default(), (64, 48), TargetFormat::half(1)).unwrap()
@@ -142,5 +147,71 @@ mod tests {
         for (mode, known) in first.iter().enumerate() {
             assert!(Arc::ptr_eq(known, &of_mode(mode)), "{mode}");
         }
+    }
+
+    /// A triangle that moves from 0 to 2 along X in a second, again and again.
+    fn moving() -> Model {
+        let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAABAAAAAAAAAAAA=";
+        let accessor = |offset: u32, kind: &str, count: u32| {
+            format!(r#"{{"bufferView":0,"byteOffset":{offset},"componentType":5126,"count":{count},"type":"{kind}"}}"#)
+        };
+        let accessors = [accessor(0, "VEC3", 3), accessor(36, "SCALAR", 2), accessor(44, "VEC3", 2)].join(",");
+        let animation = r#"{"name":"go","samplers":[{"input":1,"output":2}],
+            "channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}"#;
+        let json = format!(
+            r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"animations":[{animation}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"accessors":[{accessors}],
+            "bufferViews":[{{"buffer":0,"byteLength":68}}],
+            "buffers":[{{"byteLength":68,"uri":"data:application/octet-stream;base64,{data}"}}]}}"#
+        );
+        load_bytes("moving", json.as_bytes()).unwrap()
+    }
+
+    #[test]
+    fn an_animation_moves_the_model_and_nothing_else() {
+        let mut session = Session::new(Settings::default());
+        session.shaders = Some(Arc::default());
+        session.set_model(&Arc::new(moving()));
+        let at = |session: &Session, time_s: f32| {
+            let clock = Clock { time_s, ..Clock::default() };
+            session.frame_state(clock, (64, 48), TargetFormat::half(1)).unwrap()
+        };
+        let place = |state: &FrameState| {
+            let scene = state.scene.as_ref().unwrap();
+            assert_eq!(scene.pose().instances[0], scene.model().instances[0].world_from_object);
+            scene.pose().instances[0].w_axis.x
+        };
+        let first = at(&session, 0.0);
+        let moved = at(&session, 1.25);
+        assert_eq!((place(&first), place(&moved)), (0.0, 0.5), "it begins again after a second");
+        assert_eq!(session.scene().unwrap().pose(), moved.scene.as_ref().unwrap().pose(), "panels see the same");
+        assert!(!first.is_same(&moved) && at(&session, 1.25).is_same(&moved));
+        assert!(Arc::ptr_eq(&first.pipelines, &moved.pipelines), "pipelines stay while it moves");
+        assert_eq!(first.camera.eye, moved.camera.eye, "the camera stands still");
+        // The frame that is drawn while an edit compiles.
+        let clock = Clock { time_s: 0.75, ..Clock::default() };
+        assert_eq!(place(&first.moved(&session.settings, clock, (64, 48))), 1.5);
+        let is_playing = |session: &Session, time_s: f32| at(session, time_s).scene.as_ref().unwrap().is_playing();
+        assert!(is_playing(&session, 5.0));
+        for (setting, time_s, expected, plays) in [
+            ("animation.speed=-0.5", 0.5, 1.5, true),
+            ("animation.time=0.25", 0.25, 0.25, true),
+            ("animation.loop=false", 0.25, 0.25, true),
+            ("animation.loop=false", 4.0, 0.0, false),
+            ("animation.speed=2", 0.25, 1.5, true),
+            ("animation.speed=2", 4.0, 2.0, false),
+            ("animation.speed=0", 7.0, 0.5, false),
+            ("animation.clips=go:0.5", 1.0, 0.25, false),
+            ("animation.clips=none", 1.0, 0.0, false),
+        ] {
+            session.settings.assign(setting).unwrap();
+            assert_eq!((place(&at(&session, time_s)), is_playing(&session, time_s)), (expected, plays), "{setting}");
+        }
+        session.settings.assign("animation.clips=stay").unwrap();
+        assert_eq!(session.problems(false).len(), 1);
+        assert!(session.problems(false)[0].contains("no animation 'stay': it has go"), "{:?}", session.problems(false));
+        let placed = ModelSettings { translation: [10.0, 0.0, 0.0], ..ModelSettings::default() };
+        session.settings = Settings { model: placed, ..Settings::default() };
+        assert_eq!(place(&at(&session, 0.5)), 11.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Comparisons that leave out what changes while the user only looks: camera, mode, orbiting lights.
+//! Comparisons that leave out what changes while the user only looks: camera, mode, orbiting lights, animations.
 
 use super::{LightSettings, Settings};
 
@@ -15,7 +15,7 @@ impl LightSettings {
 }
 
 impl Settings {
-    /// Whether both are equal but for the camera and the directions of orbiting lights. These select no pipelines and no baked
+    /// Whether both are equal but for the camera, the directions of orbiting lights and the animations. These select no pipelines and no baked
     /// light, change in many frames, and never make a shader hang by themselves.
     pub fn is_alike(&self, other: &Self) -> bool {
         self.mode == other.mode && self.lights == other.lights.turned_as(&self.lights) && self.rest() == other.rest()
@@ -23,28 +23,30 @@ impl Settings {
 
     /// Whether both are equal but for the mode.
     pub fn is_of_other_mode(&self, other: &Self) -> bool {
-        self.camera == other.camera && self.lights == other.lights && self.rest() == other.rest()
+        (&self.camera, &self.lights, &self.animation) == (&other.camera, &other.lights, &other.animation)
+            && self.rest() == other.rest()
     }
 
     /// Whether both are equal but for the camera, the mode and, while they orbit, the directions of lights.
     pub fn is_other_view(&self, other: &Self) -> bool {
         let turned = if other.lights.spin == 0.0 { self.lights.clone() } else { self.lights.turned_as(&other.lights) };
-        turned == other.lights && self.rest() == other.rest()
+        turned == other.lights && self.animation == other.animation && self.rest() == other.rest()
     }
 
-    /// These settings with the camera and the directions of orbiting lights of `view`.
+    /// These settings with the camera, the directions of orbiting lights and the animations of `view`.
     #[must_use]
     pub fn placed_as(&self, view: &Self) -> Self {
         let lights = self.lights.turned_as(&view.lights);
-        Self { camera: view.camera.clone(), lights, ..self.clone() }
+        Self { camera: view.camera.clone(), animation: view.animation.clone(), lights, ..self.clone() }
     }
 
-    /// All but the mode, the camera and the lights.
+    /// All but the mode, the camera, the lights and the animations.
     fn rest(&self) -> impl PartialEq {
         let Self {
             mode: _,
             camera: _,
             lights: _,
+            animation: _,
             variant,
             material,
             materials,
@@ -80,6 +82,7 @@ mod tests {
         };
         assert_eq!(with("camera.fovy=50"), (true, false, true));
         assert_eq!(with("lights.orbit.1.azimuth=1"), (true, false, false));
+        assert_eq!(with("animation.speed=2"), (true, false, false));
         assert_eq!(with("mode=normal"), (false, true, true));
         for other in ["lights.orbit.1.strength=1", "view.ev=1", "rim=0.5", "passes.ground=false", "variant=red"] {
             assert_eq!(with(other), (false, false, false), "{other}");

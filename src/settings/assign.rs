@@ -289,7 +289,7 @@ mod tests {
                  colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? `specula help set` lists all"),
-            ("qqqq.ev=1", "At the top there are camera, "),
+            ("qqqq.ev=1", "At the top there are animation, camera, "),
             ("shader.rim.x=1", "unknown setting `shader.rim.x`. "),
             ("camera.eye.0=1", "eye has no value yet; set all of eye"),
             ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),

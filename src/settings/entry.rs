@@ -84,6 +84,7 @@ pub(super) mod unit {
     pub(in crate::settings) const FACTOR: Unit = Unit { name: "", suffix: "×" };
     pub(in crate::settings) const DEGREES: Unit = Unit { name: "degrees", suffix: "°" };
     pub(in crate::settings) const DEGREES_PER_SECOND: Unit = Unit { name: "degrees/s", suffix: "°/s" };
+    pub(in crate::settings) const SECONDS: Unit = Unit { name: "seconds", suffix: " s" };
     pub(in crate::settings) const METERS: Unit = Unit { name: "meters", suffix: " m" };
     pub(in crate::settings) const NANOMETERS: Unit = Unit { name: "nm", suffix: " nm" };
     /// Radii of the model's bounding sphere.

@@ -89,7 +89,7 @@ impl Loader {
             let mut reading = begin();
             let Some(model) = reading.wait_unless(&superseded) else { return };
             let upload = |model: Model| {
-                let files = model.files.clone();
+                let files = model.files.to_vec();
                 let (gpu, layouts) = (gpu.upgrade()?, layouts.upgrade()?);
                 Some(GpuModel::upload(&gpu, &layouts, model).map_err(|error| (error.to_string(), files)))
             };

@@ -25,7 +25,8 @@ pub(in crate::app) fn selected_instances(state: &mut State) -> Arc<[bool]> {
         return Arc::default();
     };
     if let Some((selected, of, instances)) = &state.selected_cache
-        && (*selected, of) == (state.selected, &scene)
+        && *selected == state.selected
+        && of.has_same_draws(&scene)
     {
         return instances.clone();
     }

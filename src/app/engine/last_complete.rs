@@ -22,6 +22,7 @@ impl LastComplete {
             state: self.frame.state.clone(),
             settings: self.settings.clone(),
             is_animated: self.frame.is_animated(),
+            rests: self.frame.rests(),
             reads_keys: self.frame.reads_keys(),
         }
     }

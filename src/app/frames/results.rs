@@ -103,7 +103,7 @@ pub(super) fn shown(frame_state: &FrameState) -> Shown {
         generation: frame_state.shaders.generation,
         mode: frame_state.mode().map(|mode| mode.slug.clone()).unwrap_or_default(),
         size: frame_state.size,
-        model: frame_state.scene.as_ref().map(|scene| scene.model().name.clone()).unwrap_or_default(),
+        model: frame_state.scene.as_ref().map(|scene| scene.model().name.to_string()).unwrap_or_default(),
     }
 }
 

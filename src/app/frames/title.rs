@@ -5,7 +5,7 @@ use crate::shader::Mode;
 
 /// The title of the window: model, shader tree and mode.
 pub(in crate::app) fn of_window(state: &State) -> String {
-    let model = state.session.model().filter(|_| !state.shader.is_single_file).map(|model| model.name.as_str());
+    let model = state.session.model().filter(|_| !state.shader.is_single_file).map(|model| &*model.name);
     let mode = state.session.mode().map(|mode| mode.name.as_str());
     let parts = [model, Some(state.shader.tree.as_str()), mode, Some("Specula")];
     parts.into_iter().flatten().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" - ")

@@ -27,7 +27,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             engine.generations.drop_pictures();
             engine.forget_second_picture();
             let (model, is_other) = (uploaded.model(), loaded.path != state.model.path);
-            for warning in &model.warnings {
+            for warning in model.warnings.iter() {
                 message::warn(format_args!("{}: {warning}", model.name));
             }
             if state.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
@@ -60,13 +60,14 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             let settings = &state.session.settings;
             let unknown = model.unknown_part(&settings.scene);
             let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
+            let unknown = unknown.or_else(|| model.unknown_clip(&settings.animation));
             unknown.into_iter().for_each(|problem| state.say(problem));
         }
         Err((message, tried)) => {
             state.model.keeps_camera = false;
             // Watch the model on screen as well as the files that must be repaired.
             let on_screen = state.session.model().map(|model| model.files.clone()).unwrap_or_default();
-            state.model.files = on_screen.into_iter().chain(tried).collect();
+            state.model.files = on_screen.iter().cloned().chain(tried).collect();
             if let Some(path) = &loaded.path {
                 state.recent.forget(Kind::Model, path);
             }

@@ -50,10 +50,13 @@ fn show(
             })
         });
     }
+    if !model.motion.clips.is_empty() {
+        animation(ui, settings, model);
+    }
     place(ui, settings);
     override_material(ui, settings);
     statistics(ui, model, status);
-    for warning in &model.warnings {
+    for warning in model.warnings.iter() {
         ui.label(RichText::new(warning).small().color(WARNING));
     }
     let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";
@@ -66,10 +69,10 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], co
         "Built-in models and recent files. To open another, drop a .gltf or .glb file on the window or press Ctrl+O";
     let row = Row { name: "Model", doc, option: String::new(), is_changed: false, is_indented: false };
     row.show(ui, |ui| {
-        let shown = if status.loading { "loading…" } else { model.name.as_str() };
+        let shown = if status.loading { "loading…" } else { &*model.name };
         choose(ui, "model", shown, |ui| {
             for name in BUILT_IN {
-                if ui.selectable_label(name == model.name, name).clicked() {
+                if ui.selectable_label(name == &*model.name, name).clicked() {
                     commands.push(OPEN.with(Open::Model(name.into())));
                 }
             }
@@ -116,6 +119,28 @@ fn channel(ui: &mut Ui, settings: &mut Settings, path: &str) -> bool {
         });
     });
     true
+}
+
+/// The clips that play, and how.
+fn animation(ui: &mut Ui, settings: &mut Settings, model: &Model) {
+    heading(ui, "Animation");
+    group(ui, settings, "animation", |ui, settings, path| {
+        if path != "animation.clips" {
+            return false;
+        }
+        special(ui, settings, path, |ui, settings| {
+            let chosen = &mut settings.animation.clips;
+            let shown = if chosen.is_empty() { "the first".to_owned() } else { chosen.join(", ") };
+            choose(ui, path, shown, |ui| {
+                let clips = (0..model.motion.clips.len()).map(|clip| model.clip_key(clip));
+                for key in ["none", "all"].map(str::to_owned).into_iter().chain(clips) {
+                    let name = key.clone();
+                    ui.selectable_value(chosen, vec![key], name);
+                }
+            })
+        });
+        true
+    });
 }
 
 /// Where the model stands.

@@ -113,7 +113,7 @@ fn contents(ui: &mut Ui, state: &State, own: &mut OpenGallery, height: f32, comm
     // The height does not follow the search, so that the window stays in place.
     ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
         let model = state.session.model().map(|model| model.name.clone()).unwrap_or_default();
-        let models = BUILT_IN.map(|name| (name, name.to_owned(), name == model, format!("specula {name}")));
+        let models = BUILT_IN.map(|name| (name, name.to_owned(), name == &*model, format!("specula {name}")));
         let (tiles, files) = (found(models, &words), recent(state, Kind::Model, &words));
         if !tiles.is_empty() || !files.is_empty() {
             is_empty = false;

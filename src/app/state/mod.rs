@@ -216,7 +216,7 @@ impl State {
         self.picture.shown.as_ref().is_some_and(|shown| shown.reads_keys)
     }
 
-    /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before.
+    /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before, or the model has an animation.
     pub(in crate::app) fn is_animated(&self) -> bool {
         self.picture.shown.as_ref().is_some_and(|shown| shown.is_animated)
     }

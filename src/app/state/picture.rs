@@ -13,8 +13,10 @@ use crate::settings::Settings;
 pub(in crate::app) struct ShownPicture {
     pub(in crate::app) state: Arc<FrameState>,
     pub(in crate::app) settings: Arc<Settings>,
-    /// Whether a shader of it reads the time or what it drew before.
+    /// Whether a shader of it reads the time or what it drew before, or its model has an animation.
     pub(in crate::app) is_animated: bool,
+    /// Whether it stays the same while the time runs.
+    pub(in crate::app) rests: bool,
     /// Whether a shader of it reads keys.
     pub(in crate::app) reads_keys: bool,
 }

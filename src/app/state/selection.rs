@@ -97,8 +97,8 @@ impl Selected {
             Self::Node(_) | Self::Instance(_) => self.key(model),
             Self::Material(material) => Some(model.material_key(material)),
             Self::Texture(source) => source.image(model).map(|image| image.name.clone()),
-            Self::Camera(camera) => Some(model.cameras[camera].name.clone()),
-            Self::Light(LightId::Model(light)) => Some(model.lights[light].name.clone()),
+            Self::Camera(camera) => Some(model.cameras[camera].name.to_string()),
+            Self::Light(LightId::Model(light)) => Some(model.lights[light].name.to_string()),
         }
     }
 }
@@ -154,7 +154,7 @@ mod tests {
     fn a_part_stays_selected_while_its_name_is_the_same() {
         let before = built_in(BUILT_IN[0]).unwrap().unwrap();
         let mut after = before.clone();
-        after.materials[1].name = "another".into();
+        Arc::make_mut(&mut after.materials)[1].name = "another".into();
         assert!(Selected::Material(1).is_same(&before, &before) && !Selected::Material(1).is_same(&before, &after));
         assert!(Selected::Instance(0).is_same(&before, &after));
         after.instances.clear();

@@ -64,7 +64,7 @@ impl Common {
     /// The model at `path`, or the built-in shader ball. Prints the model's warnings.
     pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
         let model = self.model_silently(path)?;
-        for warning in &model.warnings {
+        for warning in model.warnings.iter() {
             message::warn(format_args!("{}: {warning}", model.name));
         }
         Ok(model)

@@ -18,10 +18,10 @@ pub struct Frames {
     /// Draw N frames and show the last, for passes that read the previous frame [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
-    /// Time of the first frame in seconds, for animated shaders
+    /// Time of the first frame in seconds, for animated shaders and models
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub time: f32,
-    /// Frames per second, for animated shaders [default: 60]
+    /// Frames per second, for animated shaders and models [default: 60]
     #[arg(long, value_name = "N")]
     pub fps: Option<f32>,
     /// Keys that are down in all frames, such as A,Space,Left, for shaders that read keys. They go down in the first frame

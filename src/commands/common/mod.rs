@@ -57,6 +57,9 @@ pub struct Common {
     /// Look through a camera of the model's file: its name, or #0 for the first
     #[arg(long, value_name = "NAME|#N", conflicts_with_all = ["eye", "target", "fovy", "frame_model"])]
     camera: Option<String>,
+    /// Play a clip of the model: its name, its number from 0, all or none; NAME:0.5 mixes it with those before it; may be repeated [default: the first]
+    #[arg(long, value_name = "NAME|N")]
+    animation: Vec<String>,
     /// Frame the whole model, from the side from which the look file's camera sees it
     #[arg(long, conflicts_with_all = ["eye", "target"])]
     frame_model: bool,
@@ -189,6 +192,9 @@ impl Common {
             settings.expression.at.clone_from(expression);
             settings.mode = expression::MODE.to_owned();
         }
+        if !self.animation.is_empty() {
+            settings.animation.clips.clone_from(&self.animation);
+        }
         settings.view.pass_memory = self.memory.unwrap_or(settings.view.pass_memory);
         match self.mode.as_slice() {
             [] => {}
@@ -225,6 +231,7 @@ impl Common {
             self.fovy.is_some(),
             self.camera.is_some(),
             self.frame_model,
+            !self.animation.is_empty(),
             self.tonemap.is_some(),
             self.ev.is_some(),
             self.background.is_some(),

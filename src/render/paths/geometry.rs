@@ -42,8 +42,9 @@ impl Geometry {
             if positions.len() + indices.len() > MOST_TRIANGLES {
                 return Err(PathTracingError::TooManyTriangles { most: MOST_TRIANGLES });
             }
+            let deformed = model.vertices(instance);
             for triangle in indices {
-                let vertices = triangle.map(|index| &primitive.vertices[index as usize]);
+                let vertices = triangle.map(|index| &deformed[index as usize]);
                 positions.push(vertices.map(|vertex| placed.position(vertex)));
                 corners.push(placed.corners(vertices));
             }

@@ -59,7 +59,7 @@ impl GpuModel {
         let samplers = HashMap::new();
         let mut sets = MaterialSets { gpu, layouts, model: &model, textures: &textures, samplers };
         let materials =
-            (0..).zip(&model.materials).map(|(id, material)| sets.set(material, id)).collect::<Result<_, _>>()?;
+            (0..).zip(model.materials.iter()).map(|(id, material)| sets.set(material, id)).collect::<Result<_, _>>()?;
         Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures }))
     }
 

@@ -218,7 +218,7 @@ fn copy(from: &[u8], to: &mut [u8]) {
 
 /// Frees the pixels of images that no remaining texture reads.
 fn free_unread(model: &mut Model, readers: &[u32]) {
-    let unread = model.images.iter_mut().zip(readers).filter(|(_, readers)| **readers == 0);
+    let unread = Arc::make_mut(&mut model.images).iter_mut().zip(readers).filter(|(_, readers)| **readers == 0);
     unread.for_each(|(image, _)| image.rgba8 = Vec::new());
 }
 

@@ -45,6 +45,7 @@ pub fn expand(
         out.extend(instances[..room].iter().map(|instance| PlacedMesh {
             name: mesh.name.clone(),
             world_from_object: mesh.world_from_object * *instance,
+            node_from_object: Some(*instance),
             ..mesh
         }));
     }

@@ -6,7 +6,9 @@ mod file;
 mod geometry;
 mod instancing;
 pub(super) mod materials;
+mod motion;
 mod nodes;
+mod objects;
 mod place;
 mod placing;
 #[cfg(test)]
@@ -29,10 +31,12 @@ use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
+use self::motion::raw::Raw;
+use self::motion::{animations, skins};
 use super::error::Problem;
 use super::load_options::{Canceled, LoadOptions};
 use super::model::{Contents, Image, LoadTiming, Material, Model};
-use super::outline::outline;
+use super::motion::Motion;
 use crate::interface::MAX_LIGHTS;
 use crate::message::catch_panic;
 use crate::regular_file;
@@ -71,16 +75,18 @@ fn build(
     scene: Option<usize>,
     start: Instant,
 ) -> Result<Model, Problem> {
-    let container::Document { mut root, bin, mut warnings } = container::parse(bytes)?;
+    let container::Document { mut root, raw, bin, mut warnings } = container::parse(bytes)?;
     let mut buffers = Buffers::load(&root, bin, &mut files)?;
     warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
     let reader = Reader { root: &root, buffers: &buffers };
     let mut scene = nodes::walk(&root, scene)?;
+    let weights = skins::attach(reader, &raw, &mut scene)?;
+    let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut scene.warnings);
     scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;
     let material::Materials { mut materials, textures, images, warnings: material_warnings } = material::read(&root)?;
     let variants = variants::names(&root, &mut warnings)?;
     let encoded = images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
-    let meshes = read_meshes(reader, &scene, &materials, variants.len())?;
+    let meshes = read_meshes(reader, &raw, &scene, &materials, variants.len())?;
     let parse_ms = milliseconds(start);
     let canceled = files.canceled;
     let ((images, decode_ms), (meshes, tangents_ms)) = rayon::join(
@@ -95,8 +101,16 @@ fn build(
     warnings.extend(scene.warnings);
     warnings.extend(material_warnings);
     warnings.extend(placeholder::replace(&mut materials, &textures, &failures));
-    let files = files.tried.clone();
-    let mut model = Model { name: name.to_owned(), materials, textures, images, variants, files, ..Model::default() };
+    let mut model = Model {
+        name: name.into(),
+        materials: materials.into(),
+        textures: textures.into(),
+        images: images.into(),
+        variants: variants.into(),
+        files: files.tried.clone().into(),
+        nodes: scene.nodes.into(),
+        ..Model::default()
+    };
     let (mut ranges, mut primitives) = (HashMap::new(), Vec::new());
     for (mesh, geometries) in meshes {
         let first = primitives.len();
@@ -107,21 +121,22 @@ fn build(
         ranges.insert(mesh, first..primitives.len());
     }
     model.primitives = Arc::new(primitives);
-    model.nodes = scene.nodes;
-    model.contents = Contents {
+    let contents = Contents {
         scenes: root.scenes.len(),
         meshes: root.meshes.len(),
         animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
         skins: root.skins.len(),
         extensions: root.extensions_used.clone(),
     };
-    placing::place(&mut model, scene.meshes, scene.lights, scene.cameras, &ranges, &mut warnings)?;
-    model.outline = outline(&model);
+    model.contents = contents.into();
+    let motion = Motion { clips, rig: scene.rig, values, target_names: weights.names };
+    let objects = placing::Objects { meshes: scene.meshes, lights: scene.lights, cameras: scene.cameras };
+    placing::place(&mut model, objects, (motion, weights.rest), &ranges, &mut warnings)?;
     warnings.extend(unseen::reason(&model));
     if model.lights.len() > MAX_LIGHTS {
         warnings.push(format!("it has {} lights: the first {MAX_LIGHTS} shine.", model.lights.len()));
     }
-    model.warnings = warnings;
+    model.warnings = warnings.into();
     model.timing = LoadTiming { parse_ms, decode_ms, tangents_ms };
     Ok(model)
 }
@@ -131,6 +146,7 @@ type Meshes = Vec<(usize, Vec<Geometry>)>;
 /// Reads every mesh that the scene uses, once each.
 fn read_meshes(
     reader: Reader<'_>,
+    raw: &Raw,
     scene: &nodes::Scene,
     materials: &[Material],
     variants: usize,
@@ -138,7 +154,16 @@ fn read_meshes(
     let mut used: Vec<usize> = scene.meshes.iter().map(|placed| placed.mesh).collect();
     used.sort_unstable();
     used.dedup();
-    used.into_par_iter().map(|index| Ok((index, mesh::read(reader, index, materials, variants)?))).collect()
+    let mut joints: HashMap<usize, usize> = HashMap::new();
+    for (mesh, skin) in scene.meshes.iter().filter_map(|placed| Some((placed.mesh, placed.skin?))) {
+        let count = scene.rig.skins[skin].joints.len();
+        joints.entry(mesh).and_modify(|least| *least = count.min(*least)).or_insert(count);
+    }
+    let read = |index| {
+        let motion = (raw.mesh(index), joints.get(&index).copied());
+        Ok((index, mesh::read(reader, index, materials, variants, motion)?))
+    };
+    used.into_par_iter().map(read).collect()
 }
 
 fn finish_meshes(mut meshes: Meshes, materials: &[Material], canceled: Canceled<'_>) -> Meshes {

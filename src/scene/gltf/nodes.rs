@@ -1,15 +1,17 @@
 //! Walks the node hierarchy and places meshes, lights and cameras.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Mat4, Quat, Vec3};
 use gltf::json;
 use json::extensions::scene::khr_lights_punctual as punctual;
-use json::validation::Checked;
 
-use super::super::error::Problem;
-use super::super::model::{Camera, Lens, Light, LightKind, Node};
+use super::objects::{read_lens, read_light};
 use super::place::{get, out_of_range, place};
+use crate::scene::error::Problem;
+use crate::scene::model::{Camera, Light, Node};
+use crate::scene::motion::{Rig, RigNode, Transform};
 
 /// The extension that hides a node with all below it.
 pub const VISIBILITY: &str = "KHR_node_visibility";
@@ -28,6 +30,8 @@ pub struct Scene {
     pub lights: Vec<(Light, DVec3)>,
     /// Cameras, with their exact positions.
     pub cameras: Vec<(Camera, DVec3)>,
+    /// The hierarchy, with the nodes of all of these.
+    pub rig: Rig,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -36,12 +40,18 @@ pub struct Scene {
 pub struct PlacedMesh {
     /// Index of the mesh; in range.
     pub mesh: usize,
-    /// Index of the node.
+    /// Index of the node in the file.
     pub node: usize,
+    /// Index of the node in the rig.
+    pub at: usize,
     /// Name of the node, or empty.
-    pub name: String,
+    pub name: Arc<str>,
     /// Object to world; finite. In doubles, so that a model far from the origin can be moved there without loss.
     pub world_from_object: DMat4,
+    /// Node from object, if the node shows its mesh many times.
+    pub node_from_object: Option<DMat4>,
+    /// Index of its skin in the rig.
+    pub skin: Option<usize>,
 }
 
 /// The nodes below each node.
@@ -75,13 +85,23 @@ pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> 
             continue;
         }
         let place = place("nodes", index, node.name.as_deref());
-        let world_from_object = world_from_parent * local_transform(node, &place, &mut scene.warnings)?.as_dmat4();
+        let (rest, parent_from_node) = local_transform(node, &place, &mut scene.warnings)?;
+        let world_from_object = world_from_parent * parent_from_node;
         if !world_from_object.as_mat4().is_finite() {
             return Err(Problem::invalid(place, "a finite world transform", "one that overflows"));
         }
         let at = scene.nodes.len();
         scene.nodes.push(Node { index, name: node.name.clone().unwrap_or_default(), parent, ..Node::default() });
-        scene.add(root, node, index, &world_from_object, &place)?;
+        let weights = 0..0;
+        scene.rig.nodes.push(RigNode {
+            index,
+            parent,
+            rest,
+            parent_from_node,
+            world_from_node: world_from_object,
+            weights,
+        });
+        scene.add(root, node, (index, at), &world_from_object, &place)?;
         let children = hierarchy.children[index].iter().rev();
         stack.extend(children.map(|child| (*child, Some(at), world_from_object)));
     }
@@ -92,7 +112,6 @@ pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> 
         let found = format!("{} nodes, {} meshes in the file, none in the scene", root.nodes.len(), root.meshes.len());
         return Err(Problem::NothingToDraw { found });
     }
-    scene.note_motion(root);
     Ok(scene)
 }
 
@@ -189,22 +208,27 @@ fn is_hidden(node: &json::Node) -> bool {
     others.and_then(|others| others.get(VISIBILITY)?.get("visible")?.as_bool()) == Some(false)
 }
 
-fn local_transform(node: &json::Node, place: &str, warnings: &mut Vec<String>) -> Result<Mat4, Problem> {
-    let matrix = if let Some(matrix) = &node.matrix {
-        Mat4::from_cols_array(matrix)
+/// The transform of a node relative to its parent.
+pub fn local_transform(
+    node: &json::Node,
+    place: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(Transform, DMat4), Problem> {
+    let scale = Vec3::from(node.scale.unwrap_or([1.0; 3]));
+    let translation = Vec3::from(node.translation.unwrap_or_default());
+    let rotation = Quat::from_array(node.rotation.unwrap_or_default().0);
+    let length = rotation.length();
+    let rotation = if length > 0.0 && length.is_finite() {
+        rotation / length
+    } else if rotation.is_finite() && node.matrix.is_none() {
+        warnings.push(format!("{place} has a rotation of length {length}: none is used."));
+        Quat::IDENTITY
     } else {
-        let rotation = Quat::from_array(node.rotation.unwrap_or_default().0);
-        let length = rotation.length();
-        let rotation = if length > 0.0 && length.is_finite() {
-            rotation / length
-        } else if rotation.is_finite() {
-            warnings.push(format!("{place} has a rotation of length {length}: none is used."));
-            Quat::IDENTITY
-        } else {
-            rotation
-        };
-        let scale = Vec3::from(node.scale.unwrap_or([1.0; 3]));
-        Mat4::from_scale_rotation_translation(scale, rotation, Vec3::from(node.translation.unwrap_or_default()))
+        rotation
+    };
+    let matrix = match &node.matrix {
+        Some(matrix) => Mat4::from_cols_array(matrix),
+        None => Mat4::from_scale_rotation_translation(scale, rotation, translation),
     };
     if !matrix.is_finite() {
         return Err(Problem::invalid(place, "a finite transform", "one that is not"));
@@ -213,7 +237,16 @@ fn local_transform(node: &json::Node, place: &str, warnings: &mut Vec<String>) -
     if (last_row - glam::Vec4::W).abs().max_element() > 1e-4 {
         return Err(Problem::invalid(place, "a matrix with the last row 0 0 0 1", last_row.to_string()));
     }
-    Ok(matrix)
+    let matrix = matrix.as_dmat4();
+    let transform = match &node.matrix {
+        Some(_) => Transform::from_matrix(matrix),
+        None => Transform {
+            translation: translation.as_dvec3(),
+            rotation: rotation.as_dquat().normalize(),
+            scale: scale.as_dvec3(),
+        },
+    };
+    Ok((transform, matrix))
 }
 
 impl Scene {
@@ -221,32 +254,44 @@ impl Scene {
         &mut self,
         root: &json::Root,
         node: &json::Node,
-        index: usize,
+        (index, at): (usize, usize),
         world: &DMat4,
         place: &str,
     ) -> Result<(), Problem> {
-        let name = node.name.clone().unwrap_or_default();
+        let name: Arc<str> = node.name.as_deref().unwrap_or_default().into();
         if let Some(mesh) = node.mesh {
             let named = get(&root.meshes, mesh, place, "meshes")?.name.clone().unwrap_or_default();
             self.last_node().mesh = Some(named);
-            let placed = PlacedMesh { mesh: mesh.value(), node: index, name: name.clone(), world_from_object: *world };
-            self.meshes.push(placed);
+            self.meshes.push(PlacedMesh {
+                mesh: mesh.value(),
+                node: index,
+                at,
+                name: name.clone(),
+                world_from_object: *world,
+                node_from_object: None,
+                skin: None,
+            });
         }
         if let Some(camera) = node.camera {
             let lens = read_lens(get(&root.cameras, camera, place, "cameras")?, camera.value())?;
-            let name =
-                root.cameras[camera.value()].name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| name.clone());
+            let source = camera.value();
+            let own = root.cameras[source].name.as_deref().filter(|name| !name.is_empty());
+            let (name, eye) = (own.map_or(name, Arc::from), Vec3::ZERO);
             let number = self.cameras.len();
             self.last_node().camera = Some(number);
-            self.cameras.push((camera_in(world, name, lens), world.w_axis.truncate()));
+            let camera = Camera { name, eye, forward: Vec3::NEG_Z, up: Vec3::Y, lens }.at(world);
+            self.cameras.push((camera, world.w_axis.truncate()));
+            self.rig.cameras.push((at, source));
         }
         if let Some(light) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
             let lights: &[punctual::Light] = root.as_ref();
             let source = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
-            let light = read_light(source, light.light.value(), &world.as_mat4(), &mut self.warnings)?;
+            let light_index = light.light.value();
+            let light = read_light(source, light_index, world, &mut self.warnings)?;
             let number = self.lights.len();
             self.last_node().light = Some(number);
             self.lights.push((light, world.w_axis.truncate()));
+            self.rig.lights.push((at, light_index));
         }
         Ok(())
     }
@@ -259,97 +304,4 @@ impl Scene {
         let last = self.nodes.len() - 1;
         &mut self.nodes[last]
     }
-
-    /// Warns of animations, skins and morph targets, which are not supported.
-    fn note_motion(&mut self, root: &json::Root) {
-        if !root.animations.is_empty() {
-            self.warnings.push(format!("{} animations are not played: the rest pose is shown.", root.animations.len()));
-        }
-        if root.nodes.iter().any(|node| node.skin.is_some()) {
-            self.warnings.push("Skins are not supported: skinned meshes are shown where their nodes are.".into());
-        }
-        if root.meshes.iter().any(|mesh| mesh.primitives.iter().any(|primitive| primitive.targets.is_some())) {
-            self.warnings.push("Morph targets are not supported: the base shape is shown.".into());
-        }
-    }
-}
-
-fn read_light(
-    light: &punctual::Light,
-    index: usize,
-    world: &Mat4,
-    warnings: &mut Vec<String>,
-) -> Result<Light, Problem> {
-    let place = place("KHR_lights_punctual.lights", index, light.name.as_deref());
-    let color = Vec3::from(light.color);
-    // Check both factors, since the product of two negative numbers is positive.
-    if !(light.intensity >= 0.0 && light.intensity.is_finite()) {
-        let (place, found) = (format!("{place}.intensity"), light.intensity.to_string());
-        return Err(Problem::invalid(place, "a finite number of at least 0", found));
-    }
-    if !(color.is_finite() && color.min_element() >= 0.0) {
-        return Err(Problem::invalid(format!("{place}.color"), "finite numbers of at least 0", color.to_string()));
-    }
-    let intensity = color * light.intensity;
-    if !intensity.is_finite() {
-        return Err(Problem::invalid(place, "a finite color times intensity", intensity.to_string()));
-    }
-    let kind = match light.type_ {
-        Checked::Valid(punctual::Type::Directional) => LightKind::Directional,
-        Checked::Valid(punctual::Type::Point) => LightKind::Point,
-        Checked::Valid(punctual::Type::Spot) => {
-            let spot = light
-                .spot
-                .clone()
-                .unwrap_or(punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle: std::f32::consts::FRAC_PI_4 });
-            let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
-            if !(0.0 <= inner && inner < outer && outer <= std::f32::consts::FRAC_PI_2 + 1e-6) {
-                let expected = "cone angles with 0 <= inner < outer <= pi/2";
-                return Err(Problem::invalid(place, expected, format!("{inner} and {outer}")));
-            }
-            LightKind::Spot { inner, outer }
-        }
-        Checked::Invalid => return Err(Problem::invalid(place, "the type directional, point or spot", "another")),
-    };
-    let range = light.range.filter(|range| *range > 0.0 && range.is_finite());
-    if range != light.range {
-        warnings.push(format!("{place} has a range that is not above 0: it is taken as endless."));
-    }
-    Ok(Light {
-        name: light.name.clone().unwrap_or_default(),
-        kind,
-        position: world.w_axis.truncate(),
-        // Lights shine along -Z of their node.
-        direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z),
-        intensity,
-        range,
-    })
-}
-
-fn read_lens(camera: &json::Camera, index: usize) -> Result<Lens, Problem> {
-    let place = place("cameras", index, camera.name.as_deref());
-    let between = |value: f32, least: f32, most: f32| value > least && value < most;
-    if let Some(perspective) = &camera.perspective {
-        if between(perspective.yfov, 0.0, std::f32::consts::PI) {
-            return Ok(Lens::Perspective { fovy: perspective.yfov });
-        }
-        return Err(Problem::invalid(place, "a yfov above 0 and below pi", perspective.yfov.to_string()));
-    }
-    let Some(orthographic) = &camera.orthographic else {
-        return Err(Problem::invalid(place, "a perspective or an orthographic projection", "neither"));
-    };
-    let height = 2.0 * orthographic.ymag.abs();
-    if between(height, 0.0, f32::INFINITY) {
-        return Ok(Lens::Orthographic { height });
-    }
-    Err(Problem::invalid(place, "a finite ymag that is not 0", orthographic.ymag.to_string()))
-}
-
-/// The camera of a node.
-fn camera_in(world: &DMat4, name: String, lens: Lens) -> Camera {
-    let world = world.as_mat4();
-    let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
-    let up = world.transform_vector3(Vec3::Y).reject_from_normalized(forward);
-    let up = up.normalize_or(forward.any_orthonormal_vector());
-    Camera { name, eye: world.w_axis.truncate(), forward, up, lens }
 }

@@ -15,7 +15,7 @@ fn each_variant_looks_different_and_none_is_the_model_as_it_comes() {
     let mut headless = open("variants", &[]);
     let as_it_comes = render(&mut headless, "final");
     let names = headless.model().variants.clone();
-    assert_eq!(names, ["Porcelain", "Bronze", "Lacquer"]);
+    assert_eq!(*names, ["Porcelain", "Bronze", "Lacquer"]);
     let pictures: Vec<Capture> = names
         .iter()
         .map(|name| {

@@ -1,5 +1,7 @@
 //! The way of a model to the device: what arrives there, and what stays behind on the CPU.
 
+use std::sync::Arc;
+
 use crate::support::{SIZE, glb, load, render, renderer, settings};
 use specula::interface::{TEXTURE_BASE_COLOR, TEXTURE_EMISSIVE, TEXTURE_METALLIC_ROUGHNESS, TEXTURE_OCCLUSION, Vertex};
 use specula::scene::{Image, Model, Primitive, Sampler, Texture, TextureUse};
@@ -12,10 +14,15 @@ fn textured(slots: &[(u32, [u8; 4])]) -> Model {
     let mut model = load(&glb::model(&glb::quad(1.0), &glb::gray()));
     for (index, &(slot, color)) in slots.iter().enumerate() {
         let rgba8 = color.repeat((SIDE * SIDE) as usize);
-        model.images.push(Image { name: format!("image {index}"), width: SIDE, height: SIDE, rgba8 });
-        model.textures.push(Texture { image: index, sampler: Sampler::default() });
+        Arc::make_mut(&mut model.images).push(Image {
+            name: format!("image {index}"),
+            width: SIDE,
+            height: SIDE,
+            rgba8,
+        });
+        Arc::make_mut(&mut model.textures).push(Texture { image: index, sampler: Sampler::default() });
         let used = TextureUse { texture: index, uv_set: 0, uv_from_mesh: glam::Affine2::IDENTITY };
-        model.materials[1].textures[slot as usize] = Some(used);
+        Arc::make_mut(&mut model.materials)[1].textures[slot as usize] = Some(used);
     }
     model
 }
@@ -28,15 +35,14 @@ fn a_model_larger_than_the_staging_buffer_arrives_whole_and_its_pixels_leave_the
         (TEXTURE_METALLIC_ROUGHNESS, [9, 204, 102, 255]),
         (TEXTURE_OCCLUSION, [51, 9, 9, 255]),
     ]);
-    let material = &mut model.materials[1];
+    let material = &mut Arc::make_mut(&mut model.materials)[1];
     material.numbers.base_color_factor = [1.0; 4];
     material.numbers.emissive_factor = [1.0; 3];
     (material.numbers.metallic_factor, material.numbers.roughness_factor) = (1.0, 1.0);
     // 34 MB of vertices and as many of indices, which nothing draws, lie before those of the square.
     let square = model.primitives[0].clone();
     let vertices = vec![Vertex::default(); (34 << 20) / size_of::<Vertex>()];
-    std::sync::Arc::make_mut(&mut model.primitives)
-        .insert(0, Primitive { vertices, indices: vec![0; (34 << 20) / 4], ..square });
+    Arc::make_mut(&mut model.primitives).insert(0, Primitive { vertices, indices: vec![0; (34 << 20) / 4], ..square });
     model.instances[0].primitive = 1;
 
     let unlit = ["environment.name=none", "view.msaa=1"];

@@ -131,7 +131,7 @@ fn a_bake_and_its_end_move_nothing() {
 fn warnings_of_a_model_lie_over_the_picture_until_they_are_hidden() {
     let mut harness = window();
     let mut model = built_in("shader-ball").unwrap().unwrap();
-    model.warnings = vec!["image 0 is damaged".into()];
+    model.warnings = vec!["image 0 is damaged".into()].into();
     let state = &mut harness.state_mut().state;
     state.session.set_model(&Arc::new(model));
     state.model.shows_warnings = true;

@@ -39,7 +39,7 @@ impl Labels {
 
 /// The objects of a chart: nodes with a name of several words.
 fn objects(model: &Model) -> Vec<(String, Bounds)> {
-    if !BUILT_IN.contains(&model.name.as_str()) {
+    if !BUILT_IN.contains(&&*model.name) {
         return Vec::new();
     }
     let mut nodes: BTreeMap<usize, (String, Bounds)> = BTreeMap::new();
@@ -48,7 +48,7 @@ fn objects(model: &Model) -> Vec<(String, Bounds)> {
             continue;
         }
         let Some(primitive) = model.primitives.get(instance.primitive) else { continue };
-        let entry = nodes.entry(instance.node).or_insert_with(|| (instance.node_name.clone(), Bounds::default()));
+        let entry = nodes.entry(instance.node).or_insert_with(|| (instance.node_name.to_string(), Bounds::default()));
         for corner in primitive.bounds.corners() {
             entry.1.include(instance.world_from_object.transform_point3(corner));
         }

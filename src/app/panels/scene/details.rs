@@ -66,7 +66,8 @@ pub(super) type Counts = Option<(Selected, Scene, String, Option<usize>)>;
 /// The counts and the size of the selected primitives, and their material if it is one.
 fn counts(kept: &mut Counts, scene: &Scene, selected: Selected, instances: &[bool]) -> (String, Option<usize>) {
     if let Some((of, in_scene, text, material)) = kept
-        && (*of, &*in_scene) == (selected, scene)
+        && *of == selected
+        && in_scene.has_same_draws(scene)
     {
         return (text.clone(), *material);
     }

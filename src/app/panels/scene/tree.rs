@@ -67,7 +67,7 @@ impl Tree {
 
     /// Makes the rows again if the model or the search differs.
     pub(super) fn update(&mut self, scene: &Scene, search: &str) {
-        if self.drawn.as_ref().is_none_or(|(before, _)| before != scene) {
+        if self.drawn.as_ref().is_none_or(|(before, _)| !before.has_same_draws(scene)) {
             self.drawn = Some((scene.clone(), drawn_nodes(scene)));
         }
         let model = scene.loaded();

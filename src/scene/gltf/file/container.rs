@@ -6,12 +6,15 @@ use gltf::json;
 
 use crate::scene::error::Problem;
 use crate::scene::extensions::EXTENSIONS;
+use crate::scene::gltf::motion::ANIMATION_POINTER;
+use crate::scene::gltf::motion::raw::Raw;
 use crate::scene::gltf::{compression, instancing, nodes};
 
 /// Extensions that a model may require, beside those of `scene::extensions`.
 const SUPPORTED: &[&str] = &[
     instancing::EXTENSION,
     "EXT_texture_webp",
+    ANIMATION_POINTER,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
@@ -37,6 +40,8 @@ const CHUNK_BIN: u32 = 0x004e_4942;
 pub struct Document<'a> {
     /// The JSON.
     pub root: json::Root,
+    /// Its parts about motion.
+    pub raw: Raw,
     /// The GLB's binary chunk.
     pub bin: Option<&'a [u8]>,
     /// Warnings, one sentence each.
@@ -49,10 +54,11 @@ pub fn parse(bytes: &[u8]) -> Result<Document<'_>, Problem> {
         return Err(Problem::Empty);
     }
     let (text, bin) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
-    let root = parse_json(json_text(text)?)?;
+    let text = json_text(text)?;
+    let root = parse_json(text)?;
     check_version(&root.asset)?;
     let warnings = check_extensions(&root)?;
-    Ok(Document { root, bin, warnings })
+    Ok(Document { root, raw: Raw::parse(text), bin, warnings })
 }
 
 /// Splits a GLB into its JSON and binary chunks. Skips unknown chunks, as the specification requires.

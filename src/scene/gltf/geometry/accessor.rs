@@ -78,6 +78,17 @@ impl<'a> Reader<'a> {
         self.read(&checked, zero, decode)
     }
 
+    /// Reads numbers one after the other, whatever the type of the accessor.
+    pub fn numbers(&self, index: Index, format: &Format, user: &str) -> Result<Vec<f32>, Problem> {
+        let kind = self.root.accessors.get(index.value()).map(|accessor| accessor.type_);
+        Ok(match kind {
+            Some(Checked::Valid(Type::Vec2)) => self.floats::<2>(index, format, 0.0, user)?.into_flattened(),
+            Some(Checked::Valid(Type::Vec3)) => self.floats::<3>(index, format, 0.0, user)?.into_flattened(),
+            Some(Checked::Valid(Type::Vec4)) => self.floats::<4>(index, format, 0.0, user)?.into_flattened(),
+            _ => self.floats::<1>(index, format, 0.0, user)?.into_flattened(),
+        })
+    }
+
     /// Reads an index buffer.
     pub fn indices(&self, index: Index, user: &str) -> Result<Vec<u32>, Problem> {
         const INDICES: Format = Format {

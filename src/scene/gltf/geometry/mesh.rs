@@ -1,15 +1,20 @@
 //! Reads primitives: attributes, indices, flat normals.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json;
-use json::accessor::{ComponentType as C, Type};
 use json::mesh::{Mode, Semantic};
 use json::validation::Checked;
 
-use super::accessor::{Format, Normalized as N, Reader};
+use super::accessor::Reader;
+use super::deformation;
+use super::formats::{COLOR, NORMAL, POSITION, TANGENT, TEXCOORD};
+use super::source::Source;
 use super::triangles::{self, Corners};
 use crate::interface as contract;
 use crate::scene::error::Problem;
+use crate::scene::gltf::motion::raw::RawMesh;
 use crate::scene::gltf::place::{LARGEST_COORDINATE, get, place};
 use crate::scene::gltf::variants;
 use crate::scene::model::{Bounds, Material, Primitive, Topology, Vertex};
@@ -22,28 +27,17 @@ pub struct Geometry {
     pub warnings: Vec<String>,
 }
 
-// Integer positions, normals, tangents and texture coordinates are from KHR_mesh_quantization.
-const POSITION: Format = Format {
-    types: &[Type::Vec3],
-    components: &[(C::F32, N::No), (C::I8, N::Either), (C::U8, N::Either), (C::I16, N::Either), (C::U16, N::Either)],
-};
-const NORMAL: Format =
-    Format { types: &[Type::Vec3], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
-const TANGENT: Format = Format { types: &[Type::Vec4], components: NORMAL.components };
-const TEXCOORD: Format = Format { types: &[Type::Vec2], components: POSITION.components };
-const COLOR: Format =
-    Format { types: &[Type::Vec3, Type::Vec4], components: &[(C::F32, N::No), (C::U8, N::Yes), (C::U16, N::Yes)] };
-
 /// Maximum number of indices of a primitive. As lists, strips and fans become three times as long, and each corner may become
 /// a vertex.
 const MAX_INDICES: usize = 1 << 30;
 
-/// Reads the drawable primitives of a mesh.
+/// Reads the drawable primitives of a mesh. `joints`: how many the skins have with which it is shown.
 pub fn read(
     reader: Reader<'_>,
     index: usize,
     materials: &[Material],
     variants: usize,
+    (raw, joints): (&RawMesh, Option<usize>),
 ) -> Result<Vec<Geometry>, Problem> {
     let mesh = &reader.root.meshes[index];
     let mesh_place = place("meshes", index, mesh.name.as_deref());
@@ -62,17 +56,12 @@ pub fn read(
         };
         debug_assert!(material < materials.len());
         let mapping = variants::mapping(primitive, variants, reader.root.materials.len(), &place)?;
-        let mut geometry = Source { reader, primitive, place: &place }.read(name, material)?;
+        let targets = raw.targets(number);
+        let mut geometry = Source { reader, primitive, targets, joints, place: &place }.read(name, material)?;
         geometry.primitive.variant_materials = mapping.into_iter().map(|(of, material)| (of, material + 1)).collect();
         geometries.push(geometry);
     }
     Ok(geometries)
-}
-
-struct Source<'a> {
-    reader: Reader<'a>,
-    primitive: &'a json::mesh::Primitive,
-    place: &'a str,
 }
 
 impl Source<'_> {
@@ -103,6 +92,7 @@ impl Source<'_> {
             vertices.iter_mut().zip(tangents).for_each(|(vertex, tangent)| vertex.tangent = tangent);
         }
         attributes |= self.read_uvs_and_colors(&mut vertices, &mut warnings)?;
+        let deformation = deformation::read(self, count, attributes, &mut warnings)?.map(Arc::new);
         let mut primitive = Primitive {
             name,
             vertices,
@@ -113,7 +103,7 @@ impl Source<'_> {
             variant_materials: Vec::new(),
             attributes,
             bounds: Bounds::default(),
-            deformation: None,
+            deformation,
         };
         if attributes & contract::ATTRIBUTE_NORMAL == 0 && triangles::has_faces(topology) {
             make_flat(&mut primitive);
@@ -122,32 +112,6 @@ impl Source<'_> {
             primitive.bounds.include(Vec3::from(primitive.vertices[index as usize].position));
         }
         Ok(Geometry { primitive, warnings })
-    }
-
-    /// Reads an attribute, if present. It must have as many elements as POSITION.
-    fn attribute<const K: usize>(
-        &self,
-        semantic: Semantic,
-        name: &str,
-        format: &Format,
-        count: Option<usize>,
-    ) -> Result<Option<Vec<[f32; K]>>, Problem> {
-        let Some(&accessor) = self.primitive.attributes.get(&Checked::Valid(semantic)) else {
-            return Ok(None);
-        };
-        let user = format!("{}.{name}", self.place);
-        // Check the count before reading the data.
-        let found = self.reader.root.accessors.get(accessor.value()).map(|accessor| accessor.count.0);
-        if let (Some(count), Some(found)) = (count, found)
-            && count as u64 != found
-        {
-            return Err(Problem::invalid(
-                user,
-                format!("as many elements as POSITION has, {count}"),
-                found.to_string(),
-            ));
-        }
-        self.reader.floats(accessor, format, 1.0, &user).map(Some)
     }
 
     fn check_positions(&self, positions: &[[f32; 3]]) -> Result<(), Problem> {
@@ -245,12 +209,6 @@ impl Source<'_> {
         }
         Ok(attributes)
     }
-
-    fn note(&self, count: usize, what: &str, warnings: &mut Vec<String>) {
-        if count > 0 {
-            warnings.push(format!("{}: {count} {what}.", self.place));
-        }
-    }
 }
 
 /// Normalizes all normals. A zero or non-finite normal becomes that of the faces around it, or +Z. Returns their number.
@@ -287,6 +245,17 @@ fn make_flat(primitive: &mut Primitive) {
     }
     let mut corners = Corners::new(&primitive.vertices, &triangles);
     corners.flatten(Vec3::Z);
-    (primitive.vertices, primitive.indices) = corners.weld();
-    primitive.topology = Topology::Triangles;
+    match primitive.deformation.clone().filter(|deformation| !deformation.targets.is_empty()) {
+        None => corners.weld_into(primitive),
+        // Coplanar neighbors may not be so in a target, so that no corners are joined.
+        Some(deformation) => {
+            let mut deformation = deformation.of_copies(&corners.source);
+            deformation.targets.iter_mut().for_each(|target| deformation::flatten(&corners.vertices, target));
+            primitive.deformation = Some(Arc::new(deformation));
+            // The number of corners fits u32, as indices do.
+            primitive.indices = (0..corners.vertices.len() as u32).collect();
+            primitive.vertices = corners.vertices;
+            primitive.topology = Topology::Triangles;
+        }
+    }
 }

@@ -6,7 +6,7 @@ use glam::{Affine2, Vec3, Vec4};
 use super::mesh::Geometry;
 use super::triangles::{self, Corners};
 use crate::interface as contract;
-use crate::scene::model::{Material, Primitive, Topology, Vertex};
+use crate::scene::model::{Material, Primitive, Vertex};
 
 /// Gives every vertex a unit tangent, and warns of replaced tangents. Tangents of the file are normalized, but not made
 /// orthogonal to the normal.
@@ -74,8 +74,7 @@ fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
     if generate_tangents(&mut mesh).is_err() {
         return false;
     }
-    (primitive.vertices, primitive.indices) = mesh.corners.weld();
-    primitive.topology = Topology::Triangles;
+    mesh.corners.weld_into(primitive);
     true
 }
 

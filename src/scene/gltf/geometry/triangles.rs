@@ -1,8 +1,10 @@
 //! Helpers for topologies: incomplete primitives, triangle lists, flat normals, welding.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
-use crate::scene::model::{Topology, Vertex};
+use crate::scene::model::{Primitive, Topology, Vertex};
 
 /// The number of indices after the last complete primitive.
 pub fn excess(topology: Topology, count: usize) -> usize {
@@ -79,14 +81,24 @@ impl Corners {
         }
     }
 
-    /// Merges corners that come from the same vertex and are still equal. Returns vertices and a triangle list.
-    pub fn weld(&self) -> (Vec<Vertex>, Vec<u32>) {
+    /// Replaces vertices and indices of a primitive by the corners, welded.
+    pub fn weld_into(&self, primitive: &mut Primitive) {
+        let (vertices, indices, sources) = self.weld();
+        let deformation = primitive.deformation.as_ref().map(|deformation| deformation.of_copies(&sources));
+        (primitive.vertices, primitive.indices, primitive.topology) = (vertices, indices, Topology::Triangles);
+        primitive.deformation = deformation.map(Arc::new);
+    }
+
+    /// Merges corners that come from the same vertex and are still equal. Returns vertices, a triangle list, and the former vertex of each
+    /// vertex.
+    fn weld(&self) -> (Vec<Vertex>, Vec<u32>, Vec<u32>) {
         const NONE: u32 = u32::MAX;
         let sources = self.source.iter().max().map_or(0, |&last| last as usize + 1);
         // Linked lists: `last` has the newest vertex of each source, `previous` the one before it.
         let mut last = vec![NONE; sources];
         let mut previous = Vec::new();
         let mut vertices: Vec<Vertex> = Vec::with_capacity(sources);
+        let mut origins = Vec::with_capacity(sources);
         let mut indices = Vec::with_capacity(self.source.len());
         for (&source, corner) in self.source.iter().zip(&self.vertices) {
             let head = &mut last[source as usize];
@@ -98,12 +110,13 @@ impl Corners {
                 // The number of corners fits u32, as indices do.
                 at = vertices.len() as u32;
                 vertices.push(*corner);
+                origins.push(source);
                 previous.push(*head);
                 *head = at;
             }
             indices.push(at);
         }
-        (vertices, indices)
+        (vertices, indices, origins)
     }
 }
 
@@ -126,8 +139,9 @@ mod tests {
         let mut corners = Corners::new(&vertices, &[[0, 1, 2], [0, 2, 3]]);
         assert_eq!(corners.weld().1, [0, 1, 2, 0, 2, 3]);
         corners.vertices[3].tangent = [1.0; 4];
-        let (welded, indices) = corners.weld();
+        let (welded, indices, origins) = corners.weld();
         assert_eq!((welded.len(), indices), (5, vec![0, 1, 2, 3, 2, 4]));
+        assert_eq!(origins, [0, 1, 2, 0, 3]);
         assert_eq!(welded[3].tangent, [1.0; 4]);
     }
 }

@@ -234,7 +234,7 @@ fn numbers_a_little_outside_are_moved_with_a_warning() {
         let name = format!("KHR_materials_{extension}");
         let model = with(json!({ &name: { key: bad } })).model();
         let expected = format!("materials[0] \"m\".extensions.{name}.{key} {used}.");
-        assert_eq!(model.warnings, [expected]);
+        assert_eq!(*model.warnings, [expected]);
     }
 }
 

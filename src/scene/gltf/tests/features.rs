@@ -160,7 +160,7 @@ fn shoe() -> Builder {
 #[test]
 fn variants_change_materials_and_back() {
     let mut model = shoe().model();
-    assert_eq!(model.variants, ["Fire", "Plain", "Sea"]);
+    assert_eq!(*model.variants, ["Fire", "Plain", "Sea"]);
     for (name, upper) in
         [("", "sole"), ("Fire", "red"), ("Sea", "blue"), ("Plain", "sole"), ("Fire", "red"), ("", "sole")]
     {

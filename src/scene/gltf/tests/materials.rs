@@ -173,7 +173,7 @@ fn external_files_and_data_uris() {
     };
     let model = open(&builder, false).unwrap();
     assert_sound(&model);
-    assert_eq!((model.name.as_str(), model.images[0].width, model.files.len()), ("model", 5, 3));
+    assert_eq!((&*model.name, model.images[0].width, model.files.len()), ("model", 5, 3));
     assert!(model.files.iter().all(|file| file.is_absolute()), "{:?}", model.files);
 
     let outside = tempfile::tempdir().unwrap();

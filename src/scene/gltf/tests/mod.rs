@@ -8,6 +8,7 @@ mod geometry;
 mod growth;
 mod invalid;
 mod materials;
+mod motion;
 mod nodes;
 mod placeholders;
 
@@ -168,7 +169,7 @@ fn assert_sound(model: &Model) {
             assert!(tangent.truncate().is_normalized() && tangent.w.abs() == 1.0, "{vertex:?}");
         }
     }
-    for material in &model.materials {
+    for material in model.materials.iter() {
         assert!(material.textures.iter().flatten().all(|used| used.texture < model.textures.len()));
     }
     assert!(model.textures.iter().all(|texture| texture.image < model.images.len()));

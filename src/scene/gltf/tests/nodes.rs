@@ -17,7 +17,7 @@ fn transforms_multiply_down_the_hierarchy() {
     let model = builder.model();
     assert_eq!((model.primitives.len(), model.instances.len()), (1, 2));
     let [turned, mirrored] = [0, 1].map(|index| &model.instances[index]);
-    assert_eq!((turned.node, turned.node_name.as_str(), mirrored.node), (1, "turned", 2));
+    assert_eq!((turned.node, &*turned.node_name, mirrored.node), (1, "turned", 2));
     // A quarter turn around +Y takes +X to -Z.
     assert!(turned.world_from_object.transform_point3(Vec3::X).distance(Vec3::new(10.0, 0.0, -2.0)) < 1e-5);
     assert!(mirrored.world_from_object.determinant() < 0.0);
@@ -30,7 +30,8 @@ fn scene_is_the_default_or_first_or_all() {
     let mut builder = Builder::triangle();
     builder.json["nodes"] = json!([{ "mesh": 0, "name": "a" }, { "mesh": 0, "name": "b" }]);
     builder.json["scenes"] = json!([{ "nodes": [0] }, { "nodes": [1] }, {}]);
-    let drawn = |builder: &Builder| builder.model().instances.iter().map(|i| i.node_name.clone()).collect::<String>();
+    let drawn =
+        |builder: &Builder| builder.model().instances.iter().map(|i| i.node_name.to_string()).collect::<String>();
     builder.json["scene"] = json!(1);
     assert_eq!(drawn(&builder), "b");
     builder.json.as_object_mut().unwrap().remove("scene");
@@ -172,7 +173,7 @@ fn a_model_that_cannot_be_seen_says_why() {
         let mut builder = Builder::triangle();
         change(&mut builder);
         let warnings = builder.model().warnings;
-        warnings.into_iter().find(|warning| warning.contains("Nothing of the model can be seen"))
+        warnings.iter().cloned().find(|warning| warning.contains("Nothing of the model can be seen"))
     };
     let says = |change, words: &str| {
         let reason = reason(change);
@@ -226,7 +227,7 @@ fn punctual_lights() {
     ]);
     let model = builder.model();
     let [spot, sun, point] = [0, 1, 2].map(|index| &model.lights[index]);
-    assert_eq!((spot.name.as_str(), spot.position, spot.range), ("lamp", Vec3::new(1.0, 2.0, 3.0), Some(3.0)));
+    assert_eq!((&*spot.name, spot.position, spot.range), ("lamp", Vec3::new(1.0, 2.0, 3.0), Some(3.0)));
     assert!(spot.direction.distance(Vec3::NEG_X) < 1e-6);
     assert_eq!(spot.intensity, Vec3::new(10.0, 5.0, 0.0));
     assert_eq!(spot.kind, LightKind::Spot { inner: 0.1, outer: std::f32::consts::FRAC_PI_4 });
@@ -273,10 +274,10 @@ fn cameras() {
     ]);
     let model = builder.model();
     let [perspective, orthographic] = [0, 1].map(|index| &model.cameras[index]);
-    assert_eq!((perspective.name.as_str(), perspective.eye), ("eye", Vec3::Z * 4.0));
+    assert_eq!((&*perspective.name, perspective.eye), ("eye", Vec3::Z * 4.0));
     assert_eq!((perspective.forward, perspective.up), (Vec3::NEG_Z, Vec3::Y));
     assert_eq!(perspective.lens, Lens::Perspective { fovy: 0.7 });
-    assert_eq!((orthographic.name.as_str(), orthographic.lens), ("plan", Lens::Orthographic { height: 4.0 }));
+    assert_eq!((&*orthographic.name, orthographic.lens), ("plan", Lens::Orthographic { height: 4.0 }));
     for bad in
         [json!({ "type": "perspective" }), json!({ "type": "perspective", "perspective": { "yfov": 0, "znear": 1 } })]
     {

@@ -26,7 +26,7 @@ pub struct Inputs {
 /// The model with opaque colors that identify its materials.
 fn numbered(model: &Model) -> Model {
     let mut model = model.clone();
-    for (i, material) in model.materials.iter_mut().enumerate() {
+    for (i, material) in std::sync::Arc::make_mut(&mut model.materials).iter_mut().enumerate() {
         *material = Material { double_sided: material.double_sided, ..Material::default() };
         material.numbers.base_color_factor = [i as f32, 0.0, 0.0, 1.0];
     }
@@ -40,7 +40,7 @@ impl Inputs {
         let modes = COMMON.iter().chain(extensions).map(|slug| shown(slug)).collect();
         headless.set_model(numbered(model)).unwrap();
         let numbers = render(headless, "base-color").raw.iter().map(|value| value[0].round() as usize).collect();
-        let materials = model.materials.clone();
+        let materials = model.materials.to_vec();
         headless.set_model(model.clone()).unwrap();
         Self { modes, materials, numbers }
     }

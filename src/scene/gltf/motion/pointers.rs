@@ -1,0 +1,229 @@
+//! Resolves the pointers of KHR_animation_pointer to what the model has.
+
+use gltf::json;
+use serde_json::Value;
+
+use crate::interface as contract;
+use crate::scene::motion::{Property, Rig, Values};
+use crate::settings::Factor;
+
+/// The extension's name.
+pub const EXTENSION: &str = "KHR_animation_pointer";
+
+/// What a pointer names.
+pub enum Pointed {
+    /// A property of a node, as the `path` of a channel names it; or of all nodes that show a mesh, if these have no weights of their own.
+    Nodes(Vec<usize>, String),
+    /// One morph weight of such nodes.
+    Weight(Vec<usize>, usize),
+    /// Numbers of properties, from the given one on, and how many.
+    Values(Vec<Values>, usize, usize),
+}
+
+/// The place of a factor: below a material, its property, its first number there, and the values that the file may leave out.
+type Place = (&'static str, fn(usize) -> Property, usize, &'static [f64]);
+
+const MATERIAL: &[Place] = &[
+    ("pbrMetallicRoughness/baseColorFactor", Property::BaseColor, 0, &[1.0; 4]),
+    ("pbrMetallicRoughness/metallicFactor", |m| Property::Factor(m, Factor::Metallic), 0, &[1.0]),
+    ("pbrMetallicRoughness/roughnessFactor", |m| Property::Factor(m, Factor::Roughness), 0, &[1.0]),
+    ("alphaCutoff", |m| Property::Factor(m, Factor::AlphaCutoff), 0, &[0.5]),
+    ("normalTexture/scale", |m| Property::Factor(m, Factor::NormalScale), 0, &[1.0]),
+    ("occlusionTexture/strength", |m| Property::Factor(m, Factor::Occlusion), 0, &[1.0]),
+    ("emissiveFactor", Property::Emission, 0, &[0.0; 3]),
+    ("extensions/KHR_materials_emissive_strength/emissiveStrength", Property::Emission, 3, &[1.0]),
+    ("extensions/KHR_materials_anisotropy/anisotropyStrength", Property::Anisotropy, 0, &[0.0]),
+    ("extensions/KHR_materials_anisotropy/anisotropyRotation", Property::Anisotropy, 1, &[0.0]),
+    ("extensions/KHR_materials_ior/ior", |m| Property::Factor(m, Factor::Ior), 0, &[1.5]),
+    ("extensions/KHR_materials_specular/specularFactor", |m| Property::Factor(m, Factor::Specular), 0, &[1.0]),
+    (
+        "extensions/KHR_materials_specular/specularColorFactor",
+        |m| Property::Factor(m, Factor::SpecularColor),
+        0,
+        &[1.0; 3],
+    ),
+    ("extensions/KHR_materials_clearcoat/clearcoatFactor", |m| Property::Factor(m, Factor::Clearcoat), 0, &[0.0]),
+    (
+        "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+        |m| Property::Factor(m, Factor::ClearcoatRoughness),
+        0,
+        &[0.0],
+    ),
+    ("extensions/KHR_materials_sheen/sheenColorFactor", |m| Property::Factor(m, Factor::SheenColor), 0, &[0.0; 3]),
+    ("extensions/KHR_materials_sheen/sheenRoughnessFactor", |m| Property::Factor(m, Factor::SheenRoughness), 0, &[0.0]),
+    ("extensions/KHR_materials_iridescence/iridescenceFactor", |m| Property::Factor(m, Factor::Iridescence), 0, &[0.0]),
+    ("extensions/KHR_materials_iridescence/iridescenceIor", |m| Property::Factor(m, Factor::IridescenceIor), 0, &[1.3]),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
+        |m| Property::Factor(m, Factor::IridescenceThickness),
+        0,
+        &[400.0],
+    ),
+    (
+        "extensions/KHR_materials_transmission/transmissionFactor",
+        |m| Property::Factor(m, Factor::Transmission),
+        0,
+        &[0.0],
+    ),
+    ("extensions/KHR_materials_volume/thicknessFactor", |m| Property::Factor(m, Factor::Thickness), 0, &[0.0]),
+    (
+        "extensions/KHR_materials_volume/attenuationColor",
+        |m| Property::Factor(m, Factor::AttenuationColor),
+        0,
+        &[1.0; 3],
+    ),
+    (
+        "extensions/KHR_materials_volume/attenuationDistance",
+        |m| Property::Factor(m, Factor::AttenuationDistance),
+        0,
+        &[1e6],
+    ),
+    ("extensions/KHR_materials_dispersion/dispersion", |m| Property::Factor(m, Factor::Dispersion), 0, &[0.0]),
+    (
+        "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor",
+        |m| Property::Factor(m, Factor::DiffuseTransmission),
+        0,
+        &[0.0],
+    ),
+    (
+        "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor",
+        |m| Property::Factor(m, Factor::DiffuseTransmissionColor),
+        0,
+        &[1.0; 3],
+    ),
+];
+
+/// The textures of materials.
+const TEXTURES: &[(&str, u32)] = &[
+    ("pbrMetallicRoughness/baseColorTexture", contract::TEXTURE_BASE_COLOR),
+    ("pbrMetallicRoughness/metallicRoughnessTexture", contract::TEXTURE_METALLIC_ROUGHNESS),
+    ("normalTexture", contract::TEXTURE_NORMAL),
+    ("occlusionTexture", contract::TEXTURE_OCCLUSION),
+    ("emissiveTexture", contract::TEXTURE_EMISSIVE),
+    ("extensions/KHR_materials_clearcoat/clearcoatTexture", contract::TEXTURE_CLEARCOAT),
+    ("extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", contract::TEXTURE_CLEARCOAT_ROUGHNESS),
+    ("extensions/KHR_materials_clearcoat/clearcoatNormalTexture", contract::TEXTURE_CLEARCOAT_NORMAL),
+    ("extensions/KHR_materials_anisotropy/anisotropyTexture", contract::TEXTURE_ANISOTROPY),
+    ("extensions/KHR_materials_sheen/sheenColorTexture", contract::TEXTURE_SHEEN_COLOR),
+    ("extensions/KHR_materials_sheen/sheenRoughnessTexture", contract::TEXTURE_SHEEN_ROUGHNESS),
+    ("extensions/KHR_materials_specular/specularTexture", contract::TEXTURE_SPECULAR),
+    ("extensions/KHR_materials_specular/specularColorTexture", contract::TEXTURE_SPECULAR_COLOR),
+    ("extensions/KHR_materials_iridescence/iridescenceTexture", contract::TEXTURE_IRIDESCENCE),
+    ("extensions/KHR_materials_iridescence/iridescenceThicknessTexture", contract::TEXTURE_IRIDESCENCE_THICKNESS),
+    ("extensions/KHR_materials_transmission/transmissionTexture", contract::TEXTURE_TRANSMISSION),
+    ("extensions/KHR_materials_volume/thicknessTexture", contract::TEXTURE_THICKNESS),
+    (
+        "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture",
+        contract::TEXTURE_DIFFUSE_TRANSMISSION,
+    ),
+    (
+        "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
+        contract::TEXTURE_DIFFUSE_TRANSMISSION_COLOR,
+    ),
+];
+
+/// The members of KHR_texture_transform.
+const TRANSFORM: &[(&str, usize, &[f64])] =
+    &[("offset", 0, &[0.0; 2]), ("rotation", 2, &[0.0]), ("scale", 3, &[1.0; 2])];
+
+/// Resolves a pointer; `None` if the model has no such thing.
+pub fn resolve(pointer: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
+    let (kind, rest) = pointer.strip_prefix('/')?.split_once('/')?;
+    let (index, path) = match kind {
+        "extensions" => {
+            let (index, path) = rest.strip_prefix("KHR_lights_punctual/lights/")?.split_once('/')?;
+            return light(index.parse().ok()?, path, root, rig);
+        }
+        _ => rest.split_once('/')?,
+    };
+    let index: usize = index.parse().ok()?;
+    match kind {
+        "nodes" => nodes(vec![index], path),
+        "meshes" => {
+            let shows =
+                |node: &json::Node| node.mesh.is_some_and(|mesh| mesh.value() == index) && node.weights.is_none();
+            let all = root.nodes.iter().enumerate().filter(|(_, node)| shows(node)).map(|(node, _)| node).collect();
+            if path.starts_with("weights") { nodes(all, path) } else { None }
+        }
+        "materials" => material(index, path, root),
+        "cameras" => {
+            let (make, member, default): (fn(usize) -> Property, _, _) = match path {
+                "perspective/yfov" => (Property::Fovy, path, 0.8),
+                "orthographic/ymag" => (Property::Height, path, 1.0),
+                _ => return None,
+            };
+            let of_file = serde_json::to_value(root.cameras.get(index)?).ok()?;
+            let rest = numbers(&of_file, member, &[default]);
+            let of = |camera: usize| Values { property: make(camera), numbers: rest.clone() };
+            Some(Pointed::Values(rig.cameras_of(index).map(of).collect(), 0, 1))
+        }
+        _ => None,
+    }
+}
+
+fn nodes(nodes: Vec<usize>, path: &str) -> Option<Pointed> {
+    match path.strip_prefix("weights/") {
+        Some(number) => Some(Pointed::Weight(nodes, number.parse().ok()?)),
+        None => ["translation", "rotation", "scale", "weights"]
+            .contains(&path)
+            .then(|| Pointed::Nodes(nodes, path.to_owned())),
+    }
+}
+
+fn material(index: usize, path: &str, root: &json::Root) -> Option<Pointed> {
+    let of_file = serde_json::to_value(root.materials.get(index)?).ok()?;
+    // Index 0 of the model's materials is the default material.
+    let material = index + 1;
+    if let Some((texture, member)) = path.split_once("/extensions/KHR_texture_transform/") {
+        let (_, slot) = TEXTURES.iter().find(|(name, _)| *name == texture)?;
+        let (_, first, default) = TRANSFORM.iter().find(|(name, _, _)| *name == member)?;
+        let number = |(member, _, default): &(&str, usize, &[f64])| {
+            numbers(&of_file, &format!("{texture}/extensions/KHR_texture_transform/{member}"), default)
+        };
+        let values = Values {
+            property: Property::Texture(material, *slot),
+            numbers: TRANSFORM.iter().flat_map(number).collect(),
+        };
+        return Some(Pointed::Values(vec![values], *first, default.len()));
+    }
+    let (_, make, first, default) = MATERIAL.iter().find(|(name, ..)| *name == path)?;
+    let property = make(material);
+    // All numbers of the property, in their order.
+    let parts = MATERIAL.iter().filter(|(_, make, ..)| make(material) == property);
+    let rest = parts.flat_map(|(path, _, _, default)| numbers(&of_file, path, default)).collect();
+    Some(Pointed::Values(vec![Values { property, numbers: rest }], *first, default.len()))
+}
+
+fn light(index: usize, path: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
+    let lights: &[json::extensions::scene::khr_lights_punctual::Light] = root.as_ref();
+    let of_file = serde_json::to_value(lights.get(index)?).ok()?;
+    let (make, first, parts): (fn(usize) -> Property, usize, &[(&str, &[f64])]) = match path {
+        "color" => (Property::Light, 0, &[("color", &[1.0; 3]), ("intensity", &[1.0])]),
+        "intensity" => (Property::Light, 3, &[("color", &[1.0; 3]), ("intensity", &[1.0])]),
+        "range" => (Property::Range, 0, &[("range", &[0.0])]),
+        "spot/innerConeAngle" | "spot/outerConeAngle" => {
+            let outer = std::f64::consts::FRAC_PI_4;
+            let number = |path: &str, default: f64| numbers(&of_file, path, &[default]);
+            let rest = [number("spot/innerConeAngle", 0.0), number("spot/outerConeAngle", outer)].concat();
+            let of = |light: usize| Values { property: Property::Cone(light), numbers: rest.clone() };
+            let first = usize::from(path.ends_with("outerConeAngle"));
+            return Some(Pointed::Values(rig.lights_of(index).map(of).collect(), first, 1));
+        }
+        _ => return None,
+    };
+    let rest: Vec<f64> = parts.iter().flat_map(|(path, default)| numbers(&of_file, path, default)).collect();
+    let width = if path == "color" { 3 } else { 1 };
+    let of = |light: usize| Values { property: make(light), numbers: rest.clone() };
+    Some(Pointed::Values(rig.lights_of(index).map(of).collect(), first, width))
+}
+
+/// The numbers at a path of the file, or their defaults.
+fn numbers(of: &Value, path: &str, default: &[f64]) -> Vec<f64> {
+    let value = of.pointer(&format!("/{path}"));
+    let numbers: Option<Vec<f64>> = match value {
+        Some(Value::Array(list)) => list.iter().map(Value::as_f64).collect(),
+        Some(value) => value.as_f64().map(|number| vec![number]),
+        None => None,
+    };
+    numbers.filter(|numbers| numbers.len() == default.len()).unwrap_or_else(|| default.to_vec())
+}

@@ -1,0 +1,43 @@
+//! Clips: animations of a file, and what they move.
+
+use std::sync::Arc;
+
+use super::curve::Curve;
+use super::extent::Extent;
+
+/// An animation of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Clip {
+    /// Name, or empty.
+    pub name: String,
+    /// What it moves.
+    pub channels: Vec<Channel>,
+    /// Time of its last key, seconds.
+    pub duration_s: f32,
+    /// Where the model is while it plays.
+    pub extent: Extent,
+}
+
+/// A curve, and what follows it.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// What follows it.
+    pub target: Target,
+    /// Values over time, with as many numbers as the target takes.
+    pub curve: Arc<Curve>,
+}
+
+/// What a channel moves. Nodes are indices into the nodes of the [`Rig`](super::Rig).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Translation of a node.
+    Translation(usize),
+    /// Rotation of a node.
+    Rotation(usize),
+    /// Scale of a node.
+    Scale(usize),
+    /// Weights of morph targets: as many as the curve has, from this index into `Pose::weights` on.
+    Weights(usize),
+    /// Numbers of an entry of `Motion::values`, from the given one on.
+    Values(usize, usize),
+}
