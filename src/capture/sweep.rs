@@ -137,7 +137,7 @@ fn of_setting(setting: &Setting, session: &Session) -> Takes {
     let entry = setting.entry;
     let names = match (setting.path.as_str(), setting.takes) {
         ("environment.name", _) => BUILT_IN.map(str::to_owned).to_vec(),
-        ("variant", _) => session.model().map(|model| model.variants.clone()).unwrap_or_default(),
+        ("variant", _) => session.model().map(|model| model.variants.to_vec()).unwrap_or_default(),
         (_, "true or false") => ["false", "true"].map(str::to_owned).to_vec(),
         _ => setting.names.clone(),
     };

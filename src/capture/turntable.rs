@@ -127,6 +127,9 @@ impl Turntable {
         if self.turn != Turn::Camera {
             turn_light(&mut settings, turn);
         }
+        // Animations of the model play on.
+        let animation = &mut settings.animation;
+        animation.time += animation.speed * turn * self.frames as f32 / self.fps;
         settings
     }
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use specula::gpu::{AdapterInfo, GpuError, adapters};
 use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};
 use specula::message::escape;
-use specula::scene::{Material, Model, Primitive, TextureSource, Topology, slot_name, texture_sources};
+use specula::scene::{Clip, Material, Model, Primitive, Skin, TextureSource, Topology, slot_name, texture_sources};
 
 use super::common::Common;
 use super::{Failure, print_json};
@@ -100,7 +100,16 @@ fn print_model(model: &Model) {
         out!("    {} ({})", escape(&model.camera_key(number)), camera.lens);
     }
     out!("  animations  {}", named(&model.contents.animations));
+    for (number, clip) in model.motion.clips.iter().enumerate() {
+        let name = if clip.name.is_empty() { number.to_string() } else { escape(&clip.name) };
+        out!("    {name}: {:.3} s, {}", clip.duration_s, plural(clip.channels.len(), "channel"));
+    }
     out!("  skins       {}", count(model.contents.skins));
+    for skin in &model.motion.rig.skins {
+        let name = if skin.name.is_empty() { format!("#{}", skin.index) } else { escape(&skin.name) };
+        out!("    {name}: {}", plural(skin.joints.len(), "joint"));
+    }
+    out!("  targets     {}", named(&model.motion.target_names));
     let extensions = &model.contents.extensions;
     out!("  extensions  {}", if extensions.is_empty() { "none".to_owned() } else { escape(&extensions.join(", ")) });
     let [geometry, textures] = memory(model).map(|bytes| bytes as f64 / f64::from(1 << 20));
@@ -169,6 +178,7 @@ fn summary(model: &Model) -> serde_json::Value {
         "clips": model.contents.animations,
         "extensions": model.contents.extensions,
         "skins": model.contents.skins,
+        "motion": motion(model),
         "primitives": model.primitives.len(),
         "instances": model.instances.len(),
         "vertices": vertices,
@@ -185,6 +195,24 @@ fn summary(model: &Model) -> serde_json::Value {
         "size_m": rounded(size(model)),
         "center_m": rounded(model.bounds.center()),
         "warnings": model.warnings,
+    })
+}
+
+/// A count with its noun.
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// What moves: clips, skins, morph targets and cameras.
+fn motion(model: &Model) -> serde_json::Value {
+    let clip =
+        |clip: &Clip| json!({ "name": clip.name, "duration_s": clip.duration_s, "channels": clip.channels.len() });
+    let skin = |skin: &Skin| json!({ "name": skin.name, "index": skin.index, "joints": skin.joints.len() });
+    json!({
+        "clips": model.motion.clips.iter().map(clip).collect::<Vec<_>>(),
+        "skins": model.motion.rig.skins.iter().map(skin).collect::<Vec<_>>(),
+        "targets": model.motion.target_names,
+        "cameras": (0..model.cameras.len()).map(|camera| model.camera_key(camera)).collect::<Vec<_>>(),
     })
 }
 

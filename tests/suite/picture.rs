@@ -5,3 +5,4 @@ mod diff;
 mod display;
 mod golden;
 mod inspector;
+mod motion;

@@ -1,9 +1,9 @@
-//! `--sheet`, `--sweep` and `--turntable`: many pictures in one file.
+//! `--sheet`, `--sweep`, `--turntable` and `--frames` of a video: many pictures in one file.
 
-use std::path::Path;
-
-use specula::capture::{CaptureError, Cell, SheetPlan, Turntable, cells_of_modes, check_animation, modes_of, swept};
-use specula::headless::{Headless, Step};
+use specula::capture::{
+    CaptureError, Cell, SheetPlan, Turntable, cells_of_modes, check_animation, modes_of, swept, write_movie,
+};
+use specula::headless::{Headless, Sequence, Step};
 use specula::picture;
 use specula::pipeline::Outcome;
 
@@ -17,13 +17,24 @@ const MOST_COLUMNS: usize = 8;
 
 /// Whether one of them is requested.
 pub fn is_asked(args: &Args) -> bool {
-    args.sheet.is_some() || args.turntable.is_some() || !args.sweep.is_empty()
+    args.sheet.is_some() || args.turntable.is_some() || !args.sweep.is_empty() || is_movie(args)
+}
+
+/// Whether all frames of the sequence go into one file.
+fn is_movie(args: &Args) -> bool {
+    let holds_frames =
+        |ending: &std::ffi::OsStr| ["mp4", "webp", "gif"].iter().any(|of| ending.eq_ignore_ascii_case(of));
+    let is_one_picture = args.sheet.is_none() && args.turntable.is_none() && args.sweep.is_empty();
+    is_one_picture && args.frames.frames.is_some() && args.out.extension().is_some_and(holds_frames)
 }
 
 /// Fails before any work when the file cannot be written.
 pub fn check(args: &Args) -> Result<(), Failure> {
     if args.turntable.is_some() {
         return check_animation(&args.out, args.frames.fps.unwrap_or(FPS)).map_err(Failure::Usage);
+    }
+    if is_movie(args) {
+        return check_animation(&args.out, args.frames.sequence()?.fps).map_err(Failure::Usage);
     }
     if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
         return Err(Failure::Usage(format!("cannot write {}: a sheet must end in .png", args.out.display())));
@@ -39,12 +50,17 @@ pub fn write(headless: &mut Headless, args: &Args) -> Result<(), Failure> {
     if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
         return Err(Failure::Shaders(diagnostics));
     }
-    progress.say(if args.turntable.is_none() { "sheet" } else { "turntable" });
+    progress.say(match args.turntable {
+        Some(_) => "turntable",
+        None if is_movie(args) => "frames",
+        None => "sheet",
+    });
     let mut tell = |done: u64, of: u64| {
         progress.step(&Step { done, of, unit: "pictures" });
         true
     };
-    let written = draw(headless, args, &args.out, &mut tell);
+    let sequence = args.frames.sequence()?;
+    let written = draw(headless, args, sequence, &mut tell);
     headless.set_size(args.common.size())?;
     written.map_err(|error| match error {
         CaptureError::Render(error) => error.into(),
@@ -56,12 +72,16 @@ pub fn write(headless: &mut Headless, args: &Args) -> Result<(), Failure> {
 fn draw(
     headless: &mut Headless,
     args: &Args,
-    out: &Path,
+    sequence: Sequence,
     tell: &mut dyn FnMut(u64, u64) -> bool,
 ) -> Result<(), CaptureError> {
+    let out = args.out.as_path();
     if let Some(frames) = args.turntable {
         let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size(), args.turn);
         return Turntable { frames, fps, size, turn }.write(headless, out, tell);
+    }
+    if is_movie(args) {
+        return write_movie(headless, sequence, out, tell);
     }
     let session = headless.session();
     let cells = match &args.sheet {
