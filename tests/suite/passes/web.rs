@@ -34,6 +34,14 @@ fn is_green(files: &[(&str, &str)]) {
     assert_eq!(pixel(folder.path(), 9, 9), GREEN, "{files:#?}");
 }
 
+/// Fails unless the file draws this color.
+#[track_caller]
+fn is_drawn(text: &str, options: &[&str], color: [u8; 4]) {
+    let folder = tempfile::tempdir().unwrap();
+    render(folder.path(), &[("toy.frag", text)], options).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 9, 9), color, "{text}");
+}
+
 #[test]
 fn names_and_macros_of_webgl_work() {
     is_green(&[(
@@ -57,6 +65,40 @@ fn names_and_macros_of_webgl_work() {
         "toy.glsl",
         "void mainImage(out vec4 c, in vec2 p) { c = vec4(0, 1, 0, 1) + 0.0 * texture(iChannel1, vec3(p, 1.0)); }\n",
     )]);
+}
+
+#[test]
+fn parts_of_a_file_are_the_buffers_of_glsl_viewer() {
+    // The first part counts frames in red, the second reads the first of this frame.
+    is_drawn(
+        "uniform sampler2D u_doubleBuffer0, u_buffer1;\nuniform vec2 u_resolution;\nvoid main() {\n    \
+         vec2 st = gl_FragCoord.xy / u_resolution;\n#if defined(DOUBLE_BUFFER_0)\n    \
+         gl_FragData[0] = texture2D(u_doubleBuffer0, st) + vec4(0.2, 0.0, 0.0, 0.0);\n#elif defined(BUFFER_1)\n    \
+         gl_FragColor = vec4(texture2D(u_doubleBuffer0, st).r, st.y, 0.0, 1.0);\n#else\n    \
+         gl_FragColor = texture2D(u_buffer1, st);\n#endif\n}\n",
+        &["--frames", "3"],
+        // 3 * 0.2, and the middle of row 9 of 16 from above.
+        [153, 104, 0, 255],
+    );
+}
+
+#[test]
+fn a_file_that_is_no_picture_is_told_so() {
+    for (text, expected) in [
+        ("vec2 mainSound(int samp, float time) { return vec2(0.0); }\n", "Specula plays no sound"),
+        (
+            "void mainCubemap(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(d, 1.0); }\n",
+            "Specula draws no cube maps",
+        ),
+        ("void main() { gl_Position = vec4(0.0); }\n", "this is a vertex shader"),
+        (
+            "vec4 f(samplerCube c) { return texture(c, vec3(1.0)); }\nvoid mainImage(out vec4 c, in vec2 p) { c = f(iChannel1); }\n",
+            "`#iChannel1::Type \"CubeMap\"`",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        render(folder.path(), &[("toy.frag", text)], &[]).expect(1, &["error: ", expected]);
+    }
 }
 
 #[test]

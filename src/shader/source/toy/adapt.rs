@@ -101,6 +101,7 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
     let code = code(text);
     let mut edits = directives(text, pass);
     edits.extend(words(&all, has_main(text)));
+    edits.extend(first_output(&all));
     edits.extend(empty_arguments(&all));
     edits.extend(replaced_declarations(text, &code));
     edits.extend(initial_values(&code));
@@ -177,6 +178,13 @@ fn words(all: &[Token<'_>], has_main: bool) -> Vec<Edit> {
         .map(|own| (token.bytes.clone(), own))
     };
     all.iter().enumerate().filter_map(own).collect()
+}
+
+/// `gl_FragData[0]`, which is `gl_FragColor` under another name.
+fn first_output(all: &[Token<'_>]) -> Vec<Edit> {
+    let is = |at: usize| (0..4).all(|part| all[at + part].text == ["gl_FragData", "[", "0", "]"][part]);
+    let edit = |at: usize| (all[at].bytes.start..all[at + 3].bytes.end, "toyFragColor  ".to_owned());
+    (0..all.len().saturating_sub(3)).filter(|at| is(*at)).map(edit).collect()
 }
 
 /// An argument for calls `F()` of macros `F(x)`: glslang counts none there, and C one that is empty.

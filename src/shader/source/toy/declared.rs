@@ -35,6 +35,9 @@ pub(super) const TYPES: [&str; 19] = [
 /// The image that the file drew one frame ago, on GLSL Sandbox and in glslViewer.
 pub(super) const BEFORE: [&str; 3] = ["backbuffer", "u_backbuffer", "u_doubleBuffer"];
 
+/// The images that glslViewer draws from parts of a file, before their numbers.
+pub(super) const PARTS: [&str; 2] = ["u_buffer", "u_doubleBuffer"];
+
 /// The kind of a variable that the stage replaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Storage {
@@ -84,7 +87,9 @@ impl Declaration<'_> {
 /// Whether toy.glsl or the stage gives a variable or sampler of this name.
 pub(super) fn is_built_in(name: &str) -> bool {
     let is_channel = name.strip_prefix("iChannel").is_some_and(|number| matches!(number, "0" | "1" | "2" | "3"));
-    is_channel || channel_of(name).is_some() || BUILT_IN.contains(&name) || BEFORE.contains(&name)
+    let number = PARTS.iter().find_map(|part| name.strip_prefix(part));
+    let is_part = number.is_some_and(|number| number.len() == 1 && number.as_bytes()[0].is_ascii_digit());
+    is_channel || is_part || channel_of(name).is_some() || BUILT_IN.contains(&name) || BEFORE.contains(&name)
 }
 
 /// Whether the author names the file of an image.

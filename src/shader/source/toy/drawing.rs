@@ -14,6 +14,11 @@ pub(super) const KEYBOARD: &str = "toy_keyboard";
 /// Shadertoy has four buffers.
 pub(super) const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buffer_d"];
 
+/// The names before the number of an image that glslViewer draws from a part of a file: its sampler, and the macro of the part.
+const PARTS: [(&str, &str); 2] = [(declared::PARTS[0], "BUFFER_"), (declared::PARTS[1], "DOUBLE_BUFFER_")];
+/// Most parts of a file.
+const MAX_PARTS: usize = 8;
+
 /// A file that draws an image.
 pub(super) struct Drawing {
     /// The name of its pass.
@@ -21,6 +26,25 @@ pub(super) struct Drawing {
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) text: String,
+    /// The macro that selects its part of the file, where one file draws several images, as in glslViewer: `BUFFER_0`.
+    pub(super) part: Option<String>,
+}
+
+/// The images that a file of glslViewer draws before its own: one for each number of `BUFFER_0` or `DOUBLE_BUFFER_0`.
+pub(super) fn parts(file: &str, text: &str) -> Vec<Drawing> {
+    let part = |number: usize| {
+        let macros = PARTS.map(|(_, part)| format!("{part}{number}"));
+        let part = macros.into_iter().find(|part| uses(text, part))?;
+        Some(Drawing { pass: format!("part_{number}"), file: file.to_owned(), text: text.to_owned(), part: Some(part) })
+    };
+    if text.contains("BUFFER_") { (0..MAX_PARTS).filter_map(part).collect() } else { Vec::new() }
+}
+
+/// The samplers in glslViewer's names, and the names of the passes that they read.
+fn parts_read(text: &str) -> Vec<(String, String)> {
+    let names = PARTS.iter().flat_map(|(sampler, _)| (0..MAX_PARTS).map(move |number| (sampler, number)));
+    let read = names.map(|(sampler, number)| (format!("{sampler}{number}"), format!("part_{number}")));
+    read.filter(|(sampler, _)| uses(text, sampler)).collect()
 }
 
 /// Whether the last drawing's image of the previous frame is read, so that it cannot be drawn to the picture itself.
@@ -41,6 +65,11 @@ pub(super) fn keeps_image(drawings: &[Drawing]) -> bool {
 pub(super) fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
     let Drawing { pass, text, .. } = &drawings[index];
     let named = channels(text);
+    // A channel reads what was drawn earlier in this frame, or otherwise the previous frame.
+    let of_frame = |place: usize| match place < index {
+        true => drawings[place].pass.clone(),
+        false => format!("before_{}", drawings[place].pass),
+    };
     let (mut lines, mut sizes) = (BTreeSet::new(), Vec::new());
     for (number, buffer) in BUFFERS.iter().enumerate() {
         let name = format!("iChannel{number}");
@@ -50,11 +79,6 @@ pub(super) fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> 
             continue;
         }
         let mut kind = Kind::Flat;
-        // A channel reads what was drawn earlier in this frame, or otherwise the previous frame.
-        let of_frame = |place: usize| match place < index {
-            true => drawings[place].pass.clone(),
-            false => format!("before_{}", drawings[place].pass),
-        };
         let drawn = |is_it: &dyn Fn(&Drawing) -> bool| drawings.iter().position(is_it).map(of_frame);
         let sampler = match named.iter().find(|(channel, _)| *channel == number).map(|(_, channel)| channel) {
             Some(Channel::This) => Some(format!("before_{pass}")),
@@ -77,6 +101,11 @@ pub(super) fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> 
         });
         lines.insert(format!("uniform {} {sampler};\n", kind.glsl()));
         lines.extend(aliases.iter().chain([&name]).map(|name| format!("#define {name} {sampler}\n")));
+    }
+    for (name, pass) in parts_read(text) {
+        let sampler = drawings.iter().position(|drawing| drawing.pass == pass).map(of_frame);
+        lines.insert(format!("uniform sampler2D {};\n", sampler.as_ref().unwrap_or(&name)));
+        lines.extend(sampler.map(|sampler| format!("#define {name} {sampler}\n")));
     }
     for name in BEFORE.iter().filter(|name| uses(text, name)) {
         lines.insert(format!("uniform sampler2D before_{pass};\n#define {name} before_{pass}\n"));

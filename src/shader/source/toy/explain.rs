@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::adapt::{COMMON, has_key_functions, with_names};
-use super::channel::{Channel, Sampler, channel, samplers};
+use super::adapt::{COMMON, has_key_functions, uses, with_names};
+use super::channel::{CHANNELS, Channel, Kind, Sampler, channel, channels, samplers};
 use super::declared::outputs;
 use super::{STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
@@ -14,6 +14,40 @@ use crate::shader::glsl::{code, find_word, lines};
 const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
 /// The functions that `#iKeyboard` declares, and the beginning of its keys' names, as the compiler quotes them.
 const OF_KEYS: [&str; 4] = ["'isKeyDown'", "'isKeyPressed'", "'isKeyToggled'", "'Key_"];
+
+/// Shadertoy's entry points that Specula does not run.
+const OTHER_ENTRIES: [(&str, &str); 3] = [
+    ("mainCubemap", "Specula draws no cube maps; `#iChannel0 \"sky_{}.png\"` reads one from six files"),
+    ("mainSound", "Specula plays no sound"),
+    ("mainVR", "Specula draws no stereo pictures"),
+];
+
+/// The error of a file that has no entry point.
+pub(super) fn without_entry(shown: &str, text: &str) -> Diagnostic {
+    let message = format!("expected `{MAIN_IMAGE}` or `void main()`");
+    let error = Diagnostic::error(shown, message);
+    match OTHER_ENTRIES.iter().find(|(name, _)| uses(text, name)) {
+        Some((name, help)) => error.with_help(format!("this file has `{name}`: {help}")),
+        None => error,
+    }
+}
+
+/// The help for an error about a channel that a function takes as a cube map or a volume.
+fn help_with_channel(diagnostic: &Diagnostic, text: &str) -> Option<String> {
+    let is_call = diagnostic.message.ends_with("no matching overloaded function found");
+    let line = diagnostic.excerpt.as_deref().filter(|_| is_call)?;
+    let kinds = Kind::NAMES.iter().filter(|(_, kind)| *kind != Kind::Flat);
+    let (name, kind) = kinds.into_iter().find(|(_, kind)| uses(text, kind.glsl()))?;
+    let named = channels(text);
+    let number = (0..CHANNELS).find(|number| {
+        line.contains(&format!("iChannel{number}")) && named.iter().all(|(channel, _)| channel != number)
+    })?;
+    Some(format!(
+        "nothing names iChannel{number}, so it is noise in a sampler2D; for a {} write `#iChannel{number} \"NAME_{{}}.png\"` and \
+         `#iChannel{number}::Type \"{name}\"`",
+        kind.glsl()
+    ))
+}
 
 impl Toy {
     /// The diagnostic as the author of the file should see it. Those about other files stay as they are.
@@ -42,6 +76,13 @@ impl Toy {
             let help = "write `#iKeyboard` on a line of its own: it declares isKeyDown, isKeyPressed and isKeyToggled, and the \
                         keys, as Key_A and Key_LeftArrow";
             return if has_keys { diagnostic } else { diagnostic.with_help(help) };
+        }
+        if message.starts_with("'gl_Position'") {
+            return diagnostic
+                .with_help("this is a vertex shader; Specula opens a fragment shader alone, without a tree");
+        }
+        if let Some(help) = help_with_channel(&diagnostic, text) {
+            return diagnostic.with_help(help);
         }
         // Hide built-in passes from messages about Shadertoy files.
         let unknown = message.strip_prefix("no pass or texture is named `").and_then(|rest| rest.split('`').next());

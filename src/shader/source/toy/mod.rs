@@ -33,12 +33,14 @@ use crate::shader::glsl::{code, includes};
 use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
 use channel::{Channel, channels};
 use declared::{Variable, assignments, globals, narrowed, outputs, sliders, variables};
-use drawing::{BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image};
+use drawing::{BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image, parts};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
 /// The folder of the stages.
 const STAGES: &str = "passes";
+/// The pass of the opened file itself.
+const IMAGE: &str = "image";
 /// The library with the sliders for uniforms.
 const SLIDERS: &str = "toy/sliders.glsl";
 /// The pass that shows the image of a file that reads its own image of the previous frame.
@@ -155,9 +157,8 @@ impl Toy {
             let shown = path.display().to_string();
             match self.text(&file) {
                 Ok(_) if !uses(&text, "mainImage") && !uses(&text, "main") => {
-                    let message = "expected `void mainImage(out vec4 fragColor, in vec2 fragCoord)` or `void main()`";
                     let first = text.lines().next().unwrap_or_default();
-                    out.push(Diagnostic::error(shown.clone(), message).on_line(1, Some(first)).under(0..first.len()));
+                    out.push(explain::without_entry(&shown, &text).on_line(1, Some(first)).under(0..first.len()));
                 }
                 // The line that names a file reports that it is missing.
                 Err(SourceError::Missing) if file != self.name() => {}
@@ -240,10 +241,10 @@ impl Toy {
         let mut out = Vec::new();
         for buffer in BUFFERS {
             if let Some((file, text)) = self.beside(buffer) {
-                out.push(Drawing { pass: buffer.to_owned(), file, text });
+                out.push(Drawing { pass: buffer.to_owned(), file, text, part: None });
             }
         }
-        self.add(&self.name(), "image", &mut Vec::new(), &mut out);
+        self.add(&self.name(), IMAGE, &mut Vec::new(), &mut out);
         out
     }
 
@@ -260,7 +261,8 @@ impl Toy {
             }
         }
         above.pop();
-        out.push(Drawing { pass: pass.to_owned(), file: file.to_owned(), text });
+        out.extend(parts(file, &text).into_iter().filter(|_| pass == IMAGE));
+        out.push(Drawing { pass: pass.to_owned(), file: file.to_owned(), text, part: None });
     }
 
     /// The file that all drawings share, and its text.
@@ -305,7 +307,7 @@ impl Toy {
 
     /// The text of a stage.
     fn stage(&self, drawings: &[Drawing], index: usize) -> String {
-        let Drawing { pass, file, text } = &drawings[index];
+        let Drawing { pass, file, text, part } = &drawings[index];
         let is_picture = index + 1 == drawings.len() && !keeps_image(drawings);
         let goes = if is_picture { "to=picture after=tonemap" } else { "keep format=rgba32f rows=up" };
         let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n#define TOY_FILE\n");
@@ -315,6 +317,7 @@ impl Toy {
         if !is_shadertoy(text) {
             out += "#define TOY_MAIN\n";
         }
+        out.extend(part.iter().map(|part| format!("#define {part}\n")));
         let common = self.common();
         let shared = common.as_ref().map_or("", |(_, text)| text);
         let files = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
