@@ -140,7 +140,13 @@ fn is_summary(row: &str) -> bool {
 fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
     let unknown =
         ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
-    let conversion = ["cannot convert from", "type does not match", "wrong operand type", "can't use function"];
+    let conversion = [
+        "cannot convert from",
+        "type does not match",
+        "wrong operand type",
+        "can't use function",
+        "not enough data provided for construction",
+    ];
     first.severity == Severity::Error
         && (&first.file, first.line) == (&next.file, next.line)
         && unknown.iter().any(|text| first.message.contains(text))

@@ -44,6 +44,11 @@ fn tokens_are_marked() {
         &format!("{head}void main() {{ if (1 == 1) o = vec3(1.0); }}"),
         &[(&format!("m.frag:3:29: error: 'assign' : {conversion}"), "=")],
     );
+    // Neither is the shorter constructor.
+    expect(
+        &format!("{head}void main() {{ o = vec4(foo, 1.0); }}"),
+        &[("m.frag:3:26: error: 'foo' : undeclared identifier", "foo")],
+    );
     // The conversion of the made-up result is not reported a second time.
     expect(
         &format!("{head}void main() {{ o = mix(vec3(1.0), 2, 3); }}"),
