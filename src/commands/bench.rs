@@ -114,7 +114,8 @@ fn edited(text: &str, number: u32) -> String {
     format!("{}float bench_edit(float x) {{ return x + {number}.0; }}\n{}", &text[..end], &text[end..])
 }
 
-/// Times frames of the selected mode, the CPU time of frames that do not change, and the first and second frame of every mode.
+/// Times frames of the selected mode, the CPU time of frames that do not change, and the first and second frame of every mode but
+/// those of random paths, which take up to a minute on a software device.
 fn frame(bench: &Bench<'_>) -> Result<Value, Failure> {
     let args = bench.args;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
@@ -142,7 +143,10 @@ fn frame(bench: &Bench<'_>) -> Result<Value, Failure> {
     // With --mode, skip the other modes.
     let slugs: Vec<String> = match args.common.mode.is_empty() {
         false => Vec::new(),
-        true => headless.shaders().modes.iter().map(|m| m.slug.clone()).collect(),
+        true => {
+            let modes = headless.shaders().modes.clone();
+            modes.iter().filter(|mode| !mode.follows_paths()).map(|mode| mode.slug.clone()).collect()
+        }
     };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
     for (index, slug) in slugs.iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::commands::common::Common;
 pub(super) enum What {
     /// Time from a save to the end of the first frame with the new shader
     Reload,
-    /// Time of a frame, and of the first frame in each debug mode
+    /// Time of a frame, and of the first frame in each debug mode but those of random paths; with --mode, of that mode alone
     Frame,
     /// Time from opening the model's file to its first frame
     Load,
