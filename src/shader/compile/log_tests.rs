@@ -47,7 +47,7 @@ fn tokens_are_marked() {
     // Neither is the shorter constructor.
     expect(
         &format!("{head}void main() {{ o = vec4(foo, 1.0); }}"),
-        &[("m.frag:3:26: error: 'foo' : undeclared identifier", "foo")],
+        &[("m.frag:3:24: error: 'foo' : undeclared identifier", "foo")],
     );
     // The conversion of the made-up result is not reported a second time.
     expect(

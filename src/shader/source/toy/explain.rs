@@ -6,31 +6,13 @@ use std::path::Path;
 use super::adapt::{COMMON, has_key_functions, uses, with_names};
 use super::channel::{CHANNELS, Channel, Kind, Sampler, channel, channels, samplers};
 use super::declared::outputs;
+use super::problems::MAIN_IMAGE;
 use super::{STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{code, find_word, lines};
 
-/// Shadertoy's entry point.
-const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
 /// The functions that `#iKeyboard` declares, and the beginning of its keys' names, as the compiler quotes them.
 const OF_KEYS: [&str; 4] = ["'isKeyDown'", "'isKeyPressed'", "'isKeyToggled'", "'Key_"];
-
-/// Shadertoy's entry points that Specula does not run.
-const OTHER_ENTRIES: [(&str, &str); 3] = [
-    ("mainCubemap", "Specula draws no cube maps; `#iChannel0 \"sky_{}.png\"` reads one from six files"),
-    ("mainSound", "Specula plays no sound"),
-    ("mainVR", "Specula draws no stereo pictures"),
-];
-
-/// The error of a file that has no entry point.
-pub(super) fn without_entry(shown: &str, text: &str) -> Diagnostic {
-    let message = format!("expected `{MAIN_IMAGE}` or `void main()`");
-    let error = Diagnostic::error(shown, message);
-    match OTHER_ENTRIES.iter().find(|(name, _)| uses(text, name)) {
-        Some((name, help)) => error.with_help(format!("this file has `{name}`: {help}")),
-        None => error,
-    }
-}
 
 /// The help for an error about a channel that a function takes as a cube map or a volume.
 fn help_with_channel(diagnostic: &Diagnostic, text: &str) -> Option<String> {

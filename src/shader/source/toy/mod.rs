@@ -158,7 +158,7 @@ impl Toy {
             match self.text(&file) {
                 Ok(_) if !uses(&text, "mainImage") && !uses(&text, "main") => {
                     let first = text.lines().next().unwrap_or_default();
-                    out.push(explain::without_entry(&shown, &text).on_line(1, Some(first)).under(0..first.len()));
+                    out.push(problems::without_entry(&shown, &text).on_line(1, Some(first)).under(0..first.len()));
                 }
                 // The line that names a file reports that it is missing.
                 Err(SourceError::Missing) if file != self.name() => {}

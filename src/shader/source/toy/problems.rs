@@ -5,13 +5,22 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-use super::adapt::KEY_FUNCTIONS;
+use super::adapt::{KEY_FUNCTIONS, uses};
 use super::beside::{is_there, not_found};
 use super::channel::{CHANNELS, Channel, Kind, OPTIONS, Sampler, channel, channels, samplers};
 use crate::message::{did_you_mean, either};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{Line, is_word, lines};
 use crate::shader::source::TreePath;
+
+/// Shadertoy's entry point.
+pub(super) const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
+/// Shadertoy's entry points that Specula does not run.
+const OTHER_ENTRIES: [(&str, &str); 3] = [
+    ("mainCubemap", "Specula draws no cube maps; `#iChannel0 \"sky_{}.png\"` reads one from six files"),
+    ("mainSound", "Specula plays no sound"),
+    ("mainVR", "Specula draws no stereo pictures"),
+];
 
 const CHANNEL: &str = "#iChannel";
 /// The directives of GLSL that begin with the same letter.
@@ -46,6 +55,16 @@ pub(super) fn problems(shown: &str, text: &str, folder: &Path) -> Vec<Diagnostic
         }
     }
     out
+}
+
+/// The error of a file that has no entry point.
+pub(super) fn without_entry(shown: &str, text: &str) -> Diagnostic {
+    let message = format!("expected `{MAIN_IMAGE}` or `void main()`");
+    let error = Diagnostic::error(shown, message);
+    match OTHER_ENTRIES.iter().find(|(name, _)| uses(text, name)) {
+        Some((name, help)) => error.with_help(format!("this file has `{name}`: {help}")),
+        None => error,
+    }
 }
 
 /// Channels and samplers that a text declares.
