@@ -39,7 +39,7 @@ pub(super) fn start(
         events: early.events,
         start: options.start,
         recent: Recent::restored(),
-        last_sessions: LastSessions::restored(),
+        last_sessions: LastSessions::restored(source.location()),
         hint: Hint::restored(),
         learning: Learning::restored(),
         follows_lights: options.follows_lights,

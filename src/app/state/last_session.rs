@@ -1,4 +1,4 @@
-//! The last session of each working directory, kept between runs in `sessions.json`: settings with the camera, model and shader tree.
+//! The last session of each shader tree in each working directory, kept between runs in `sessions.json`: settings with the camera, model and shader tree.
 //! A window without a model and options offers to go on with it, or does so by itself if the user has chosen that.
 
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::scene::BUILT_IN;
 use crate::state;
 
 const FILE: &str = "sessions.json";
-/// Most directories that are remembered.
+/// Most sessions that are remembered.
 const MOST: usize = 16;
 
 /// The content of the file.
@@ -44,9 +44,10 @@ impl LastSession {
         let settings = &self.work.settings;
         let mode = (settings.mode != "final").then(|| format!("mode {}", settings.mode));
         let environment = format!("environment {}", name(&PathBuf::from(&settings.environment.name)));
+        let tree = self.work.tree.as_ref().map(|tree| format!("shaders {}", name(tree)));
         let at = DateTime::from_timestamp(self.at, 0).map(|at| at.with_timezone(&Local));
         let at = at.map(|at| at.format("%Y-%m-%d %H:%M").to_string());
-        [Some(model), mode, Some(environment), at].into_iter().flatten().collect::<Vec<_>>().join(", ")
+        [Some(model), tree, mode, Some(environment), at].into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// Whether its model and its shader tree are still there.
@@ -61,15 +62,17 @@ impl LastSession {
 pub(in crate::app) struct LastSessions {
     /// Whether a window restores the last session by itself.
     always: bool,
-    /// The last session in the working directory.
+    /// The last session in the working directory with the shader tree of the start.
     pub(in crate::app) here: Option<LastSession>,
 }
 
 impl LastSessions {
-    pub(in crate::app) fn restored() -> Self {
+    /// The stored sessions. `tree`: the shader tree of the start; `None` is the tree in the program.
+    pub(in crate::app) fn restored(tree: Option<&Path>) -> Self {
         let stored = load();
-        let directory = std::env::current_dir().ok();
-        let here = directory.and_then(|directory| find(&stored, &directory)).filter(LastSession::is_there);
+        let (directory, tree) = (std::env::current_dir().ok(), tree.map(in_full));
+        let here = directory.and_then(|directory| find(&stored, &directory, tree.as_deref()));
+        let here = here.filter(LastSession::is_there);
         Self { always: stored.always, here }
     }
 
@@ -84,9 +87,9 @@ impl LastSessions {
     }
 }
 
-/// The state of the last session of this directory, if the user wants windows to restore it by themselves.
-pub fn session_to_restore() -> Option<SessionState> {
-    let sessions = LastSessions::restored();
+/// The state of the last session of this directory and shader tree, if the user wants windows to restore it by themselves.
+pub fn session_to_restore(tree: Option<&Path>) -> Option<SessionState> {
+    let sessions = LastSessions::restored(tree);
     sessions.here.filter(|_| sessions.always).map(|session| session.work)
 }
 
@@ -99,28 +102,35 @@ pub(in crate::app) fn remember(work: &SessionState) {
 
 /// The state with absolute paths of files. Names of built-in models and environments stay.
 fn absolute(mut work: SessionState) -> SessionState {
-    let of = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    work.model = work.model.map(|model| if model.exists() { of(&model) } else { model });
-    work.tree = work.tree.map(|tree| of(&tree));
+    work.model = work.model.map(|model| if model.exists() { in_full(&model) } else { model });
+    work.tree = work.tree.as_deref().map(in_full);
     let environment = Path::new(&work.settings.environment.name);
     if environment.is_file() {
-        let name = of(environment).display().to_string();
+        let name = in_full(environment).display().to_string();
         Arc::make_mut(&mut work.settings).environment.name = name;
     }
     work
 }
 
+fn in_full(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
 fn insert(stored: &mut Stored, session: LastSession) {
-    let of_directory = |value: &Value| value["directory"].as_str().map(PathBuf::from);
-    stored.sessions.retain(|old| of_directory(old).is_some_and(|directory| directory != session.directory));
+    let path = |value: &Value| value.as_str().map(PathBuf::from);
+    let place = |old: &Value| Some((path(&old["directory"])?, path(&old["work"]["tree"])));
+    let replaced = (session.directory.clone(), session.work.tree.clone());
+    stored.sessions.retain(|old| place(old).is_some_and(|place| place != replaced));
     // Paths that are not UTF-8 are skipped.
     stored.sessions.splice(0..0, serde_json::to_value(session));
     stored.sessions.truncate(MOST);
 }
 
-fn find(stored: &Stored, directory: &Path) -> Option<LastSession> {
+fn find(stored: &Stored, directory: &Path, tree: Option<&Path>) -> Option<LastSession> {
     let sessions = stored.sessions.iter().filter_map(|value| serde_json::from_value(value.clone()).ok());
-    sessions.into_iter().find(|session: &LastSession| session.directory == directory)
+    sessions
+        .into_iter()
+        .find(|session: &LastSession| session.directory == directory && session.work.tree.as_deref() == tree)
 }
 
 fn load() -> Stored {
@@ -139,21 +149,27 @@ mod tests {
 
     fn session(directory: &str, mode: &str) -> LastSession {
         let settings = Settings { mode: mode.to_owned(), ..Settings::of_window() };
-        let work = SessionState { settings: Arc::new(settings), model: Some("sphere-grid".into()), tree: None };
+        let work =
+            SessionState { settings: Arc::new(settings), model: Some("sphere-grid".into()), ..SessionState::default() };
         LastSession { directory: directory.into(), at: 1_790_000_000, work }
     }
 
     #[test]
-    fn each_directory_has_its_last_session() {
+    fn each_tree_in_each_directory_has_its_last_session() {
         let mut stored = Stored { always: true, ..Stored::default() };
         for (directory, mode) in [("/a", "d"), ("/b", "g"), ("/a", "f")] {
             insert(&mut stored, session(directory, mode));
         }
         let read = parse(&serde_json::to_string(&stored).unwrap());
         assert!(read.always && read.sessions.len() == 2);
-        assert_eq!(find(&read, Path::new("/a")), Some(session("/a", "f")));
-        assert_eq!(find(&read, Path::new("/b")), Some(session("/b", "g")));
-        assert_eq!(find(&read, Path::new("/c")), None);
+        assert_eq!(find(&read, Path::new("/a"), None), Some(session("/a", "f")));
+        assert_eq!(find(&read, Path::new("/b"), None), Some(session("/b", "g")));
+        assert_eq!(find(&read, Path::new("/c"), None), None);
+        let mut toy = session("/a", "final");
+        toy.work.tree = Some("/a/toy.glsl".into());
+        insert(&mut stored, toy.clone());
+        assert_eq!(find(&stored, Path::new("/a"), None), Some(session("/a", "f")));
+        assert_eq!(find(&stored, Path::new("/a"), Some(Path::new("/a/toy.glsl"))), Some(toy));
         (0..30).for_each(|index| insert(&mut stored, session(&format!("/{index}"), "d")));
         assert_eq!(stored.sessions.len(), MOST);
     }
@@ -164,7 +180,7 @@ mod tests {
         insert(&mut stored, session("/a", "d"));
         stored.sessions.push(serde_json::json!({ "directory": "/b", "work": 7 }));
         let read = parse(&serde_json::to_string(&stored).unwrap());
-        assert!(find(&read, Path::new("/a")).is_some() && find(&read, Path::new("/b")).is_none());
+        assert!(find(&read, Path::new("/a"), None).is_some() && find(&read, Path::new("/b"), None).is_none());
         assert!(["", "7", "{\"sessions\": 1}"].iter().all(|text| parse(text).sessions.is_empty()));
     }
 

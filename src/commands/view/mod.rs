@@ -110,7 +110,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let state = folder.as_deref().map(RecoveryState::read).unwrap_or_default();
     // A model and options say what is wanted, and after a loss the record does.
     let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
-    let restored = is_plain.then(app::session_to_restore).flatten();
+    let restored = is_plain.then(|| app::session_to_restore(given.tree.as_deref())).flatten();
     let plain = (is_plain && restored.is_none()).then(|| given.clone());
     let work = state.work.clone().or(restored).unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
