@@ -2,7 +2,7 @@
 //! the keyword `specula-files` the model, the shader tree and other files, with paths from the picture's folder.
 
 use std::fmt;
-use std::io::{BufReader, Cursor};
+use std::io::{self, BufReader, Cursor};
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -25,6 +25,8 @@ pub struct Look {
     pub settings: Settings,
     /// The model's file, or the name of a built-in one. `None`: the file does not say.
     pub model: Option<PathBuf>,
+    /// The scene of the model's file. `None`: the file's own.
+    pub scene: Option<usize>,
     /// The shader tree. `None`: the built-in one, or the file does not say.
     pub shaders: Option<PathBuf>,
 }
@@ -43,9 +45,12 @@ pub enum ReadError {
 #[serde(default)]
 struct Files {
     model: Option<PathBuf>,
+    scene: Option<usize>,
     shaders: Option<PathBuf>,
     environment: Option<PathBuf>,
     measured: Option<PathBuf>,
+    /// The folder for which the picture was written, where the files are found if the picture alone was moved.
+    folder: Option<PathBuf>,
 }
 
 impl Files {
@@ -56,16 +61,21 @@ impl Files {
         let model = work.model.clone().unwrap_or_else(|| BUILT_IN[0].into());
         Self {
             model: if is_built_in(&model) { Some(model) } else { place(&model) },
+            scene: work.scene,
             shaders: work.tree.as_deref().and_then(place),
             environment: place(Path::new(&work.settings.environment.name)),
             measured: place(Path::new(&work.settings.measured)),
+            folder: in_full(folder).ok(),
         }
     }
 
     /// The look with these files, resolved from the picture's folder.
     fn look(self, mut settings: Settings, folder: &Path) -> Look {
         // A missing file keeps its name, and whoever opens it reports the error.
-        let found = |path: PathBuf| Some(folder.join(&path)).filter(|there| there.exists()).unwrap_or(path);
+        let found = |path: PathBuf| {
+            let places = [Some(folder), self.folder.as_deref()].into_iter().flatten();
+            places.map(|folder| folder.join(&path)).find(|there| there.exists()).unwrap_or(path)
+        };
         let put = |name: &mut String, path: Option<PathBuf>| {
             if let Some(there) = path.map(found).filter(|there| there.exists()) {
                 *name = there.display().to_string();
@@ -73,7 +83,7 @@ impl Files {
         };
         put(&mut settings.environment.name, self.environment);
         put(&mut settings.measured, self.measured);
-        Look { settings, model: self.model.map(found), shaders: self.shaders.map(found) }
+        Look { settings, model: self.model.map(found), scene: self.scene, shaders: self.shaders.map(found) }
     }
 }
 
@@ -99,8 +109,7 @@ pub(super) fn encode(capture: &Capture, work: &SessionState, folder: &Path) -> R
 /// The relative path from `folder` to a path, with `..` where they part, so that both can be moved together. Unchanged if there
 /// is none.
 fn from_folder(path: &Path, folder: &Path) -> PathBuf {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let (Ok(path_in_full), Ok(folder)) = (path.canonicalize(), folder.canonicalize()) else { return path.to_owned() };
+    let (Ok(path_in_full), Ok(folder)) = (path.canonicalize(), in_full(folder)) else { return path.to_owned() };
     let (to, from): (Vec<_>, Vec<_>) = (path_in_full.components().collect(), folder.components().collect());
     let common = to.iter().zip(&from).take_while(|(a, b)| a == b).count();
     if common == 0 {
@@ -108,6 +117,11 @@ fn from_folder(path: &Path, folder: &Path) -> PathBuf {
     }
     let up = from[common..].iter().map(|_| Component::ParentDir);
     up.chain(to[common..].iter().copied()).collect()
+}
+
+/// A folder in full; an empty path is the working directory.
+fn in_full(folder: &Path) -> io::Result<PathBuf> {
+    if folder.as_os_str().is_empty() { Path::new(".").canonicalize() } else { folder.canonicalize() }
 }
 
 /// Reads a look file, or the texts in a PNG file of Specula.
@@ -119,7 +133,7 @@ pub fn read_look(path: &Path) -> Result<Look, ReadError> {
         let text = regular_file::read_text(path)
             .map_err(|e| ReadError::File(format!("{}: the look file cannot be read: {e}", path.display())))?;
         let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
-        return Ok(Look { settings, model: None, shaders: None });
+        return Ok(Look { settings, model: None, scene: None, shaders: None });
     }
     let (text, files) = decode(path).map_err(|why| ReadError::File(format!("{}: {why}", path.display())))?;
     let settings = Settings::from_toml(&text).map_err(ReadError::Text)?;
@@ -183,7 +197,7 @@ mod tests {
         let work = SessionState { settings: Arc::new(settings.clone()), ..SessionState::default() };
         std::fs::write(path.path(), encode(&capture(), &work, Path::new("")).unwrap()).unwrap();
         let look = read_look(path.path()).unwrap();
-        assert_eq!(look, Look { settings, model: Some(BUILT_IN[0].into()), shaders: None });
+        assert_eq!(look, Look { settings, model: Some(BUILT_IN[0].into()), scene: None, shaders: None });
         assert_eq!(image::open(path.path()).unwrap().into_rgba8().into_raw(), capture().rgba8);
     }
 
@@ -199,6 +213,7 @@ mod tests {
         }
         let mut work = SessionState {
             model: Some(first.join("models/duck.glb")),
+            scene: Some(1),
             tree: Some(first.join("glsl")),
             ..SessionState::default()
         };
@@ -214,6 +229,24 @@ mod tests {
         is(look.model.as_deref(), "models/duck.glb");
         is(look.shaders.as_deref(), "glsl");
         is(Some(Path::new(&look.settings.environment.name)), "models/sky.hdr");
+        assert_eq!(look.scene, Some(1));
+    }
+
+    #[test]
+    fn files_are_found_after_the_picture_alone_moved() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["pictures", "glsl", "elsewhere/deep"] {
+            std::fs::create_dir_all(folder.path().join(name)).unwrap();
+        }
+        let work = SessionState { tree: Some(folder.path().join("glsl")), ..SessionState::default() };
+        let bytes = encode(&capture(), &work, &folder.path().join("pictures")).unwrap();
+        let moved = folder.path().join("elsewhere/deep/look.png");
+        std::fs::write(&moved, bytes).unwrap();
+        let tree = read_look(&moved).unwrap().shaders.unwrap();
+        assert_eq!(tree.canonicalize().unwrap(), folder.path().join("glsl").canonicalize().unwrap());
+        // Without the place, its name stays.
+        std::fs::remove_dir(folder.path().join("glsl")).unwrap();
+        assert_eq!(read_look(&moved).unwrap().shaders, Some("../glsl".into()));
     }
 
     #[test]

@@ -75,6 +75,9 @@ pub struct SessionState {
     pub settings: Arc<Settings>,
     /// The model's file; `None` is the built-in one.
     pub model: Option<PathBuf>,
+    /// The scene of the model's file (`--scene`); `None` is the file's own.
+    #[serde(default)]
+    pub scene: Option<usize>,
     /// The shader tree's folder or file; `None` is the tree in the program.
     pub tree: Option<PathBuf>,
 }
@@ -82,7 +85,7 @@ pub struct SessionState {
 impl SessionState {
     /// Whether both show the same from two places: see [`Settings::is_alike`].
     pub fn is_alike(&self, other: &Self) -> bool {
-        (&self.model, &self.tree) == (&other.model, &other.tree)
+        (&self.model, self.scene, &self.tree) == (&other.model, other.scene, &other.tree)
             && (Arc::ptr_eq(&self.settings, &other.settings) || self.settings.is_alike(&other.settings))
     }
 
@@ -97,6 +100,7 @@ impl SessionState {
         let value = |settings: &Settings| serde_json::to_value(settings).unwrap_or_default();
         differences(&value(&self.settings), &value(&other.settings), "", &mut out);
         out.extend((self.model != other.model).then(|| "the model".to_owned()));
+        out.extend((self.scene != other.scene).then(|| "the scene".to_owned()));
         out.extend((self.tree != other.tree).then(|| "the shader tree".to_owned()));
         out
     }

@@ -45,7 +45,7 @@ settings! {
         ev: f32 = 0.7, limits(-30.0, 30.0) unit(EV100) row("Exposure") negated(-16.0, 16.0, 1);
         /// Curve that maps exposed light to the range of the display.
         tonemap: Tonemap, row("Tone map");
-        /// What is behind the model: none (transparent), env (the environment), or a color as #rrggbb.
+        /// Background behind the model: none (transparent), env (the environment), or a color as #rrggbb.
         background: String = BACKGROUND.into(), row("Background")
             choices(&[("environment", "env"), ("dark gray", BACKGROUND), ("transparent", "none")]);
         /// The values shown as black and white. mode: as the mode stores them; auto: fit to the picture, in modes whose values have a unit

@@ -44,20 +44,22 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
         Some(model) => (model != Path::new(BUILT_IN[0])).then(|| model.clone()),
         None => now.model.clone(),
     };
-    let loads = is_other(model.as_deref(), now.model.as_deref());
+    let scene = if look.model.is_some() { look.scene } else { now.scene };
+    let loads = scene != now.scene || is_other(model.as_deref(), now.model.as_deref());
     let tree = look.shaders.or(now.tree);
-    go_to(state, engine, SessionState { settings: Arc::new(look.settings), model: model.clone(), tree });
+    go_to(state, engine, SessionState { settings: Arc::new(look.settings), model: model.clone(), scene, tree });
     loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
 }
 
 /// Shows other work. The camera is that of the work, and not one that frames the model.
-fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model, tree }: SessionState) {
+fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model, scene, tree }: SessionState) {
     let now = state.session_state();
     if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
         find_tree(state, engine, &full_path(&tree));
     }
     state.session.settings = Arc::unwrap_or_clone(settings);
-    if is_other(model.as_deref(), now.model.as_deref()) {
+    if scene != now.scene || is_other(model.as_deref(), now.model.as_deref()) {
+        state.load_options.scene = scene;
         state.model.keeps_camera = true;
         load_model(state, engine, model);
     }

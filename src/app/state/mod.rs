@@ -375,7 +375,8 @@ impl State {
     pub(in crate::app) fn session_state(&self) -> SessionState {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.location().map(Path::to_owned);
-        SessionState { settings: self.session.shared_settings(), model: model.clone(), tree }
+        let scene = self.load_options.scene;
+        SessionState { settings: self.session.shared_settings(), model: model.clone(), scene, tree }
     }
 
     /// Whether the shaders have errors.

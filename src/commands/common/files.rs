@@ -50,6 +50,7 @@ impl Common {
                     return gone("model", &file, "MODEL");
                 }
                 *model = Some(file);
+                self.scene = self.scene.or(look.scene);
             }
             _ => {}
         }

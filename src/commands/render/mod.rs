@@ -349,6 +349,7 @@ fn write_picture(headless: &mut Headless, args: &Args, capture: &Capture, out: &
     let work = SessionState {
         settings: headless.session().shared_settings(),
         model: args.model.clone(),
+        scene: args.common.load_options().scene,
         tree: args.common.source()?.location().map(Path::to_owned),
     };
     picture::write(capture, &work, out).map_err(Failure::Input)

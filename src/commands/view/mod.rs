@@ -12,6 +12,7 @@ use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
 use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, RecoveryState, SessionState};
+use specula::scene::LoadOptions;
 use specula::shader::Source;
 
 use super::Failure;
@@ -104,6 +105,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let given = SessionState {
         settings: Arc::new(args.common.settings_of_window()?),
         model: args.model,
+        scene: args.common.load_options().scene,
         tree: source.location().map(Path::to_owned),
     };
     let follows_lights = args.common.leaves_lights_open();
@@ -140,7 +142,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),
         at: state.window.and_then(|window| window.at),
         compare,
-        load_options: args.common.load_options(),
+        load_options: LoadOptions { scene: work.scene, ..args.common.load_options() },
         validation: args.common.validate,
         device: args.common.device,
         control,

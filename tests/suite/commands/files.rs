@@ -8,9 +8,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::mpsc::channel;
 
-use crate::support::open_image;
 use crate::support::process::{PATIENCE, finish, run, specula};
+use crate::support::{glb, open_image};
 use notify::{RecursiveMode, Watcher as _};
+use serde_json::json;
 use tempfile::TempDir;
 
 /// Arguments of a `render` that is fast.
@@ -32,6 +33,27 @@ fn with_old_picture() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("old.png"), "old").unwrap();
     directory
+}
+
+#[test]
+fn a_picture_knows_its_scene_and_finds_its_model_from_elsewhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let (mut json, bin) = glb::document(&glb::quad(1.0), &glb::gray());
+    json["scenes"].as_array_mut().unwrap().push(json!({ "nodes": [1] }));
+    json["nodes"].as_array_mut().unwrap().push(json!({ "mesh": 0, "rotation": [0.0, 0.0, 0.38, 0.92] }));
+    fs::write(here.join("two.glb"), glb::container(&json, &bin)).unwrap();
+    let render = |args: &[&str], out: &str| {
+        run(here, &[&["render", "--env", "none", "--size", "48x32", "--out", out], args].concat()).expect(0, &[]);
+        open_image(&here.join(out))
+    };
+    let (first, second) = (render(&["two.glb"], "first.png"), render(&["two.glb", "--scene", "1"], "second.png"));
+    assert!(first != second, "both scenes look alike");
+    assert!(render(&["--look", "second.png"], "again.png") == second, "another scene");
+    assert!(render(&["--look", "second.png", "--scene", "0"], "again.png") != second, "the option is ignored");
+    fs::create_dir_all(here.join("far/away")).unwrap();
+    fs::rename(here.join("second.png"), here.join("far/away/second.png")).unwrap();
+    assert!(render(&["--look", "far/away/second.png"], "again.png") == second, "another picture from elsewhere");
 }
 
 #[test]
