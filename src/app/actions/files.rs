@@ -6,10 +6,12 @@ use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
 use crate::app::source_line::stop;
 use crate::app::state::State;
+use crate::settings::Settings;
 use crate::shader::{Change, Source};
 use crate::threads::Message;
 use std::path::Path;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Loads a model. The current model stays until the new one is ready.
@@ -24,6 +26,12 @@ pub(in crate::app) fn begin_loading(state: &mut State, path: Option<PathBuf>) {
     state.model.files = state.model.files.iter().cloned().chain(more).collect();
     state.model.requested = path;
     state.model.loading = true;
+}
+
+/// Notes the files that the settings name and `before` does not. They are read before the next frame is final.
+pub(in crate::app) fn begin_reading(state: &mut State, before: &Arc<Settings>) {
+    let picture = &mut state.picture;
+    picture.shows_settings &= !state.opened.begin(before, &state.session.settings, picture.shows_settings);
 }
 
 /// Compiles everything again. A build that failed, for example without memory, is tried again.

@@ -8,7 +8,7 @@ use super::fields::{Fields, needs};
 use super::program::SAY;
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
-use crate::app::actions::files::{edit, find_tree, load_model};
+use crate::app::actions::files::{begin_reading, edit, find_tree, load_model};
 use crate::app::actions::sessions::restore_session;
 use crate::app::dialog;
 use crate::app::editor::Place;
@@ -160,9 +160,9 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::Model(path)
         }
         Open::Environment(path) => {
-            let name = path.display().to_string();
-            state.opened.environment = Some((name.clone(), state.session.shared_settings()));
-            state.session.settings.environment.name = name;
+            let before = state.session.shared_settings();
+            state.session.settings.environment.name = path.display().to_string();
+            begin_reading(state, &before);
             Until::SHOWN
         }
         Open::Tree(path) => {
@@ -176,9 +176,10 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::Look
         }
         Open::Measured(path) => {
-            state.opened.measured = Some((path.clone(), state.session.shared_settings()));
+            let before = state.session.shared_settings();
             state.session.settings.measured = path.display().to_string();
             state.session.settings.mode = "measured".into();
+            begin_reading(state, &before);
             Until::SHOWN
         }
     })

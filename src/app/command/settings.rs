@@ -11,6 +11,7 @@ use super::fields::{self, Fields};
 use super::shortcut::Shortcut;
 use super::spec::{Command, Spec, Until};
 use crate::app::actions::edits::take_back;
+use crate::app::actions::files::begin_reading;
 use crate::app::control::short;
 use crate::app::state::State;
 use crate::message::did_you_mean;
@@ -102,7 +103,8 @@ pub(super) fn adopt(state: &mut State, settings: Settings) -> Result<(), String>
     // A stage that is pending may declare a name that is not known yet.
     let is_complete = shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
     let before = state.session.problems(is_complete);
-    state.history.record(&state.session.shared_settings(), false);
+    let shared = state.session.shared_settings();
+    state.history.record(&shared, false);
     let old = std::mem::replace(&mut state.session.settings, settings);
     let mut problems = state.session.problems(is_complete).into_iter().filter(|problem| !before.contains(problem));
     let problem = problems.next().or_else(|| {
@@ -121,6 +123,7 @@ pub(super) fn adopt(state: &mut State, settings: Settings) -> Result<(), String>
         state.session.settings = old;
         return Err(problem);
     }
+    begin_reading(state, &shared);
     state.history.record(&state.session.shared_settings(), false);
     Ok(())
 }

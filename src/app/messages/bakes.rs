@@ -17,6 +17,8 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
         BakeMessage::Progress(number, done, next) => engine.threads.baker.set_progress(number, done, next),
         BakeMessage::Environment(number, result) => {
             let Some(key) = engine.threads.baker.ended(number) else { return };
+            // A command that waits may be about another environment.
+            let is_chosen = state.session.settings.environment.name == key.name;
             state.opened.end_environment(&key.name, result.is_ok(), &mut state.session.settings);
             match result {
                 // The shaders are others, and do the same.
@@ -39,7 +41,9 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
                     }
                     state.recent.forget(Kind::Environment, Path::new(&key.name));
                     engine.resources.set_environment(key, None);
-                    state.waiting.fail(&error.to_string());
+                    if is_chosen {
+                        state.waiting.fail(&error.to_string());
+                    }
                     state.say(format!("{error}\nThe previous environment stays."));
                 }
             }
@@ -58,9 +62,12 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
         }
         BakeMessage::Measured(key, result) => {
             if engine.threads.baker.has_read(&key) {
+                let is_chosen = Path::new(&state.session.settings.measured) == key.path;
                 state.opened.end_measured(&key.path, result.is_ok(), &mut state.session.settings);
                 let result = result.map_err(|message| {
-                    state.waiting.fail(&message);
+                    if is_chosen {
+                        state.waiting.fail(&message);
+                    }
                     state.say(message);
                 });
                 engine.resources.set_measured(key, result.ok());

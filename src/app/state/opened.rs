@@ -8,11 +8,27 @@ use crate::settings::Settings;
 /// Files whose settings are set, and that are still being read, with the settings before.
 #[derive(Default)]
 pub(in crate::app) struct Opened {
-    pub(in crate::app) environment: Option<(String, Arc<Settings>)>,
-    pub(in crate::app) measured: Option<(PathBuf, Arc<Settings>)>,
+    environment: Option<(String, Arc<Settings>)>,
+    measured: Option<(PathBuf, Arc<Settings>)>,
 }
 
 impl Opened {
+    /// Notes the files that `now` names and `before` does not. `is_shown`: whether the picture shows `before`. If it does not, a file of
+    /// `before` may be missing, too, and the settings before that file count. Returns whether there are such files.
+    pub(in crate::app) fn begin(&mut self, before: &Arc<Settings>, now: &Settings, is_shown: bool) -> bool {
+        if now.environment.name != before.environment.name {
+            let earlier = self.environment.take().filter(|(name, _)| !is_shown && *name == before.environment.name);
+            let before = earlier.map_or_else(|| before.clone(), |(_, earlier)| earlier);
+            self.environment = Some((now.environment.name.clone(), before));
+        }
+        if now.measured != before.measured {
+            let earlier = self.measured.take().filter(|(path, _)| !is_shown && *path == Path::new(&before.measured));
+            let before = earlier.map_or_else(|| before.clone(), |(_, earlier)| earlier);
+            self.measured = Some((now.measured.clone().into(), before));
+        }
+        now.environment.name != before.environment.name || now.measured != before.measured
+    }
+
     /// Takes an environment that was read, or that could not be: then the former one is set again.
     pub(in crate::app) fn end_environment(&mut self, name: &str, is_good: bool, settings: &mut Settings) {
         let opened = self.environment.take_if(|(opened, _)| opened == name);
@@ -41,10 +57,9 @@ mod tests {
     fn a_file_that_cannot_be_read_changes_no_setting() {
         let (before, mut now, mut opened) = (Settings::default(), Settings::default(), Opened::default());
         let open = |opened: &mut Opened, now: &mut Settings| {
-            opened.measured = Some(("a.bin".into(), Arc::new(before.clone())));
-            opened.environment = Some(("sky.hdr".into(), Arc::new(before.clone())));
             (now.measured, now.mode) = ("a.bin".into(), "measured".into());
             now.environment.name = "sky.hdr".into();
+            opened.begin(&Arc::new(before.clone()), now, true);
         };
         open(&mut opened, &mut now);
         opened.end_measured(Path::new("a.bin"), false, &mut now);
@@ -57,5 +72,19 @@ mod tests {
         opened.end_measured(Path::new("a.bin"), false, &mut now);
         opened.end_environment("sky.hdr", false, &mut now);
         assert_eq!((now.measured.as_str(), now.environment.name.as_str()), ("a.bin", "sky.hdr"));
+    }
+
+    #[test]
+    fn two_files_that_cannot_be_read_lead_back_to_the_last_that_could() {
+        let (good, mut first, mut opened) = (Settings::default(), Settings::default(), Opened::default());
+        first.environment.name = "no.hdr".into();
+        let mut second = first.clone();
+        second.environment.name = "nor.hdr".into();
+        opened.begin(&Arc::new(good.clone()), &first, true);
+        opened.begin(&Arc::new(first), &second, false);
+        opened.end_environment("no.hdr", false, &mut second);
+        assert_eq!(second.environment.name, "nor.hdr");
+        opened.end_environment("nor.hdr", false, &mut second);
+        assert_eq!(second, good);
     }
 }

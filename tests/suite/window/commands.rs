@@ -121,6 +121,15 @@ fn a_program_drives_the_window_by_standard_input() {
         let message = running.refused(command.clone());
         assert!(message.contains(part), "{command}: {message}");
     }
+    // Neither do files that cannot be read, and an error is that of its own command.
+    let environment = running.done(json!({"command": "get", "path": "environment.name"}));
+    for file in ["no.hdr", "nor.hdr", "neither.hdr"] {
+        let message = running.refused(json!({"command": "set", "values": {"environment.name": file}}));
+        assert!(message.starts_with(file), "{message}");
+        let message = running.refused(json!({"command": "open", "environment": format!("open-{file}")}));
+        assert!(message.starts_with("open-"), "{message}");
+    }
+    assert_eq!(running.done(json!({"command": "get", "path": "environment.name"})), environment);
     running.say("{\"command\"");
     running.until("the answer to no JSON", |event| event["event"] == "error" && event["id"].is_null());
     running.say(&"x".repeat(3 << 20));
