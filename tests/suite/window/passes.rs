@@ -70,7 +70,7 @@ fn a_single_file_is_a_tree() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = 0.5 * texture(iChannel0, p / 64.0); }\n";
     std::fs::write(&toy, text).unwrap();
     let path = toy.to_str().unwrap().to_owned();
-    let mut viewer = Viewer::open(tree, &["--shaders", &path]);
+    let mut viewer = Viewer::open(tree, &["sphere-grid", "--shaders", &path]);
     viewer.running.event("ready");
     let noise = viewer.screenshot();
 
@@ -96,6 +96,12 @@ fn a_single_file_is_a_tree() {
     // The buffer is followed from now on.
     std::fs::write(&buffer, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 0.0, 1.0, 1.0); }\n").unwrap();
     viewer.running.reload(true);
-    assert!(viewer.screenshot() != green, "the edit of the buffer does not show");
+    let blue = viewer.screenshot();
+    assert!(blue != green, "the edit of the buffer does not show");
+    // The chart, which the toy covers, shows no names of its spheres.
+    let pixels = (blue.width() * blue.height()) as usize;
+    viewer.until_screen("a picture without names", |screen| {
+        screen.pixels().filter(|pixel| *pixel == blue.get_pixel(0, 0)).count() >= pixels
+    });
     viewer.quit();
 }

@@ -106,7 +106,8 @@ fn in_picture(
     }
     gizmo::show(egui, state, &mut own.gizmo, picture, commands);
     grid::show(egui, (&state.session, &state.grid), commands.sight.preview.as_deref(), picture);
-    let has_labels = with_panels && context.readings.legend.is_some() && !state.grid.is_on();
+    let draws_model = state.shown().is_some_and(|shown| shown.pipelines.draws_model);
+    let has_labels = with_panels && draws_model && context.readings.legend.is_some() && !state.grid.is_on();
     if let Some(model) = state.session.model().filter(|_| has_labels) {
         labels::show(egui, &mut own.labels, model, &state.session.settings.camera, picture);
     }
