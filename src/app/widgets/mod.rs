@@ -10,6 +10,11 @@ mod sight;
 pub(in crate::app) mod spoken;
 pub(in crate::app) mod theme;
 
+/// A unit with raised powers: "cd/m²" of "cd/m^2".
+pub(in crate::app) fn with_powers(unit: &str) -> String {
+    unit.replace("^2", "²").replace("^3", "³")
+}
+
 /// A count with its noun, such as "1 draw" or "2 draws".
 pub(in crate::app) fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })

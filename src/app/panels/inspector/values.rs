@@ -9,6 +9,7 @@ use crate::app::widgets::rows::option_text;
 use crate::app::widgets::search::Words;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, QUIET, small_font, small_mono_font};
+use crate::app::widgets::with_powers;
 use crate::shader::{Mode, PixelValue};
 
 /// Height of a row, points.
@@ -109,7 +110,7 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
         () if is_old => QUIET.color(),
         () => ui.visuals().text_color(),
     };
-    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), small_font(), QUIET.color());
+    let unit = ui.painter().layout_no_wrap(with_powers(&mode.unit), small_font(), QUIET.color());
     painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET.color());
     let numbers = painter.layout_no_wrap(text::numbers(mode, &value), small_mono_font(), color);
     let left_of_numbers = rect.max.x - UNIT - numbers.size().x;

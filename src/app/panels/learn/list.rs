@@ -1,5 +1,6 @@
 //! The list of all exercises.
 
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
 
 use super::mark::paint_mark;
@@ -60,10 +61,12 @@ fn row(ui: &mut Ui, exercise: &Exercise, is_solved: bool, is_next: bool) -> Resp
         let level = painter.text(right, Align2::RIGHT_CENTER, level, small_font(), QUIET.color());
         let color = if is_next { ACCENT.color() } else { visuals.text_color() };
         let left = rect.min.x + MARK;
-        let painter = painter.with_clip_rect(rect.with_max_x(level.min.x - 6.0).intersect(painter.clip_rect()));
-        painter.text(pos2(left, middle), Align2::LEFT_CENTER, title, body_font(), color);
+        let mut job = LayoutJob::simple_singleline(title, body_font(), color);
+        job.wrap = TextWrapping::truncate_at_width((level.min.x - 6.0 - left).max(0.0));
+        let title = painter.layout_job(job);
+        painter.galley(pos2(left, middle - 0.5 * title.size().y), title, color);
     }
-    let hover = format!("Open the exercise: {}\nDifficulty: {level}", exercise.idea);
+    let hover = format!("{}\nOpen the exercise: {}\nDifficulty: {level}", exercise.title, exercise.idea);
     response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hover)
 }
 

@@ -9,6 +9,7 @@ use super::swatches;
 use crate::app::readings::{LegendOf, Readout};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon, small_mono, small_mono_font};
+use crate::app::widgets::with_powers;
 use crate::frame::{Limits, legend_limits, short};
 use crate::interface::COLORMAP_STEPS;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings, choice_name};
@@ -117,7 +118,7 @@ pub(in crate::app) fn show(
 fn value(ui: &mut Ui, Readout { side, value, unit, at: (x, y) }: &Readout, width: f32) {
     let mono = TextStyle::Monospace.resolve(ui.style());
     ui.label(wrapped(ui, value, mono, ui.visuals().text_color(), width));
-    let parts = [side.clone().unwrap_or_default(), unit.trim().to_owned(), format!("at {x}, {y}")];
+    let parts = [side.clone().unwrap_or_default(), with_powers(unit.trim()), format!("at {x}, {y}")];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     ui.label(wrapped(ui, &parts.join("  ·  "), small_mono_font(), QUIET.color(), width));
 }
@@ -127,7 +128,8 @@ fn heading(ui: &mut Ui, legend: &Legend<'_>, width: f32) {
     let (body, strong) = (TextStyle::Body.resolve(ui.style()), ui.visuals().strong_text_color());
     // The mouse may be on another mode of the grid.
     let title = legend.title.filter(|title| title.starts_with(&legend.of.mode.name)).unwrap_or(&legend.of.mode.name);
-    let unit = if legend.of.mode.unit.is_empty() { String::new() } else { format!("  ·  {}", legend.of.mode.unit) };
+    let unit = with_powers(&legend.of.mode.unit);
+    let unit = if unit.is_empty() { unit } else { format!("  ·  {unit}") };
     let title = wrapped(ui, &format!("{title}{unit}"), body, strong, width);
     ui.label(title).on_hover_text(&legend.of.mode.doc);
 }
