@@ -5,6 +5,7 @@ pub(super) mod all;
 mod baking;
 mod camera;
 mod capture;
+mod clock;
 mod environment;
 pub(super) mod expression;
 mod inspector;

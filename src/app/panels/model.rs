@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
+use super::clock;
 use crate::app::command::file::{OPEN, Open};
+use crate::app::command::playback::{PLAYBACK, PlaybackFields};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::model::ModelStatus;
+use crate::app::state::playback::Playback;
 use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
 use crate::app::widgets::theme::{QUIET, WARNING};
@@ -27,7 +30,16 @@ pub(super) static PANEL: PanelSpec =
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let recent = context.state.recent.of(Kind::Model);
     let Commands { settings, list, .. } = commands;
-    show(ui, settings, &context.model(), &context.state.model, recent, list);
+    let model = context.model();
+    show(ui, settings, &model, &context.state.model, recent, list);
+    if !model.motion.clips.is_empty() {
+        let asked = animation(ui, settings, &model, &context.state.playback);
+        list.extend(asked.map(|asked| PLAYBACK.with(asked)));
+    }
+    place(ui, settings);
+    override_material(ui, settings);
+    statistics(ui, &model, &context.state.model);
+    warnings(ui, &model);
 }
 
 fn show(
@@ -50,12 +62,10 @@ fn show(
             })
         });
     }
-    if !model.motion.clips.is_empty() {
-        animation(ui, settings, model);
-    }
-    place(ui, settings);
-    override_material(ui, settings);
-    statistics(ui, model, status);
+}
+
+/// The warnings of the loader.
+fn warnings(ui: &mut Ui, model: &Model) {
     for warning in model.warnings.iter() {
         ui.label(RichText::new(warning).small().color(WARNING));
     }
@@ -121,9 +131,17 @@ fn channel(ui: &mut Ui, settings: &mut Settings, path: &str) -> bool {
     true
 }
 
-/// The clips that play, and how.
-fn animation(ui: &mut Ui, settings: &mut Settings, model: &Model) {
+/// The clips that play, and how. Returns what the user changes of the clock.
+fn animation(ui: &mut Ui, settings: &mut Settings, model: &Model, playback: &Playback) -> Option<PlaybackFields> {
     heading(ui, "Animation");
+    let playing = model.playing(&settings.animation, 0.0);
+    let clips = playing.iter().filter_map(|playing| model.motion.clips.get(playing.clip));
+    let length_s = clips.map(|clip| clip.duration_s).fold(0.0, f32::max);
+    let mut asked = None;
+    if length_s > 0.0 {
+        asked = clock::buttons(ui, playback);
+        asked = clock::scrub(ui, playback, length_s).or(asked);
+    }
     group(ui, settings, "animation", |ui, settings, path| {
         if path != "animation.clips" {
             return false;
@@ -141,6 +159,7 @@ fn animation(ui: &mut Ui, settings: &mut Settings, model: &Model) {
         });
         true
     });
+    asked
 }
 
 /// Where the model stands.

@@ -5,17 +5,16 @@ use std::collections::BTreeSet;
 
 use egui::{CollapsingHeader, RichText, Ui};
 
+use super::clock;
 use super::parameters::{is_true, show_constant, show_parameter};
-use crate::app::command::playback::{PLAYBACK, PlaybackFields};
+use crate::app::command::playback::PLAYBACK;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
-use crate::app::state::playback::Playback;
 use crate::app::state::shaders::effects::{is_shipped, of_effect, of_switch, own, switches};
 use crate::app::widgets::rows::{INITIAL, Row, check, set_option, skips};
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::{QUIET, icon};
+use crate::app::widgets::theme::QUIET;
 use crate::settings::Settings;
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
 
@@ -28,7 +27,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let Commands { settings, list, .. } = commands;
     let shaders = &*context.shaders;
     if context.state.is_animated() {
-        let asked = clock(ui, &context.state.playback);
+        let asked = clock::buttons(ui, &context.state.playback);
         list.extend(asked.map(|asked| PLAYBACK.with(asked)));
     }
     let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());
@@ -148,29 +147,4 @@ fn show_parameters<'a>(
             show_parameter(ui, parameter, &mut settings.shader, Some(label));
         }
     }
-}
-
-/// The clock of animated shaders. Returns what the user changes.
-fn clock(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields> {
-    let mut asked = None;
-    ui.horizontal_wrapped(|ui| {
-        let label = if playback.paused { "Play" } else { "Pause" };
-        if ui.button(label).on_hover_text("Run or stop frame.time_s").clicked() {
-            asked = Some(PlaybackFields { paused: Some(!playback.paused), ..PlaybackFields::default() });
-        }
-        if ui.button("Step").on_hover_text("Advance by 1/60 s").clicked() {
-            asked = Some(PlaybackFields { step: true, ..PlaybackFields::default() });
-        }
-        let restart = named(ui.button(icon::SKIP_BACK), "From the start");
-        if restart.on_hover_text("From the start, at 0 s").clicked() {
-            asked = Some(PlaybackFields { restart: true, ..PlaybackFields::default() });
-        }
-        let mut speed = playback.speed;
-        let drag = egui::DragValue::new(&mut speed).range(0.0..=10.0).speed(0.01).suffix("×");
-        if ui.add(drag).on_hover_text("Playback speed").changed() {
-            asked = Some(PlaybackFields { speed: Some(speed), ..PlaybackFields::default() });
-        }
-        ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
-    });
-    asked
 }
