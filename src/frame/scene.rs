@@ -116,7 +116,11 @@ impl Scene {
         if *self.playing == *playing {
             return Self { is_animated, is_playing, ..self.clone() };
         }
-        let model: Arc<Model> = self.loaded.at(&playing, self.look.place.transform()).into();
+        let place = self.look.place.transform();
+        let are_same = |(a, b): (&Playing, &Playing)| (a.clip, a.weight) == (b.clip, b.weight);
+        let is_same_mix = self.playing.len() == playing.len() && self.playing.iter().zip(&playing).all(are_same);
+        let extent = if is_same_mix { self.model.whole_extent() } else { self.loaded.extent(&playing, place) };
+        let model = Arc::new(self.loaded.posed(&self.loaded.pose_at(&playing, place).into(), &extent));
         let has_same_materials = model.pose.has_same_materials(&self.model.pose);
         let scene = Self { model, playing: playing.into(), is_animated, is_playing, ..self.clone() };
         if has_same_materials {
@@ -284,7 +288,7 @@ impl Scene {
 /// The materials that the settings or animations change, by their indices; empty if they change none.
 fn changed(model: &Model, look: &Look) -> Arc<[Option<Material>]> {
     let channels = look.material.as_ref().filter(|material| !material.enabled);
-    let moved: BTreeMap<usize, Material> = moved_materials(model, &model.pose.values).into_iter().collect();
+    let moved: BTreeMap<usize, Material> = moved_materials(&model.materials, &model.pose.values).into_iter().collect();
     if channels.is_none() && look.materials.is_empty() && moved.is_empty() {
         return Arc::default();
     }

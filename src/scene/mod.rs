@@ -3,6 +3,7 @@
 //! [`load`] turns a glTF file into a [`Model`] and checks all indices and numbers, so that later code may index and divide
 //! without checks. An error in the file becomes a [`LoadError`] or a warning of the model.
 
+mod bounds;
 mod built_in;
 mod bvh;
 mod camera;
@@ -19,11 +20,13 @@ mod measured;
 pub mod mips;
 mod model;
 mod motion;
+mod objects;
 mod outline;
 mod pack;
 mod pick;
 mod pictures;
 mod placed;
+mod posing;
 mod replace;
 mod texture_source;
 mod visibility;
@@ -42,12 +45,11 @@ pub use lights::{light_count, light_direction, lights, rectangle_corners, view_o
 pub use load_options::{Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
-pub use motion::{
-    Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Skin, Target, moved_materials,
-};
+pub use motion::{Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Skin, Target};
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
+pub use posing::moved_materials;
 pub use replace::{material_factors, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};
 

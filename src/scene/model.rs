@@ -1,13 +1,14 @@
 //! The model as plain data, which a loader fills and `render` uploads. No Vulkan, no file handles.
 
-use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 
+pub use super::bounds::Bounds;
 pub use super::material::*;
 use super::motion::{Deformation, Motion, Pose};
+pub use super::objects::*;
 pub use crate::interface::Vertex;
 use crate::message::did_you_mean;
 
@@ -77,57 +78,6 @@ pub struct Contents {
     pub skins: usize,
     /// Extensions that it uses.
     pub extensions: Vec<String>,
-}
-
-/// Axis-aligned bounds in world space, meters. Empty when `min > max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Smallest corner.
-    pub min: Vec3,
-    /// Largest corner.
-    pub max: Vec3,
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY }
-    }
-}
-
-impl Bounds {
-    /// Grows to contain `point`.
-    pub fn include(&mut self, point: Vec3) {
-        self.min = self.min.min(point);
-        self.max = self.max.max(point);
-    }
-
-    /// Whether the bounds contain no point.
-    pub fn is_empty(&self) -> bool {
-        !self.min.cmple(self.max).all()
-    }
-
-    /// The eight corners.
-    pub fn corners(&self) -> [Vec3; 8] {
-        let pick = |bit: usize, min: f32, max: f32| if bit == 0 { min } else { max };
-        std::array::from_fn(|i| {
-            Vec3::new(
-                pick(i & 1, self.min.x, self.max.x),
-                pick(i & 2, self.min.y, self.max.y),
-                pick(i & 4, self.min.z, self.max.z),
-            )
-        })
-    }
-
-    /// Center of the box, or the origin if empty.
-    pub fn center(&self) -> Vec3 {
-        if self.is_empty() { Vec3::ZERO } else { (self.min + self.max) * 0.5 }
-    }
-
-    /// Radius of the sphere around the box, or 1 if the box is empty or a single point.
-    pub fn radius(&self) -> f32 {
-        let radius = if self.is_empty() { 0.0 } else { (self.max - self.min).length() * 0.5 };
-        if radius > 0.0 && radius.is_finite() { radius } else { 1.0 }
-    }
 }
 
 /// How indices form primitives. The loader turns a line loop into a strip. It turns a triangle strip or fan into a list if
@@ -258,76 +208,4 @@ pub struct Image {
     pub height: u32,
     /// `width * height * 4` bytes. The upload frees them, so this is empty afterwards.
     pub rgba8: Vec<u8>,
-}
-
-/// Kind of a light, which determines the unit of its intensity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightKind {
-    /// Parallel light; intensity in lux.
-    Directional,
-    /// Intensity in candela.
-    Point,
-    /// Intensity in candela; cone half-angles in radians.
-    Spot {
-        /// Angle where the falloff starts.
-        inner: f32,
-        /// Angle where the falloff ends.
-        outer: f32,
-    },
-}
-
-/// A punctual light in world space.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Light {
-    /// Name, or empty.
-    pub name: Arc<str>,
-    /// Kind and cone.
-    pub kind: LightKind,
-    /// World position, meters.
-    pub position: Vec3,
-    /// Unit vector along which the light shines.
-    pub direction: Vec3,
-    /// Linear RGB times candela or lux.
-    pub intensity: Vec3,
-    /// Distance in meters beyond which the light has no effect; `None` is unlimited.
-    pub range: Option<f32>,
-}
-
-/// A camera of the model in world space.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Camera {
-    /// Name, or empty.
-    pub name: Arc<str>,
-    /// Position.
-    pub eye: Vec3,
-    /// View direction, unit.
-    pub forward: Vec3,
-    /// Up direction, unit.
-    pub up: Vec3,
-    /// Its projection.
-    pub lens: Lens,
-}
-
-/// The projection of a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lens {
-    /// A vertical field of view in radians, above 0 and below pi.
-    Perspective {
-        /// The angle.
-        fovy: f32,
-    },
-    /// Parallel rays.
-    Orthographic {
-        /// Height of the visible area, meters, above 0.
-        height: f32,
-    },
-}
-
-impl fmt::Display for Lens {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Perspective { fovy } => write!(f, "{:.0}\u{b0}", fovy.to_degrees()),
-            Self::Orthographic { height } => write!(f, "{height} m"),
-        }
-    }
 }

@@ -1,12 +1,9 @@
 //! What joints and morph targets do to the vertices of a primitive.
 
-use std::borrow::Cow;
-
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::interface::Vertex;
-use crate::scene::model::{Instance, Model, Primitive};
 
 /// A joint that moves a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -134,21 +131,4 @@ fn normals_from(linear: Mat3) -> Mat3 {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
     Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
-}
-
-impl Model {
-    /// The joints and the weights of an instance. Both are empty for one that keeps its shape.
-    pub fn deformers(&self, instance: &Instance) -> (&[Mat4], &[f32]) {
-        let deformation = self.primitives[instance.primitive].deformation.as_ref();
-        deformation.map_or((&[], &[]), |deformation| self.pose.deformers(instance, deformation))
-    }
-
-    /// The vertices of an instance as joints and morph targets have moved them, in the space that `world_from_object` leaves.
-    pub fn vertices(&self, instance: &Instance) -> Cow<'_, [Vertex]> {
-        let Primitive { vertices, deformation, .. } = &self.primitives[instance.primitive];
-        match (deformation, self.deformers(instance)) {
-            (None, _) | (Some(_), (&[], &[])) => Cow::Borrowed(vertices),
-            (Some(deformation), (joints, weights)) => Cow::Owned(deformation.apply(vertices, joints, weights)),
-        }
-    }
 }

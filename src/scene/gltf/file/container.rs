@@ -6,7 +6,7 @@ use gltf::json;
 
 use crate::scene::error::Problem;
 use crate::scene::extensions::EXTENSIONS;
-use crate::scene::gltf::motion::ANIMATION_POINTER;
+use crate::scene::gltf::motion::pointers;
 use crate::scene::gltf::motion::raw::Raw;
 use crate::scene::gltf::{compression, instancing, nodes};
 
@@ -14,7 +14,7 @@ use crate::scene::gltf::{compression, instancing, nodes};
 const SUPPORTED: &[&str] = &[
     instancing::EXTENSION,
     "EXT_texture_webp",
-    ANIMATION_POINTER,
+    pointers::EXTENSION,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",

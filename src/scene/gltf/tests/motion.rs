@@ -391,7 +391,7 @@ fn pointers_move_materials_lights_and_cameras() {
     assert_eq!(half.lights[0].intensity, Vec3::new(2.0, 1.0, 0.0));
     assert_eq!(half.lights[0].kind, crate::scene::LightKind::Spot { inner: 0.0, outer: 0.75 });
     assert_eq!(half.cameras[0].lens, crate::scene::Lens::Perspective { fovy: 1.0 });
-    let moved = crate::scene::moved_materials(&half, &half.pose.values);
+    let moved = crate::scene::moved_materials(&half.materials, &half.pose.values);
     let [(1, material)] = moved.as_slice() else { panic!("{moved:?}") };
     assert_eq!(material.numbers.base_color_factor, [0.5, 0.25, 0.125, 0.75]);
     assert_eq!(material.numbers.roughness_factor, 0.25);
@@ -399,4 +399,19 @@ fn pointers_move_materials_lights_and_cameras() {
     assert_eq!(material.numbers.emissive_factor, [2.0, 1.0, 0.0]);
     let transform = material.textures[0].unwrap().uv_from_mesh;
     assert_eq!(transform.translation, glam::Vec2::new(0.5, 0.25));
+}
+
+#[test]
+fn bounds_hold_for_clips_that_play_together() {
+    let mut builder = Builder::triangle();
+    builder.json["nodes"] = json!([{ "children": [1] }, { "mesh": 0 }]);
+    let values = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0];
+    animate(&mut builder, &[0.0, 1.0], &[(json!({ "node": 0, "path": "translation" }), "LINEAR", "VEC3", &values)]);
+    animate(&mut builder, &[0.0, 2.0], &[(json!({ "node": 1, "path": "translation" }), "LINEAR", "VEC3", &values)]);
+    let model = builder.model();
+    let both = [0, 1].map(|clip| Playing { clip, weight: 1.0, time_s: 0.0 });
+    assert_eq!(model.at(&both[..1], None).bounds.max.x, 5.0);
+    assert!((8.5..9.1).contains(&model.at(&both, None).bounds.max.x), "{:?}", model.at(&both, None).bounds);
+    let half = [Playing { weight: 0.5, ..both[0] }];
+    assert_eq!(model.at(&half, None).bounds.max.x, 3.0);
 }

@@ -1,8 +1,8 @@
 //! Which clips play, by the settings.
 
-use super::pose::Playing;
 use crate::message::did_you_mean;
 use crate::scene::model::Model;
+use crate::scene::motion::Playing;
 use crate::settings::AnimationSettings;
 
 /// All clips.
