@@ -1,6 +1,6 @@
 //! Tells what a file or folder is, by its ending and content, so that a wrong one is answered with what to do with it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::shader::is_specula_tree;
 
@@ -10,7 +10,7 @@ const MOST_LISTED: usize = 5000;
 /// The use that Specula has for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// glTF: `.gltf`, `.glb`.
+    /// glTF: `.gltf`, `.glb`, or a `.zip` with one.
     Model,
     /// `.hdr`, `.exr`.
     Environment,
@@ -40,7 +40,7 @@ impl FileKind {
             return if is_specula_tree(path) { Self::ShaderTree } else { Self::Folder };
         }
         match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
-            "gltf" | "glb" => Self::Model,
+            "gltf" | "glb" | "zip" => Self::Model,
             "hdr" | "exr" => Self::Environment,
             "binary" | "bin" => Self::Measured,
             "toml" | "png" => Self::Look,
@@ -48,12 +48,6 @@ impl FileKind {
             _ => Self::Other,
         }
     }
-}
-
-/// The model in a folder that is no shader tree, if it is the only one.
-pub fn only_model(path: &Path) -> Option<PathBuf> {
-    let mut models = models_in(path).into_iter().filter(|_| FileKind::of(path) == FileKind::Folder);
-    models.next().filter(|_| models.next().is_none()).map(PathBuf::from)
 }
 
 /// Paths of the models in a folder, sorted; none where it cannot be read.

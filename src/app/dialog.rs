@@ -8,7 +8,8 @@ use crate::shader::embedded;
 use crate::threads::NoDialog;
 
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
-const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
+const EXTENSIONS: [&str; 12] =
+    ["gltf", "glb", "zip", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
 /// Extensions of pictures.
 const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
 /// Nobody cancels a dialog in less time than this. The portal reports a cancel and its own absence in the same way.

@@ -25,6 +25,20 @@ pub enum Problem {
     /// The file has no bytes.
     #[error("is empty. Expected a glTF 2.0 file (.gltf or .glb); copy or export it again.")]
     Empty,
+    /// A zip archive, or a file in it, cannot be read.
+    #[error("cannot be read as a zip archive: {0}. Unpack it and open the model inside, or pack it again.")]
+    Archive(String),
+    /// A folder or archive without a model.
+    #[error("has no .gltf or .glb file in it. Export the model as glTF 2.0.")]
+    NoModel,
+    /// A folder or archive with several models, none of them nearest to its root.
+    #[error("has {count} models; open one of them: {names}.")]
+    SeveralModels {
+        /// Their number.
+        count: usize,
+        /// The paths of the first ones, separated by commas.
+        names: String,
+    },
     /// Neither JSON nor GLB.
     #[error(
         "is not a glTF file: expected JSON text or a binary that begins with `glTF`, found {found}. \

@@ -40,7 +40,7 @@ pub use environment::{Environment, EnvironmentError, EnvironmentFile, Sun, has_e
 pub use error::{LoadError, Problem};
 pub use extensions::MaterialFactor;
 pub use features::{features, packs_occlusion};
-pub use gltf::triangles;
+pub use gltf::{find_model, triangles};
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
 pub use load_options::{Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
@@ -73,7 +73,8 @@ pub fn open_unless(path: Option<&Path>, options: &LoadOptions, canceled: Cancele
     }
 }
 
-/// Loads a `.gltf` or `.glb` file. The content decides which of the two it is.
+/// Loads a `.gltf` or `.glb` file; the content decides which of the two it is. From a folder or a `.zip` archive, loads the model in it: the
+/// only one, or the only one that is nearest to its root. `a.zip/b.glb` is a model in an archive.
 ///
 /// # Errors
 /// Fails if the file or a file that it names cannot be read or is invalid, or requires an unsupported extension. Never

@@ -16,10 +16,10 @@ use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::dialog::Dialog;
 use crate::app::state::workspace::PanelRequest;
-use crate::file_kind::{self, FileKind, models_in, only_model};
+use crate::file_kind::{self, FileKind};
 use crate::message::did_you_mean;
 use crate::picture::read_checked_look;
-use crate::scene::BUILT_IN;
+use crate::scene::{BUILT_IN, Problem, find_model};
 use crate::shader::Source;
 use crate::threads::Message;
 
@@ -195,17 +195,18 @@ fn by_kind(path: PathBuf) -> Result<Open, String> {
         FileKind::Model => Ok(Open::Model(path)),
         FileKind::Environment => Ok(Open::Environment(path)),
         FileKind::Measured => Ok(Open::Measured(path)),
-        FileKind::Folder => only_model(&path).map(Open::Model).ok_or_else(|| {
-            let (shown, models) = (path.display(), models_in(&path));
-            match models.len() {
-                0 => format!("{shown} has no interface.glsl, so it is no Specula shader tree, and no model. `specula new DIR` writes a tree"),
-                count => format!("{shown} has {count} models; open one of them: {}", models.join(", ")),
-            }
-        }),
+        FileKind::Folder => match find_model(&path) {
+            Ok(model) => Ok(Open::Model(model)),
+            Err(Problem::NoModel) => Err(format!(
+                "{} has no interface.glsl, so it is no Specula shader tree, and no model. `specula new DIR` writes a tree",
+                path.display()
+            )),
+            Err(problem) => Err(format!("{} {problem}", path.display())),
+        },
         FileKind::Shader if Source::is_file(&path) => Ok(Open::Tree(path)),
         FileKind::Look => Ok(Open::Look(path)),
         FileKind::Shader | FileKind::Other => Err(format!(
-            "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, a look file (.toml or \
+            "{}: expected a model (.gltf, .glb or a .zip with one), an .hdr or .exr environment, a measured .binary or .bin, a look file (.toml or \
              a .png that Specula wrote), or a folder with a shader tree",
             path.display()
         )),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use specula::file_kind::only_model;
+use specula::file_kind::FileKind;
 use specula::message;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings};
@@ -26,17 +26,18 @@ impl Common {
         Ok(())
     }
 
-    /// Treats a shader file in the model's position as the shader tree, and a folder with one model as that model. Options that the
+    /// Treats a shader file in the model's position as the shader tree, and a folder as the model in it. Options that the
     /// command line does not give come from the look.
     ///
     /// # Errors
-    /// The look cannot be read, or a file that it names is gone.
+    /// The folder has no model or several, the look cannot be read, or a file that it names is gone.
     pub fn take_files(&mut self, model: &mut Option<PathBuf>) -> Result<(), Failure> {
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
             self.shaders = model.take();
         }
-        if let Some(only) = model.as_deref().and_then(only_model) {
-            *model = Some(only);
+        if let Some(folder) = model.as_deref().filter(|path| FileKind::of(path) == FileKind::Folder) {
+            let found = scene::find_model(folder);
+            *model = Some(found.map_err(|problem| Failure::Usage(format!("{} {problem}", folder.display())))?);
         }
         let Some(path) = self.look.as_deref() else { return Ok(()) };
         let look = read_look(path)?;

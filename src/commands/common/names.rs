@@ -19,7 +19,7 @@ pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else { return Ok(()) };
     check_kind(path)?;
     let name = path.to_string_lossy();
-    if path.exists() || BUILT_IN.contains(&&*name) {
+    if path.exists() || BUILT_IN.contains(&&*name) || path.ancestors().any(is_archive) {
         return Ok(());
     }
     let list = BUILT_IN.join(", ");
@@ -34,6 +34,10 @@ pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
     Err(Failure::Input(format!("{name}: there is no such file.{hint} Built-in models: {list}")))
 }
 
+fn is_archive(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
+}
+
 fn suggest(name: Option<&str>) -> String {
     name.map(|name| format!(" Did you mean '{name}'?")).unwrap_or_default()
 }
@@ -44,12 +48,6 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let message = match FileKind::of(path) {
         FileKind::ShaderTree => format!("{shown} is a shader tree; use `--shaders {shown}`"),
-        FileKind::Folder => {
-            let models = models_in(path);
-            let list =
-                if models.is_empty() { "there is none".to_owned() } else { format!("it has {}", models.join(", ")) };
-            format!("{shown} is a folder; expected a .gltf or .glb file in it ({list})")
-        }
         FileKind::Environment => format!("{shown} is an environment; use `--env {shown}`"),
         FileKind::Look => format!("{shown} is a look file; use `--look {shown}`"),
         FileKind::Measured if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin")) => {
@@ -61,8 +59,8 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
         FileKind::Shader => {
             format!("{shown} is a shader; use `--shaders {}`, the folder of its tree", folder.display())
         }
-        // glTF names its buffers .bin, too; the loader says more.
-        FileKind::Measured | FileKind::Model | FileKind::Other => return Ok(()),
+        // The loader says more: glTF names its buffers .bin, too, and a folder may have a model.
+        FileKind::Measured | FileKind::Model | FileKind::Folder | FileKind::Other => return Ok(()),
     };
     Err(Failure::Usage(message))
 }

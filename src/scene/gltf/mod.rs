@@ -26,6 +26,8 @@ use rayon::prelude::*;
 
 use self::file::buffers::{Buffers, Files};
 use self::file::container;
+pub use self::file::opened::find_model;
+use self::file::opened::{self, Opened, Place};
 use self::geometry::accessor::Reader;
 use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
@@ -39,9 +41,8 @@ use super::model::{Contents, Image, LoadTiming, Material, Model};
 use super::motion::Motion;
 use crate::interface::MAX_LIGHTS;
 use crate::message::catch_panic;
-use crate::regular_file;
 
-/// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.
+/// Loads a file, the model in a folder, or that in a zip archive. Adds every file that it reads or looks for to `tried`, even if the load fails.
 pub fn load_file(
     path: &Path,
     options: &LoadOptions,
@@ -51,15 +52,14 @@ pub fn load_file(
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
     tried.push(path.clone());
-    let bytes = regular_file::read(&path, regular_file::LARGEST).map_err(Problem::Read)?;
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let folder = path.parent().map(Path::to_owned);
-    guarded(&name, &bytes, Files::new(folder, options.allow_outside, canceled, tried), options.scene, start)
+    let Opened { path, name, bytes, place } = opened::open(&path)?;
+    *tried = vec![path];
+    guarded(&name, &bytes, Files::new(place, options.allow_outside, canceled, tried), options.scene, start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files::new(None, false, &|| false, &mut Vec::new()), None, Instant::now())
+    guarded(name, bytes, Files::new(Place::Nowhere, false, &|| false, &mut Vec::new()), None, Instant::now())
 }
 
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end

@@ -6,16 +6,17 @@ use std::path::{Path, PathBuf};
 
 use gltf::json;
 
+use super::archive::inside;
+use super::opened::Place;
 use super::uri::{self, UriTarget};
 use crate::regular_file;
 use crate::scene::error::Problem;
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 
-/// The model's folder, and the files that the loader has looked for.
+/// Where the model's files are, and which the loader has looked for.
 pub struct Files<'t> {
-    /// The model's folder; `None` for a model in memory, which has no files.
-    folder: Option<PathBuf>,
+    place: Place,
     /// `--allow-outside`.
     allow_outside: bool,
     /// Whether the load is no longer needed.
@@ -27,32 +28,47 @@ pub struct Files<'t> {
 }
 
 impl<'t> Files<'t> {
-    /// The files of a model in `folder`.
-    pub fn new(
-        folder: Option<PathBuf>,
-        allow_outside: bool,
-        canceled: Canceled<'t>,
-        tried: &'t mut Vec<PathBuf>,
-    ) -> Self {
+    /// The files of a model.
+    pub fn new(place: Place, allow_outside: bool, canceled: Canceled<'t>, tried: &'t mut Vec<PathBuf>) -> Self {
         let known = tried.iter().cloned().collect();
-        Self { folder, allow_outside, canceled, tried, known }
+        Self { place, allow_outside, canceled, tried, known }
     }
 
-    /// Loads the bytes of a URI. `place` is for messages.
-    pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
-        let names = match uri::parse(uri, place, self.allow_outside)? {
+    /// Loads the bytes of a URI. `user` is for messages.
+    pub fn load(&mut self, uri: &str, user: &str) -> Result<Vec<u8>, Problem> {
+        // Whatever a path in an archive says, it does not leave the archive.
+        let stays_inside = matches!(self.place, Place::Archive(..));
+        let names = match uri::parse(uri, user, self.allow_outside || stays_inside)? {
             UriTarget::Data(bytes) => return Ok(bytes),
             UriTarget::File(names) => names,
-        };
-        let Some(folder) = &self.folder else {
-            let found = format!("the external file `{}`", names[0].display());
-            return Err(Problem::invalid(place, "all data inside of a built-in model", found));
         };
         if (self.canceled)() {
             return Err(Problem::Canceled);
         }
+        match self.place.clone() {
+            Place::Nowhere => {
+                let found = format!("the external file `{}`", names[0].display());
+                Err(Problem::invalid(user, "all data inside of a built-in model", found))
+            }
+            Place::Archive(archive, folder) => {
+                let inside = |name: &PathBuf| inside(&format!("{folder}/{}", name.to_str()?).trim_start_matches('/'));
+                let named: Vec<String> = names.iter().filter_map(inside).collect();
+                let Some(first) = named.first() else {
+                    let (uri, found) = (names[0].display().to_string(), "a path that leaves the archive".to_owned());
+                    return Err(Problem::Outside { place: user.into(), uri, found });
+                };
+                let name = named.iter().find(|name| archive.has(name)).unwrap_or(first);
+                let path = PathBuf::from(name);
+                archive.read(name).map_err(|source| Problem::External { place: user.into(), path, source })
+            }
+            Place::Folder(folder) => self.load_from(&folder, &names, user),
+        }
+    }
+
+    /// Reads the first of these files that exists.
+    fn load_from(&mut self, folder: &Path, names: &[PathBuf], user: &str) -> Result<Vec<u8>, Problem> {
         let mut named = &names[0];
-        for name in &names {
+        for name in names {
             let path = folder.join(name);
             let exists = path.exists();
             if self.known.insert(path.clone()) {
@@ -68,11 +84,11 @@ impl<'t> Files<'t> {
         match linked_outside(folder, &path) {
             Ok(Some(end)) if !self.allow_outside => {
                 let found = format!("a link to {}", end.display());
-                Err(Problem::Outside { place: place.into(), uri: named.display().to_string(), found })
+                Err(Problem::Outside { place: user.into(), uri: named.display().to_string(), found })
             }
             found => found
                 .and_then(|_| regular_file::read(&path, regular_file::LARGEST))
-                .map_err(|source| Problem::External { place: place.into(), path, source }),
+                .map_err(|source| Problem::External { place: user.into(), path, source }),
         }
     }
 }

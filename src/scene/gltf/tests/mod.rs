@@ -10,6 +10,7 @@ mod invalid;
 mod materials;
 mod motion;
 mod nodes;
+mod opened;
 mod placeholders;
 
 use serde_json::{Value, json};
