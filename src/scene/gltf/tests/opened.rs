@@ -49,8 +49,8 @@ fn an_archive_opens_as_the_model_in_it() {
         let model = load(&path, &LoadOptions::default()).unwrap();
         assert_sound(&model);
         assert_eq!(model.primitives[0].vertices, plain.primitives[0].vertices);
-        assert_eq!(model.name, path.file_stem().unwrap().to_str().unwrap());
-        assert_eq!(model.files, [path], "the archive is watched");
+        assert_eq!(&*model.name, path.file_stem().unwrap().to_str().unwrap());
+        assert_eq!(*model.files, [path], "the archive is watched");
     }
     let two = write("two.zip", &[("x/b.glb", &glb), ("x/a.glb", &glb), ("x/y/c.glb", &glb)]);
     let told = error_of(&two);
