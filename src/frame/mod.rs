@@ -56,7 +56,7 @@ pub struct FrameInputs<'a> {
     pub settings: &'a Settings,
     /// One generation of shaders.
     pub shaders: &'a Arc<ShaderSet>,
-    /// The model as the settings show it; `None` draws the background alone.
+    /// The model as the settings show it, in its pose; `None` draws the background alone.
     pub scene: Option<&'a Scene>,
     /// Revisions of the files of `settings.environment.name` and `settings.measured`.
     pub revisions: Revisions,
@@ -66,13 +66,6 @@ pub struct FrameInputs<'a> {
     pub size: (u32, u32),
     /// Format of the HDR target.
     pub target: TargetFormat,
-}
-
-impl FrameInputs<'_> {
-    /// The scene in the pose of the time.
-    fn posed_scene(&self) -> Option<Scene> {
-        self.scene.map(|scene| scene.at(&self.settings.animation, self.clock.time_s))
-    }
 }
 
 /// [`Clock::cursor_px`] while the mouse is not over the picture.
@@ -212,8 +205,6 @@ pub struct FrameState {
 impl FrameState {
     /// Describes a frame. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
-        let scene = inputs.posed_scene();
-        let inputs = &FrameInputs { scene: scene.as_ref(), ..*inputs };
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         Self::with_needs(inputs, Needs::new(inputs, PipelineRequest::new(settings, shaders, scene, target)))
     }
@@ -241,8 +232,6 @@ impl FrameState {
     /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model except the tone map are
     /// left out.
     pub fn of_modes(inputs: &FrameInputs<'_>, modes: &[&Mode]) -> Self {
-        let scene = inputs.posed_scene();
-        let inputs = &FrameInputs { scene: scene.as_ref(), ..*inputs };
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
         let pipelines = PipelineRequest::of_modes(settings, shaders, scene, target, modes);

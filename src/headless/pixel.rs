@@ -46,6 +46,7 @@ impl Headless {
         let (settings, revisions, size) = (self.session.settings.clone(), self.session.revisions, self.size);
         let state_in = |mode: &Mode, scene: &Scene, clock: Clock| {
             let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
+            let scene = &scene.at(&settings.animation, clock.time_s);
             let scene = Some(scene);
             let (shaders, target) = (&whole.shaders, whole.pipelines.target);
             let inputs = FrameInputs { settings: &settings, shaders, scene, revisions, clock, size, target };

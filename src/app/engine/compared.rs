@@ -56,7 +56,10 @@ impl LastAsked {
         let asked = &*self.state;
         Arc::ptr_eq(&asked.shaders, &state.shaders)
             && asked.pipelines == state.pipelines
-            && asked.scene == state.scene
+            && match (&asked.scene, &state.scene) {
+                (Some(asked), Some(scene)) => asked.has_same_draws(scene),
+                (asked, scene) => asked.is_none() && scene.is_none(),
+            }
             && asked.environment == state.environment
             && asked.tables == state.tables
             && asked.measured == state.measured

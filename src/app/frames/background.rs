@@ -154,6 +154,7 @@ fn resting_picture(state: &State, engine: &Engine) -> Option<RestingPicture> {
     Some(RestingPicture {
         settings: state.session.shared_settings(),
         shaders,
+        plays: state.playback.runs() && state.session.scene()?.is_playing(),
         scene: state.session.scene()?,
         revisions: state.session.revisions,
         environment: environment as usize,

@@ -49,7 +49,10 @@ fn frame_of_settings(
     mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
 ) -> Result<Option<BoundFrame>, GpuError> {
     let is_animated = state.is_animated();
-    let clock = state.playback.next(is_animated, state.reads_keys());
+    let clock = match is_animated && state.picture.rests() {
+        true => state.playback.stay(),
+        false => state.playback.next(is_animated, state.reads_keys()),
+    };
     let target = target(&engine.gpu, &state.session.settings);
     let Some(frame_state) = state.session.frame_state(clock, size, target) else { return Ok(None) };
     follow_settings(state, engine, &frame_state);

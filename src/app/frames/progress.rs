@@ -11,8 +11,8 @@ use crate::render::BoundFrame;
 /// Whether the next picture differs: the lights orbit, a shader, a pass or the model moves while the time runs, or a key has just
 /// been pressed.
 pub(in crate::app) fn moves(state: &State) -> bool {
-    let rests = state.picture.shown.as_ref().is_some_and(|shown| shown.rests);
-    let runs = if state.is_animated() { state.playback.runs() && !rests } else { state.playback.ends_press() };
+    let runs =
+        if state.is_animated() { state.playback.runs() && !state.picture.rests() } else { state.playback.ends_press() };
     state.session.settings.lights.spin != 0.0 || runs
 }
 

@@ -1,6 +1,6 @@
 //! Controls of the clock that animated shaders and models follow.
 
-use egui::{DragValue, RichText, Slider, Ui};
+use egui::{DragValue, Label, RichText, Slider, Ui};
 
 use crate::app::command::playback::PlaybackFields;
 use crate::app::state::playback::Playback;
@@ -27,7 +27,8 @@ pub(super) fn buttons(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields
         if ui.add(drag).on_hover_text("Playback speed").changed() {
             asked = Some(PlaybackFields { speed: Some(speed), ..PlaybackFields::default() });
         }
-        ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
+        let time = RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET);
+        ui.add(Label::new(time).extend());
     });
     asked
 }

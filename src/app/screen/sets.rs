@@ -22,6 +22,8 @@ pub(in crate::app) struct RestingPicture {
     pub(in crate::app) settings: Arc<Settings>,
     pub(in crate::app) shaders: Arc<ShaderSet>,
     pub(in crate::app) scene: Scene,
+    /// Whether an animation of the model plays.
+    pub(in crate::app) plays: bool,
     pub(in crate::app) revisions: Revisions,
     /// Address of the environment on the device.
     pub(in crate::app) environment: usize,
@@ -73,9 +75,14 @@ impl PartialEq for Shown {
             (Arc::as_ptr(shaders), *revisions, *environment, *target, of.gives_numbers, of.size)
         };
         let (a, b) = (&self.picture, &other.picture);
+        // Pictures of a model that moves show a moment of it. Pixels are those of a moment.
+        let is_same_scene = match a.plays && b.plays && !self.gives_numbers {
+            true => a.scene.has_same_draws(&b.scene),
+            false => a.scene == b.scene,
+        };
         parts(self) == parts(other)
             && (Arc::ptr_eq(&a.settings, &b.settings) || a.settings.is_of_other_mode(&b.settings))
-            && a.scene == b.scene
+            && is_same_scene
     }
 }
 

@@ -55,6 +55,11 @@ pub(in crate::app) struct Picture {
 }
 
 impl Picture {
+    /// Whether the picture stays the same while the clock runs: an animation that is not repeated has ended.
+    pub(in crate::app) fn rests(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.rests)
+    }
+
     /// Notes what the picture waits for. The time counts from the first frame that waits for it.
     pub(in crate::app) fn wait_for(&mut self, waits: Option<Waits>) {
         let since = self.waits.filter(|(before, _)| Some(*before) == waits).map(|(_, since)| since);

@@ -98,10 +98,7 @@ impl Playback {
         let before = self.last.replace(now);
         let step = std::mem::take(&mut self.step);
         if is_animated && self.paused && !step {
-            self.last = None;
-            self.clock.mouse_px = self.mouse.px;
-            // An unchanged clock gives the same picture, which is not drawn again.
-            return self.clock;
+            return self.stay();
         }
         self.clock.keys = if reads_keys { self.keys.in_frame() } else { Keys::default() };
         self.keys = self.keys.held();
@@ -125,6 +122,14 @@ impl Playback {
         };
         self.clock.time_s += self.clock.delta_s;
         self.clock.frame_index = self.clock.frame_index.wrapping_add(1);
+        self.clock
+    }
+
+    /// The clock of the last frame again, while it is paused or the animation has ended. An unchanged clock gives the same picture, which
+    /// is not drawn again.
+    pub(in crate::app) fn stay(&mut self) -> Clock {
+        (self.last, self.step) = (None, false);
+        self.clock.mouse_px = self.mouse.px;
         self.clock
     }
 
