@@ -8,7 +8,7 @@
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_control_flow_attributes : require
 
-const uint INTERFACE_VERSION = 9u;
+const uint INTERFACE_VERSION = 10u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -44,6 +44,7 @@ const int BINDING_LOBE_TARGET = 6;
 const int BINDING_LOBE = 7;
 const int BINDING_SMALL_LIGHTS = 9;
 const int BINDING_PACKED = 10;
+const int BINDING_DEFORMATIONS = 11;
 const int BINDING_TASK_LOOPS = 8;
 const int BINDING_BASE_COLOR_TEXTURE = 1;
 const int BINDING_METALLIC_ROUGHNESS_TEXTURE = 2;
@@ -96,6 +97,7 @@ const uint ATTRIBUTE_UV0 = 4u;
 const uint ATTRIBUTE_UV1 = 8u;
 const uint ATTRIBUTE_COLOR = 16u;
 const uint ATTRIBUTE_TANGENT_FRAME = 32u;
+const uint ATTRIBUTE_MOVED = 64u;
 const uint LIGHT_DIRECTIONAL = 0u;
 const uint LIGHT_POINT = 1u;
 const uint LIGHT_SPOT = 2u;
@@ -287,6 +289,53 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ind
     Corners at[];
 };
 
+struct Influence {
+    uint joint;                        // Index of the joint in its skin; in range.
+    float weight;                      // Its weight. Those of a vertex add up to 1.
+};
+
+struct Displacement {
+    vec3 position;                     // Added to the position, object space, meters.
+    vec3 normal;                       // Added to the normal, before it is normalized.
+    vec3 tangent;                      // Added to the tangent's direction.
+    vec2 uv0;                          // Added to the first texture coordinates.
+    vec2 uv1;                          // Added to the second texture coordinates.
+    vec4 color;                        // Added to the color.
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer MovedVertices {
+    Vertex at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Influences {
+    Influence at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Displacements {
+    Displacement at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Joints {
+    mat4 at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Weights {
+    float at[];
+};
+
+struct Deformation {
+    Vertices vertices;                 // The vertices of the mesh.
+    MovedVertices moved;               // The moved vertices.
+    Influences influences;             // Influences of all vertices, influences_per_vertex for each.
+    Displacements displacements;       // Displacements of all morph targets, vertex_count for each.
+    Joints joints;                     // Matrices of the joints: world space from the object space of the mesh.
+    Weights weights;                   // Weights of the morph targets.
+    uint vertex_count;                 // Number of vertices.
+    uint influences_per_vertex;        // Influences of each vertex; 0 without a skin.
+    uint target_count;                 // Number of morph targets.
+    uint attributes;                   // ATTRIBUTE_* bits of the mesh.
+};
+
 struct BvhNode {
     vec3 min_ws;                       // Smallest corner, world space.
     uint first;                        // Leaf: its first triangle. Otherwise the first of its two children, which are neighbors.
@@ -331,6 +380,15 @@ struct EnvironmentCell {
     float density;                     // Probability density of a point of the cell, per unit of area of a face that spans -1..1.
 };
 
+struct Before {
+    Vertices vertices;                 // Device address of the first vertex.
+    mat4x3 world_from_object;          // Object to world space, without the matrix's last row.
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Befores {
+    Before at[];
+};
+
 layout(push_constant, scalar) uniform Draw {
     Vertices vertices;                 // Device address of the first vertex.
     mat4x3 world_from_object;          // Object to world space, without the matrix's last row.
@@ -341,6 +399,7 @@ layout(push_constant, scalar) uniform Draw {
     Indices indices;                   // Device address of the first index, for mesh stages.
     uint triangle_count;               // Mesh stages: triangles of the primitive.
     uint first_triangle;               // Mesh stages: number of the first triangle that this draw gives. Not 0 if the primitive takes several draws.
+    Befores before;                    // `before.at[0]`: where it was in the frame before, if `attributes` has ATTRIBUTE_MOVED.
 } draw;
 
 #endif

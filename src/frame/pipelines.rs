@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::display::Display;
 use super::formats::{MEAN_FORMAT, TargetFormat};
 use super::material_variant::{MaterialVariant, shared_features};
+use super::stages::DEFORM;
 use super::{Scene, SharedMode};
 use crate::gpu::{Specialization, vk};
 use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
@@ -58,6 +59,8 @@ pub struct PipelineRequest {
     pub through: bool,
     /// The declared passes to draw, in order.
     pub passes: Vec<Arc<GraphPass>>,
+    /// Whether joints or morph targets move vertices of the model.
+    pub deforms: bool,
     /// Whether the model and the environment are drawn: no pass covers them.
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
@@ -173,6 +176,7 @@ impl PipelineRequest {
             through: selection.through,
             stage,
             passes,
+            deforms: scene.is_some_and(|scene| scene.pose().deforms()),
             draws_model,
             wireframe: wireframe(settings, shaders),
             wireframe_stage: wireframe_stage(settings, shaders).unwrap_or_default(),
@@ -226,6 +230,12 @@ impl PipelineRequest {
         self.passes.iter().find(|pass| pass.is_called(name))
     }
 
+    /// Paths of the compute stages.
+    pub(crate) fn compute_stages(&self) -> impl Iterator<Item = &str> {
+        let passes = self.passes.iter().filter(|pass| pass.is_compute).map(|pass| pass.desc.stage.as_str());
+        passes.chain(self.deforms.then_some(DEFORM))
+    }
+
     fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {
         self.passes.iter().find(|pass| is_wanted(pass))
     }
@@ -274,7 +284,8 @@ impl PipelineRequest {
         let all = self.passes.iter().chain(&self.wireframe);
         let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
         let wireframe = Some(self.wireframe_stage.clone()).filter(|stage| !stage.is_empty());
-        passes.chain(model).chain(wireframe).collect()
+        let deform = self.deforms.then(|| DEFORM.to_owned());
+        passes.chain(model).chain(wireframe).chain(deform).collect()
     }
 
     /// Whether a frame needs stages that are not compiled yet.

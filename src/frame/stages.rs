@@ -15,6 +15,9 @@ pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
 /// The stages of the BRDF lookup tables.
 pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/sheen_albedo.comp"];
 
+/// The stage that moves the vertices of a model with joints or morph targets.
+pub(crate) const DEFORM: &str = "deform.comp";
+
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
@@ -25,7 +28,7 @@ pub const HEMISPHERE_STAGE: &str = "measure/hemisphere.comp";
 /// The stages that a shader tree must have besides those of its passes.
 pub fn stages() -> Vec<&'static str> {
     let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
-    std::iter::once(FULL_SCREEN).chain(baked).collect()
+    [FULL_SCREEN, DEFORM].into_iter().chain(baked).collect()
 }
 
 /// [`stages`] and [`MEASURE_STAGES`].

@@ -16,6 +16,8 @@ pub enum StageRole {
     Screen,
     /// A compute pass.
     Compute,
+    /// `deform.comp`: moves vertices.
+    Deform,
     /// A compute stage that bakes light or BRDF tables.
     Bake,
     /// A compute stage of `specula brdf` and of the inspector.
@@ -45,24 +47,32 @@ pub enum Resource {
     Pass,
     /// The parameters, inputs and outputs of a bake.
     Task,
+    /// The instances whose vertices joints or morph targets move.
+    Deformations,
 }
 
 impl StageRole {
     /// The role of a compute stage that no pass declares, by its path.
     pub fn of_compute(path: &str) -> Self {
-        if path.starts_with("measure/") { Self::Measure } else { Self::Bake }
+        match path {
+            "deform.comp" => Self::Deform,
+            path if path.starts_with("measure/") => Self::Measure,
+            _ => Self::Bake,
+        }
     }
 
     /// Whether the resource is bound with its values wherever such a stage runs.
     pub fn binds(self, resource: Resource) -> bool {
-        let is_compute = matches!(self, Self::Bake | Self::Measure);
+        let is_task = matches!(self, Self::Bake | Self::Measure);
+        let has_frame = !is_task && self != Self::Deform;
         match resource {
             Resource::Params => true,
-            Resource::Frame | Resource::Lights | Resource::Environment | Resource::Pass => !is_compute,
-            Resource::Tables => self != Self::Bake,
+            Resource::Frame | Resource::Lights | Resource::Environment | Resource::Pass => has_frame,
+            Resource::Tables => has_frame || self == Self::Measure,
             Resource::Material | Resource::Draw => matches!(self, Self::Model | Self::Paths),
             Resource::Scene => self == Self::Paths,
-            Resource::Task => is_compute,
+            Resource::Task => is_task,
+            Resource::Deformations => self == Self::Deform,
         }
     }
 
@@ -74,6 +84,7 @@ impl StageRole {
             Self::Quads => "a pass that draws quads",
             Self::Screen => "a stage that covers an image",
             Self::Compute => "a compute pass",
+            Self::Deform => "the stage that moves vertices",
             Self::Bake => "a bake",
             Self::Measure => "a measurement of the BRDF",
         }
@@ -82,7 +93,7 @@ impl StageRole {
 
 impl Resource {
     /// Every resource, in the order of the documentation.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Params,
         Self::Frame,
         Self::Lights,
@@ -93,6 +104,7 @@ impl Resource {
         Self::Scene,
         Self::Pass,
         Self::Task,
+        Self::Deformations,
     ];
 
     /// The resource in messages.
@@ -108,6 +120,7 @@ impl Resource {
             Self::Scene => "scene to trace",
             Self::Pass => "images, textures, buffers or blocks of a pass",
             Self::Task => "task of a bake",
+            Self::Deformations => "moved instances",
         }
     }
 }
@@ -120,8 +133,16 @@ mod tests {
 
     impl StageRole {
         /// Every role, in the order of the documentation.
-        const ALL: [Self; 7] =
-            [Self::Model, Self::Paths, Self::Quads, Self::Screen, Self::Compute, Self::Bake, Self::Measure];
+        const ALL: [Self; 8] = [
+            Self::Model,
+            Self::Paths,
+            Self::Quads,
+            Self::Screen,
+            Self::Compute,
+            Self::Deform,
+            Self::Bake,
+            Self::Measure,
+        ];
 
         /// The stage as the head of a column in the documentation.
         fn column(self) -> &'static str {
@@ -131,6 +152,7 @@ mod tests {
                 Self::Quads => "draw=quads",
                 Self::Screen => "full screen",
                 Self::Compute => ".comp pass",
+                Self::Deform => "deform.comp",
                 Self::Bake => "ibl/",
                 Self::Measure => "measure/",
             }
@@ -151,6 +173,7 @@ mod tests {
                 Self::Scene => "the traced scene (`paths/scene.glsl`)",
                 Self::Pass => "images of passes, `//@texture`, buffers, blocks of one's own",
                 Self::Task => "`task.*`",
+                Self::Deformations => "`BINDING_DEFORMATIONS`",
             }
         }
     }

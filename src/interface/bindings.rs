@@ -113,6 +113,8 @@ bindings! {
     BINDING_SMALL_LIGHTS = SET_TASK, 9, UniformBuffer(16384_u32), Some(Resource::Task);
     /// The texels that a task writes with a shared exponent, a word each.
     BINDING_PACKED = SET_TASK, 10, StorageBuffer(), Some(Resource::Task);
+    /// The instances whose vertices a task moves, each a `Deformation`.
+    BINDING_DEFORMATIONS = SET_TASK, 11, StorageBuffer(), Some(Resource::Deformations);
     /// The report of endless loops of a compute dispatch: see [`LOOPS`].
     BINDING_TASK_LOOPS = SET_TASK, 8, StorageBuffer(), None;
 }

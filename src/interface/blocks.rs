@@ -53,6 +53,18 @@ pub(super) mod types {
     pub type Vertices = u64;
     /// The same for indices.
     pub type Indices = u64;
+    /// The same for vertices that a stage writes.
+    pub type MovedVertices = u64;
+    /// The same for influences of joints.
+    pub type Influences = u64;
+    /// The same for displacements.
+    pub type Displacements = u64;
+    /// The same for matrices of joints.
+    pub type Joints = u64;
+    /// The same for weights of morph targets.
+    pub type Weights = u64;
+    /// The same for places of draws in the frame before.
+    pub type Befores = u64;
 }
 use types::*;
 
@@ -253,6 +265,56 @@ blocks! {
         color: vec4,
     }
 
+    /// A joint that moves a vertex.
+    #[derive(PartialEq)]
+    Influence: "struct Influence", "" {
+        /// Index of the joint in its skin; in range.
+        joint: uint,
+        /// Its weight. Those of a vertex add up to 1.
+        weight: float,
+    }
+
+    /// What a morph target with a weight of 1 adds to a vertex.
+    #[derive(PartialEq)]
+    Displacement: "struct Displacement", "" {
+        /// Added to the position, object space, meters.
+        position: vec3,
+        /// Added to the normal, before it is normalized.
+        normal: vec3,
+        /// Added to the tangent's direction.
+        tangent: vec3,
+        /// Added to the first texture coordinates.
+        uv0: vec2,
+        /// Added to the second texture coordinates.
+        uv1: vec2,
+        /// Added to the color.
+        color: vec4,
+    }
+
+    /// An instance whose vertices joints or morph targets move. `BINDING_DEFORMATIONS` holds an array of them.
+    Deformation: "struct Deformation", "" {
+        /// The vertices of the mesh.
+        vertices: Vertices,
+        /// The moved vertices.
+        moved: MovedVertices,
+        /// Influences of all vertices, influences_per_vertex for each.
+        influences: Influences,
+        /// Displacements of all morph targets, vertex_count for each.
+        displacements: Displacements,
+        /// Matrices of the joints: world space from the object space of the mesh.
+        joints: Joints,
+        /// Weights of the morph targets.
+        weights: Weights,
+        /// Number of vertices.
+        vertex_count: uint,
+        /// Influences of each vertex; 0 without a skin.
+        influences_per_vertex: uint,
+        /// Number of morph targets.
+        target_count: uint,
+        /// ATTRIBUTE_* bits of the mesh.
+        attributes: uint,
+    }
+
     /// A node of the bounding volume hierarchy that random paths trace. The root is node 0.
     BvhNode: "struct BvhNode", "" {
         /// Smallest corner, world space.
@@ -331,6 +393,14 @@ blocks! {
         density: float,
     }
 
+    /// Where a draw was in the frame before. `Draw::before` points to it.
+    Before: "struct Before", "" {
+        /// Device address of the first vertex.
+        vertices: Vertices,
+        /// Object to world space, without the matrix's last row.
+        world_from_object: mat4x3,
+    }
+
     /// Push constants of one draw.
     Draw: "layout(push_constant, scalar) uniform Draw", "draw" {
         /// Device address of the first vertex.
@@ -351,6 +421,8 @@ blocks! {
         triangle_count: uint,
         /// Mesh stages: number of the first triangle that this draw gives. Not 0 if the primitive takes several draws.
         first_triangle: uint,
+        /// `before.at[0]`: where it was in the frame before, if `attributes` has ATTRIBUTE_MOVED.
+        before: Befores,
     }
 }
 

@@ -38,6 +38,8 @@ constants! {
     ATTRIBUTE_COLOR = 1 << 4;
     /// `Draw::attributes`: the mesh has a usable tangent frame, from the file or generated.
     ATTRIBUTE_TANGENT_FRAME = 1 << 5;
+    /// `Draw::attributes`: the draw was elsewhere in the frame before, or its vertices were.
+    ATTRIBUTE_MOVED = 1 << 6;
 
     /// `Light::kind`: parallel light, intensity in lux.
     LIGHT_DIRECTIONAL = 0;

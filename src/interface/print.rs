@@ -75,6 +75,8 @@ fn print_block(out: &mut String, block: &Block) -> std::fmt::Result {
     match block.name {
         "Light" => out.write_str(LIGHTS),
         "Vertex" => out.write_str(VERTICES),
+        "Before" => out.write_str(BEFORES),
+        "Displacement" => out.write_str(DEFORMATIONS),
         _ => Ok(()),
     }
 }
@@ -97,5 +99,33 @@ struct Corners {
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Indices {
     Corners at[];
+};
+";
+
+const DEFORMATIONS: &str = "
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer MovedVertices {
+    Vertex at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Influences {
+    Influence at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Displacements {
+    Displacement at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Joints {
+    mat4 at[];
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Weights {
+    float at[];
+};
+";
+
+const BEFORES: &str = "
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Befores {
+    Before at[];
 };
 ";

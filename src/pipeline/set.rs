@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use rayon::prelude::*;
 
+use crate::frame::stages::DEFORM;
 use crate::frame::{PipelineKey, PipelineRequest, pass_format};
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
@@ -198,6 +199,9 @@ impl PipelineSet {
         for pass in request.passes.iter().filter(|pass| pass.is_compute && !self.is_pending_stage(&pass.desc.stage)) {
             self.compute_pass(pass, &request.pass_constants())?;
         }
+        if request.deforms && !self.is_pending_stage(DEFORM) {
+            self.compute(DEFORM, &request.pass_constants())?;
+        }
         lock(&self.graphics).trim(number);
         lock(&self.computes).trim(number);
         Ok(missing.len())
@@ -208,9 +212,10 @@ impl PipelineSet {
     pub(crate) fn keep(&self, request: &PipelineRequest) {
         let keys: HashSet<PipelineKey> = request.keys().collect();
         let constants = request.pass_constants();
-        let is_pass = |stage: &str| request.passes.iter().any(|pass| pass.is_compute && pass.desc.stage == stage);
         lock(&self.graphics).entries.retain(|key, _| keys.contains(key));
-        lock(&self.computes).entries.retain(|(stage, of), _| *of == constants && is_pass(stage));
+        lock(&self.computes)
+            .entries
+            .retain(|(stage, of), _| *of == constants && request.compute_stages().any(|own| own == stage));
     }
 
     /// Whether a stage of the pipeline is not compiled yet.
@@ -241,14 +246,13 @@ impl PipelineSet {
         let pipelines = keys.into_iter().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
         drop(graphics);
-        let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.desc.stage);
         let constants = request.pass_constants();
         let known = lock(&self.computes);
-        let compute = |stage: &String| {
-            let pipeline = known.get(&(stage.clone(), constants.clone()))?;
-            Some((stage.clone(), pipeline.clone()))
+        let compute = |stage: &str| {
+            let pipeline = known.get(&(stage.to_owned(), constants.clone()))?;
+            Some((stage.to_owned(), pipeline.clone()))
         };
-        let computes = stages.map(compute).collect::<Option<_>>()?;
+        let computes = request.compute_stages().map(compute).collect::<Option<_>>()?;
         Some(BoundPipelines::new(pipelines, computes, self.textures.clone()))
     }
 

@@ -68,3 +68,21 @@ pub(crate) fn upload_buffer(gpu: &Arc<Gpu>, name: &str, bytes: &[u8]) -> Result<
     }
     Ok(buffer)
 }
+
+/// Writes bytes to a buffer that shaders read by address. A buffer that is too small is replaced.
+pub(crate) fn write_addressed(
+    gpu: &Arc<Gpu>,
+    name: &str,
+    buffer: &mut Option<Arc<Buffer>>,
+    bytes: &[u8],
+) -> Result<Arc<Buffer>, GpuError> {
+    let buffer = match buffer.take().filter(|buffer| buffer.size() >= bytes.len() as u64) {
+        Some(fits) => buffer.insert(fits),
+        None => {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+            buffer.insert(Buffer::new(gpu, name, bytes.len() as u64, usage, Memory::Upload)?)
+        }
+    };
+    buffer.write(0, bytes);
+    Ok(buffer.clone())
+}

@@ -3,13 +3,14 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
+#include "common/moved.glsl"
 #include "material/material.glsl"
 #include "material/user_surface.glsl"
 
 // The model's surface at each pixel, for passes that read these images by name. Nothing is drawn unless one does.
 //
-// Limits: one sample a pixel. The velocity knows the camera; a surface that user_vertex moves counts as still. Blended and
-// transmissive surfaces hide what lies behind them.
+// Limits: one sample a pixel. The velocity knows the camera and the pose; a surface that user_vertex moves counts as still.
+// Blended and transmissive surfaces hide what lies behind them.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;              // `normal`; a: 1, or 0 where there is nothing
@@ -29,11 +30,11 @@ void main() {
     apply_user_surface(s, fragment, v);
     if (ALPHA_MODE == ALPHA_MASK && s.coverage < material.alpha_cutoff) discard;
     color = vec4(s.n, 1.0);
-    vec3 p = fragment.position_ws;
+    vec3 p = fragment.position_ws, p_before = position_before_ws(p);
     // Behind the camera of the frame before, a point had no place in the picture.
-    float before_w = (frame.clip_from_world_before * vec4(p, 1.0)).w;
+    float before_w = (frame.clip_from_world_before * vec4(p_before, 1.0)).w;
     vec2 moved = before_w <= 0.0
-        ? vec2(0.0) : place_in_picture(frame.clip_from_world, p) - place_in_picture(frame.clip_from_world_before, p);
+        ? vec2(0.0) : place_in_picture(frame.clip_from_world, p) - place_in_picture(frame.clip_from_world_before, p_before);
     velocity = vec4(moved, 0.0, 0.0);
     base_color = vec4(s.base_color, s.coverage);
     roughness_metallic = vec4(s.roughness, s.metallic, 0.0, 0.0);

@@ -10,7 +10,7 @@
 // 1.25 standard deviations of the 3 x 3 pixels around it, in YCoCg, is probably another surface, so it is pulled back to that
 // range (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in Temporal Supersampling").
 //
-// Limits: a surface that moves by itself, as by user_vertex, is looked for where it is now. Reflections move with their surface.
+// Limits: a surface that moves by itself, by a pose or by user_vertex, is looked for where it is now. Reflections move with their surface.
 
 uniform sampler2D picture;
 uniform sampler2D depth;

@@ -12,7 +12,7 @@ use crate::pipeline::textures::PassTextures;
 /// The pipelines of one [`PipelineRequest`], and the textures of its passes.
 pub(crate) struct BoundPipelines {
     pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
-    /// Of compute passes, by stage.
+    /// Of compute passes and of the stage that moves vertices, by stage.
     computes: HashMap<String, Arc<ComputePipeline>>,
     textures: Arc<PassTextures>,
     /// Whether a stage reads the clock.
@@ -41,7 +41,7 @@ impl BoundPipelines {
         self.pipelines.get(key)
     }
 
-    /// The pipeline of a compute pass.
+    /// The pipeline of a compute stage.
     pub(crate) fn compute(&self, stage: &str) -> Option<&Arc<ComputePipeline>> {
         self.computes.get(stage)
     }

@@ -1,5 +1,6 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set per material.
 
+mod deformables;
 mod error;
 mod materials;
 mod placed;
@@ -14,9 +15,10 @@ use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
 use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
+pub(crate) use deformables::Deformables;
 pub use error::UploadError;
 use materials::{MaterialSets, Textures};
-pub(crate) use placed::{PlacedDraw, PlacedScene, normals_from};
+pub(crate) use placed::{PlacedDraw, PlacedScene, Posed, normals_from};
 use upload::{Range, Uploaded, upload};
 
 /// One draw call, wherever the pose of a frame puts it.
@@ -45,6 +47,7 @@ pub struct GpuModel {
     materials: Vec<Arc<DescriptorSet>>,
     /// The textures of the materials, and those that are bound where a material has none.
     textures: Textures,
+    deformables: Option<Arc<Deformables>>,
 }
 
 impl GpuModel {
@@ -55,12 +58,13 @@ impl GpuModel {
     /// An image that exceeds the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
         Arc::make_mut(&mut model.primitives).iter_mut().for_each(list_triangles);
-        let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
+        let Uploaded { vertices, indices, ranges, textures, deformers } = upload(gpu, &mut model)?;
+        let deformables = deformers.and_then(|from| Deformables::new(&model, &ranges, &vertices, from));
         let samplers = HashMap::new();
         let mut sets = MaterialSets { gpu, layouts, model: &model, textures: &textures, samplers };
         let materials =
             (0..).zip(model.materials.iter()).map(|(id, material)| sets.set(material, id)).collect::<Result<_, _>>()?;
-        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures }))
+        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures, deformables }))
     }
 
     /// The model that was uploaded, without the pixels of its images.
@@ -95,7 +99,9 @@ impl GpuModel {
             Some(GpuDraw { instance: index, ..draw })
         };
         let draws = scene.numbered_instances().filter_map(draw).collect();
-        Ok(Arc::new(GpuScene { vertices: self.vertices.clone(), indices: self.indices.clone(), draws }))
+        let Self { vertices, indices, deformables, .. } = self;
+        let (vertices, indices, deformables) = (vertices.clone(), indices.clone(), deformables.clone());
+        Ok(Arc::new(GpuScene { vertices, indices, draws, deformables }))
     }
 }
 
@@ -104,6 +110,8 @@ pub struct GpuScene {
     pub(crate) vertices: Arc<Buffer>,
     pub(crate) indices: Arc<Buffer>,
     pub(crate) draws: Vec<GpuDraw>,
+    /// The instances whose vertices move, drawn or not.
+    pub(crate) deformables: Option<Arc<Deformables>>,
 }
 
 fn draw(

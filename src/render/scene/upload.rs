@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::gpu::{Buffer, Gpu, Image, ImageDesc, Memory, Use, one_shot, vk};
-use crate::interface::Vertex;
+use crate::interface::{Displacement, Influence, Vertex};
 use crate::render::scene::UploadError;
 use crate::render::scene::materials::Textures;
 use crate::scene::{Model, TextureSource, mips, texture_sources};
@@ -21,6 +21,14 @@ pub(super) struct Uploaded {
     pub(super) ranges: Vec<Range>,
     /// The textures of the materials, and the defaults for missing ones.
     pub(super) textures: Textures,
+    /// What moves vertices; `None` if nothing does.
+    pub(super) deformers: Option<Deformers>,
+}
+
+/// Influences and displacements of all primitives, one after the other.
+pub(super) struct Deformers {
+    pub(super) influences: Arc<Buffer>,
+    pub(super) displacements: Arc<Buffer>,
 }
 
 /// The location of a primitive in the shared buffers.
@@ -68,7 +76,22 @@ pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, Uplo
     // Mesh stages read them by address.
     let index_usage = Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
     let indices = staging.buffer("indices", &indices, index_usage)?;
-    Ok(Uploaded { vertices, indices, ranges, textures })
+    let deformers = deformers(&staging, model)?;
+    Ok(Uploaded { vertices, indices, ranges, textures, deformers })
+}
+
+fn deformers(staging: &Staging<'_>, model: &Model) -> Result<Option<Deformers>, UploadError> {
+    let all = || model.primitives.iter().filter_map(|primitive| primitive.deformation.as_deref());
+    if all().next().is_none() {
+        return Ok(None);
+    }
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
+    let influences: Vec<&[Influence]> = all().map(|deformation| &*deformation.influences).collect();
+    let targets: Vec<&[Displacement]> =
+        all().flat_map(|deformation| &deformation.targets).map(|target| &**target).collect();
+    let influences = staging.buffer("influences of joints", &influences, usage)?;
+    let displacements = staging.buffer("displacements of morph targets", &targets, usage)?;
+    Ok(Some(Deformers { influences, displacements }))
 }
 
 fn check_sizes(gpu: &Gpu, model: &Model, sources: &[TextureSource]) -> Result<(), UploadError> {

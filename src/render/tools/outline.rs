@@ -81,12 +81,11 @@ impl Outline {
     pub fn draw(
         &self,
         encoder: &mut Encoder,
-        (frame, placed): (&BoundFrame, &PlacedScene),
+        (frame, placed): (&BoundFrame, &Arc<PlacedScene>),
         is_selected: impl Fn(usize) -> bool,
         (target, at): (&Arc<Image>, (u32, u32)),
         style: OutlineStyle,
     ) {
-        let scene = &placed.scene;
         let Self { tools, mask, multisampled, set } = self;
         encoder.transition(mask, Use::Undefined, Use::Color);
         let (drawn, resolve) = match multisampled {
@@ -98,8 +97,8 @@ impl Outline {
         };
         encoder.begin_rendering(&Attachments { clear: Some([0.0; 4]), resolve, ..Attachments::of(drawn) });
         encoder.bind_pipeline(&tools.mask);
-        encoder.keep(&scene.vertices);
-        encoder.bind_indices(&scene.indices);
+        encoder.keep(placed);
+        encoder.bind_indices(&placed.scene.indices);
         let clip_from_world = frame.state.camera.clip_from_world();
         let triangles = |class| class == PrimitiveClass::Triangles;
         let is_drawn = |draw: &GpuDraw| is_selected(draw.instance) && triangles(draw.variant.class);

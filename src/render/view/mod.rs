@@ -19,6 +19,7 @@ mod declared;
 mod limits;
 mod model_draws;
 mod motion;
+mod moved_vertices;
 mod passes;
 mod pixel_modes;
 mod range_sample;
@@ -148,7 +149,7 @@ impl View {
             layouts: layouts.clone(),
             declared: DeclaredPasses::new(gpu, layouts, &shared.linear, &nearest)?,
             shared,
-            motion: Motion::default(),
+            motion: Motion::new(gpu, layouts, frames_in_flight),
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
@@ -242,8 +243,11 @@ impl View {
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let placed = self.motion.place(frame);
-        let placed = placed.as_deref();
+        let placed = match redrawn {
+            true => self.motion.place(encoder, slot, frame, &set, true)?,
+            false => self.motion.placed().cloned(),
+        };
+        let placed = placed.as_ref();
         let context = PassContext { frame, placed, frame_set: &set, blocks, constants: &constants, depth };
         if redrawn {
             self.declared.before_model(encoder, &context)?;
@@ -356,9 +360,10 @@ impl View {
         redrawn
     }
 
-    /// Whether the picture shows camera motion, so that the next frame differs even if the camera rests.
+    /// Whether the picture shows motion of the camera or the model, so that the next frame differs even if both rest.
     pub fn is_moving(&self, frame: &BoundFrame) -> bool {
-        self.cameras.is_some_and(|[now, before]| now != before) && frame.reads_motion()
+        let has_moved = self.motion.has_moved() || self.cameras.is_some_and(|[now, before]| now != before);
+        has_moved && frame.reads_motion()
     }
 
     /// Makes the next frame draw everything: the commands of a frame were not submitted, so the targets may be
@@ -368,6 +373,7 @@ impl View {
         self.range_sampled = 0;
         self.in_flight.iter_mut().for_each(|in_flight| in_flight.scan = None);
         self.declared.forget();
+        self.motion.forget();
     }
 
     /// Makes an accumulating mode start again with the next frame.
@@ -378,11 +384,12 @@ impl View {
     /// Restarts the declared passes: the next frame clears the images and buffers that depend on earlier frames to 0.
     pub fn restart_passes(&mut self) {
         self.cameras = None;
+        self.motion.restart();
         self.declared.restart();
     }
 
     /// The model of the last frame, in its pose.
-    pub(crate) fn placed(&self) -> Option<&PlacedScene> {
+    pub(crate) fn placed(&self) -> Option<&Arc<PlacedScene>> {
         self.motion.placed()
     }
 

@@ -34,7 +34,7 @@ const MOST_WORKGROUPS: u32 = 1 << 22;
 pub(super) struct ModelDraws<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) frame: &'a BoundFrame,
-    pub(super) placed: Option<&'a PlacedScene>,
+    pub(super) placed: Option<&'a Arc<PlacedScene>>,
     pub(super) sets: &'a PassSets,
     /// How often each is drawn.
     pub(super) instances: u32,
@@ -57,9 +57,10 @@ impl ModelDraws<'_> {
         draws: impl IntoIterator<Item = PlacedDraw<'d>>,
         key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
     ) {
-        let Some(PlacedScene { scene, .. }) = self.placed else { return };
-        encoder.keep(&scene.vertices);
-        encoder.bind_indices(&scene.indices);
+        let Some(placed) = self.placed else { return };
+        // It keeps all vertices that draws read by address.
+        encoder.keep(placed);
+        encoder.bind_indices(&placed.scene.indices);
         let pipeline_of = |material| key(material).and_then(|key| self.frame.pipelines.get(&key));
         let (mut known, mut bound) = (HashMap::new(), Bound::default());
         for placed in draws {
@@ -84,7 +85,7 @@ impl ModelDraws<'_> {
     pub(super) fn draw_pass(&self, encoder: &mut Encoder) {
         let request = &self.frame.state.pipelines;
         if !self.pass.desc.quads {
-            let draws = self.placed.into_iter().flat_map(PlacedScene::draws);
+            let draws = self.placed.into_iter().flat_map(|placed| placed.draws());
             return self.draw(encoder, draws, |material| Some(request.model_pass_key(self.pass, material)));
         }
         let Some(pipeline) = self.frame.pipelines.get(&request.model_pass_key(self.pass, QUADS)) else { return };

@@ -39,7 +39,7 @@ pub(super) struct Passes<'a> {
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
     /// The model in the pose of the frame.
-    pub(super) placed: Option<&'a PlacedScene>,
+    pub(super) placed: Option<&'a Arc<PlacedScene>>,
     /// The sets of the stages of the model, the sky and the accumulation.
     pub(super) sets: &'a PassSets,
     /// The part of the frame to shade; `None` is all of it.
@@ -327,10 +327,10 @@ fn within(rect: Rect, area: Rect) -> Rect {
 }
 
 /// The draws of a scene in the order that blending and depth require.
-pub(super) fn sort<'a>(placed: Option<&'a PlacedScene>, state: &FrameState) -> Sorted<'a> {
+pub(super) fn sort<'a>(placed: Option<&'a Arc<PlacedScene>>, state: &FrameState) -> Sorted<'a> {
     let eye = state.camera.eye;
     let distance = |placed: &PlacedDraw<'_>| placed.placement.center_ws.distance_squared(eye);
-    let draws = placed.into_iter().flat_map(PlacedScene::draws);
+    let draws = placed.into_iter().flat_map(|placed| placed.draws());
     let mut by_distance: Vec<_> = draws.map(|placed| (distance(&placed), placed)).collect();
     by_distance.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut sorted = Sorted::default();

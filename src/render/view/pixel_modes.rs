@@ -72,8 +72,8 @@ impl PixelModes {
             view.in_flight[slot].uniforms.write(constants, &frame.lights(), state.params());
         }
 
-        let placed = view.motion.place(frame);
-        let placed = placed.as_deref();
+        let placed = view.motion.place(encoder, of_passes, frame, &sets[0], false)?;
+        let placed = placed.as_ref();
         let context = |slot: usize| {
             let (frame_set, constants) = (&sets[slot % 2], if slot == of_pixel { &at_pixel } else { &constants });
             PassContext { frame, placed, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }

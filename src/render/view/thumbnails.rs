@@ -113,8 +113,8 @@ impl Thumbnails {
 
         let depth = targets.read_depth();
         let blocks = in_flight.blocks.clone();
-        let placed = view.motion.place(frame);
-        let placed = placed.as_deref();
+        let placed = view.motion.place(encoder, first, frame, &set, false)?;
+        let placed = placed.as_ref();
         let context = PassContext { frame, placed, frame_set: &set, blocks: &blocks, constants: &constants, depth };
         view.declared.before_model(encoder, &context)?;
         let request = &frame.state.pipelines;

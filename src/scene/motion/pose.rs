@@ -58,4 +58,9 @@ impl Pose {
         }
         of_materials(self).eq(of_materials(other))
     }
+
+    /// Whether joints or morph targets move vertices.
+    pub fn deforms(&self) -> bool {
+        !self.joints.is_empty() || !self.weights.is_empty()
+    }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use crate::shader::glsl::syntax::outside_brackets;
 use crate::shader::glsl::{Token, code, is_name};
 
-/// The names of uniforms, and of uniform and buffer blocks, that are declared without `layout(binding = ...)`. Knows no macros.
+/// The names of uniforms, and of uniform and buffer blocks, that are declared without `layout(binding = ...)` and need one. Knows no
+/// macros.
 pub fn unbound(text: &str) -> BTreeSet<String> {
     if !text.contains("uniform") && !text.contains("buffer") {
         return BTreeSet::new();
@@ -31,7 +32,8 @@ fn declared(statement: &[Token<'_>]) -> Vec<String> {
     // Without what is in brackets: the layout, and lengths of arrays.
     let plain: Vec<&str> = outside_brackets(statement).map(|(_, token)| token.text).collect();
     let is = |word: &str| statement.iter().any(|token| token.text == word);
-    if !(plain.contains(&"uniform") || plain.contains(&"buffer")) || is("binding") || is("push_constant") {
+    let has_none = ["binding", "push_constant", "buffer_reference"].into_iter().any(is);
+    if !(plain.contains(&"uniform") || plain.contains(&"buffer")) || has_none {
         return Vec::new();
     }
     let names = plain.split(|token| *token == ",").filter_map(|part| part.iter().rev().find(|token| is_name(token)));
@@ -50,6 +52,7 @@ mod tests {
             layout(push_constant) uniform Push { float x; } push;\n\
             layout(rgba16f) uniform writeonly image2D\n  image;\n\
             uniform Block { float uniform_like; } block;\n\
+            layout(buffer_reference, scalar) readonly buffer Pointed { vec4 at[]; };\n\
             layout(std430) readonly buffer Particles { vec4 at[N(2)]; };\n\
             layout(scalar,\n  binding = 3) uniform Other { float y; };\n\
             float f(int buffer) { int uniform; }\n\

@@ -97,6 +97,10 @@ fn help(role: StageRole, resource: Resource, is_library: bool) -> &'static str {
         (StageRole::Bake | StageRole::Measure, _) => {
             "it can read parameters (user/params.glsl), constants with //@ui and `task`"
         }
+        (StageRole::Deform, _) => {
+            "it can read parameters (user/params.glsl), constants with //@ui and the instances in BINDING_DEFORMATIONS"
+        }
+        (_, Resource::Deformations) => "only deform.comp moves vertices; others read the moved ones",
         (_, Resource::Scene) => "only paths.frag has the scene that rays are traced through",
         (_, Resource::Task) => {
             "`task` belongs to the compute stages in ibl/ and measure/; passes have `pass` and `frame`"

@@ -37,7 +37,7 @@ pub(in crate::render::view) struct DeclaredPasses {
 pub(in crate::render::view) struct PassContext<'a> {
     pub(in crate::render::view) frame: &'a BoundFrame,
     /// The model in the pose of the frame.
-    pub(in crate::render::view) placed: Option<&'a PlacedScene>,
+    pub(in crate::render::view) placed: Option<&'a Arc<PlacedScene>>,
     pub(in crate::render::view) frame_set: &'a Arc<DescriptorSet>,
     pub(in crate::render::view) blocks: &'a Blocks,
     /// The content of the block `Frame`.

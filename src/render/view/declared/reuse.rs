@@ -68,8 +68,7 @@ pub(super) fn cache_key(
     }
     if instances > 0 {
         from.bytes.extend(instances.to_le_bytes());
-        frame.scene.iter().for_each(|scene| from.object(scene));
-        state.scene.iter().for_each(|scene| from.object(scene.pose()));
+        context.placed.iter().for_each(|placed| from.object(*placed));
     }
     Some(from)
 }

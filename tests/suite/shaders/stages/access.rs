@@ -25,6 +25,7 @@ layout(set = SET_MATERIAL, binding = BINDING_BASE_COLOR_TEXTURE) uniform sampler
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube probe_environment;
 layout(set = SET_FRAME, binding = BINDING_DFG) uniform sampler2D probe_table;
 layout(set = SET_FRAME, binding = BINDING_BVH, scalar) readonly buffer ProbeNodes { BvhNode probe_nodes[]; };
+layout(set = SET_TASK, binding = BINDING_DEFORMATIONS, scalar) readonly buffer ProbeInstances { Deformation probe_instances[]; };
 uniform sampler2D probe_image;
 float reads_constant() { return PROBED == 2.0 ? 1.0 : 0.0; }
 float reads_params() { return roughness_scale == 0.5 ? 1.0 : 0.0; }
@@ -36,6 +37,7 @@ float reads_environment() { return abs(textureLod(probe_environment, vec3(0.0, 1
 float reads_tables() { return textureLod(probe_table, vec2(0.5, 0.1), 0.0).b > 0.5 ? 1.0 : 0.0; }
 float reads_scene() { return probe_nodes[0].max_ws.x > 0.1 ? 1.0 : 0.0; }
 float reads_pass() { return textureLod(probe_image, vec2(0.5), 0.0).r == 0.25 ? 1.0 : 0.0; }
+float reads_deformations() { return float(probe_instances[0].vertex_count) + 1.0; }
 float reads_task() { return float(task.size.x) + 1.0; }
 #endif
 ";
@@ -95,7 +97,7 @@ impl Place {
     }
 }
 
-use StageRole::{Bake, Compute, Measure, Model, Paths, Quads, Screen};
+use StageRole::{Bake, Compute, Deform, Measure, Model, Paths, Quads, Screen};
 
 /// The columns of the table, and more: every hook, a function of the BRDF, every kind of pass and bake.
 const PLACES: &[Place] = &[
@@ -139,6 +141,13 @@ const PLACES: &[Place] = &[
         from: "void main() {\n",
         to: "float code() { return SUM; }\nvoid main() {\n    if (code() < 0.0) return;\n",
         roles: &[Bake],
+        mode: "",
+    },
+    Place {
+        file: "deform.comp",
+        from: "void main() {\n",
+        to: "float code() { return SUM; }\nvoid main() {\n    if (code() < 0.0) return;\n",
+        roles: &[Deform],
         mode: "",
     },
     Place {
