@@ -1,4 +1,4 @@
-//! `specula bench reload|frame|load|bake|thumbnails|passes`: measures times on this machine, and prints them with the device's name.
+//! `specula bench reload|frame|load|bake|thumbnails|passes|scale`: measures times on this machine, and prints them with the device's name.
 
 mod args;
 mod context;
@@ -6,6 +6,7 @@ mod edits;
 mod folder;
 mod passes;
 mod samples;
+mod scale;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -45,6 +46,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Bake => bake(&bench)?,
         What::Passes => passes::passes(&bench)?,
         What::Thumbnails => thumbnails(&bench)?,
+        What::Scale => scale::scale(&bench)?,
     };
     drop(progress);
     result["device"] = json!(gpu.info().name);
@@ -302,6 +304,12 @@ fn print_table(result: &Value) {
                 out!("{name:24} min {min:>10}   median {median:>10}   p95 {p95:>10}")
             }
             _ if value.is_array() && name == "modes" => {}
+            _ if matches!(name.as_str(), "primitives" | "materials") => {
+                for step in value.as_array().into_iter().flatten() {
+                    let of = format!("{} primitives, {} materials", step["primitives"], step["materials"]);
+                    out!("{of:34} cpu_ms min {:>10}   growth {:>8}", step["cpu_ms"]["min"], step["growth"]);
+                }
+            }
             _ if name == "passes" => {
                 for (pass, ms) in value.as_object().into_iter().flatten() {
                     out!("{:24} median {:>10}", format!("  pass {pass}"), ms["median"]);

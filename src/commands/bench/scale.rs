@@ -1,0 +1,104 @@
+//! `bench scale`: how the time of a frame grows with the number of primitives and of materials.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+use serde_json::{Value, json};
+use specula::cpu_clock::CpuClock;
+use specula::headless::Headless;
+use specula::interface::Vertex;
+use specula::scene::{Instance, Material, Model, Primitive, Topology, built_in};
+
+use super::context::Bench;
+use super::samples::{round, summary};
+use crate::commands::Failure;
+
+/// Numbers of primitives, with [`MATERIALS`] materials.
+const PRIMITIVES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
+/// Numbers of materials, each of as many primitives.
+const MATERIALS: [usize; 4] = [10, 100, 1_000, 10_000];
+/// The built-in model whose material and first triangle are copied.
+const BASE: &str = "ior";
+
+/// Draws a grid of triangles while the camera turns, for each number of primitives and of materials.
+pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
+    let (source, settings) = (bench.args.common.source()?, bench.args.common.settings()?);
+    let mut headless = bench.renderer(source, settings, grid(1, 1)?)?;
+    let of_primitives = PRIMITIVES.map(|count| (count, count.min(MATERIALS[0])));
+    let of_materials = MATERIALS.map(|count| (count, count));
+    Ok(json!({
+        "size": [bench.args.common.size().0, bench.args.common.size().1],
+        "primitives": series(bench, &mut headless, &of_primitives)?,
+        "materials": series(bench, &mut headless, &of_materials)?,
+    }))
+}
+
+/// Times frames of each number of primitives and materials. `growth` is the factor by which the CPU time grows from the step before.
+fn series(bench: &Bench<'_>, headless: &mut Headless, steps: &[(usize, usize)]) -> Result<Vec<Value>, Failure> {
+    let (mut found, mut before) = (Vec::new(), None);
+    for (index, (primitives, materials)) in steps.iter().enumerate() {
+        bench.progress.begin("step", (index, steps.len()), &format!("{primitives} primitives, {materials} materials"));
+        headless.set_model(grid(*primitives, *materials)?)?;
+        headless.draw()?;
+        let (mut cpu, mut device) = (Vec::new(), Vec::new());
+        for _ in 0..bench.args.samples {
+            headless.settings_mut().camera.azimuth += 0.001;
+            let clock = CpuClock::start();
+            headless.draw()?;
+            cpu.extend(clock.map(CpuClock::ms));
+            device.extend(headless.device_ms());
+        }
+        let cpu = summary(cpu);
+        let now = cpu["min"].as_f64();
+        let growth = now.zip(before).map(|(now, before): (f64, f64)| round(now / before));
+        before = now;
+        found.push(json!({
+            "primitives": primitives,
+            "materials": materials,
+            "cpu_ms": cpu,
+            "device_ms": summary(device),
+            "growth": growth,
+        }));
+    }
+    Ok(found)
+}
+
+/// A cube of as many triangles, each a primitive. Its materials have different colors and equal pipelines.
+fn grid(primitives: usize, materials: usize) -> Result<Model, Failure> {
+    let missing = || Failure::Input(format!("the built-in model {BASE} is missing"));
+    let base = built_in(BASE).and_then(Result::ok).ok_or_else(missing)?;
+    let first = base.primitives.first().ok_or_else(missing)?;
+    let instance = base.instances.first().ok_or_else(missing)?;
+    let color = |index: usize| index as f32 / materials.max(1) as f32;
+    let material = |index: usize| {
+        let mut material: Material = base.materials[first.material].clone();
+        material.numbers.base_color_factor = [color(index), 0.5, 1.0 - color(index), 1.0];
+        material
+    };
+    let corners: Vec<Vertex> = first.indices.iter().take(3).map(|index| first.vertices[*index as usize]).collect();
+    let triangle = |index: usize| Primitive {
+        name: first.name.clone(),
+        vertices: corners.clone(),
+        indices: vec![0, 1, 2],
+        topology: Topology::Triangles,
+        material: index % materials,
+        default_material: index % materials,
+        variant_materials: Vec::new(),
+        deformation: None,
+        ..*first
+    };
+    let side = (primitives as f64).cbrt().ceil() as usize;
+    let size = base.bounds.max - base.bounds.min;
+    let place = |index: usize| {
+        let cell = Vec3::new((index % side) as f32, (index / side % side) as f32, (index / side / side) as f32);
+        let corner = base.bounds.min + size * cell / side as f32;
+        let world_from_object = Mat4::from_translation(corner) * Mat4::from_scale(Vec3::splat(1.0 / side as f32));
+        Instance { primitive: index, world_from_object, ..instance.clone() }
+    };
+    Ok(Model {
+        materials: (0..materials).map(material).collect(),
+        primitives: Arc::new((0..primitives).map(triangle).collect()),
+        instances: (0..primitives).map(place).collect(),
+        ..base.clone()
+    })
+}
