@@ -1,7 +1,7 @@
 //! Where the draws of a scene are in one frame. The list of draws stays while the model moves; a pose adds the matrices, the
 //! vertices that it has moved, the winding and the centers.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Mat3, Mat4, Vec3};
 
@@ -40,6 +40,8 @@ pub(crate) struct PlacedScene {
     before: Option<(Posed, Arc<Buffer>)>,
     /// Of each entry of [`GpuScene::draws`].
     placements: Vec<Placement>,
+    /// Indices of the draws, as they were sorted last: while the camera moves little, they are nearly sorted.
+    order: Mutex<Vec<u32>>,
 }
 
 impl Posed {
@@ -91,8 +93,9 @@ impl PlacedScene {
                 center_ws: world.transform_point3(center),
             }
         };
-        let placements = scene.draws.iter().map(place).collect();
-        Self { scene: scene.clone(), posed, before: None, placements }
+        let placements: Vec<Placement> = scene.draws.iter().map(place).collect();
+        let order = Mutex::new((0..placements.len() as u32).collect());
+        Self { scene: scene.clone(), posed, before: None, placements, order }
     }
 
     /// The places of all draws in another pose. Empty if none of them has moved.
@@ -126,6 +129,16 @@ impl PlacedScene {
     /// Whether a draw has moved since the frame before.
     pub(crate) fn has_moved(&self) -> bool {
         self.before.is_some()
+    }
+
+    /// The draws by the distance of their centers from a point; those at equal distances in the order of the scene.
+    pub(crate) fn front_to_back(&self, eye: Vec3) -> Vec<PlacedDraw<'_>> {
+        let distance = |placement: &Placement| placement.center_ws.distance_squared(eye);
+        let distances: Vec<f32> = self.placements.iter().map(distance).collect();
+        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
+        order.sort_by(|a, b| distances[*a as usize].total_cmp(&distances[*b as usize]).then(a.cmp(b)));
+        let placed = |index: &u32| (&self.scene.draws[*index as usize], &self.placements[*index as usize]);
+        order.iter().map(placed).map(|(draw, placement)| PlacedDraw { draw, placement }).collect()
     }
 
     pub(crate) fn draws(&self) -> impl Iterator<Item = PlacedDraw<'_>> {

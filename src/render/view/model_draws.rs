@@ -21,7 +21,7 @@ use crate::frame::{MaterialVariant, PipelineKey, QUADS};
 use crate::gpu::{DescriptorSet, Encoder, Pipeline, SetLayouts, vk};
 use crate::interface::{ALPHA_BLEND, Draw, MAX_LIGHT_VIEWS};
 use crate::render::bound_frame::BoundFrame;
-use crate::render::scene::{PlacedDraw, PlacedScene};
+use crate::render::scene::{GpuDraw, PlacedDraw, PlacedScene};
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Cull, Instances};
 use crate::shader::graph::MeshStages;
@@ -63,21 +63,22 @@ impl ModelDraws<'_> {
         encoder.bind_indices(&placed.scene.indices);
         let pipeline_of = |material| key(material).and_then(|key| self.frame.pipelines.get(&key));
         let (mut known, mut bound) = (HashMap::new(), Bound::default());
+        let mut last = None;
         for placed in draws {
-            let variant = placed.draw.variant;
-            if let Some(pipeline) = *known.entry(variant).or_insert_with(|| pipeline_of(variant)) {
-                if bound
-                    .material
-                    .replace(&placed.draw.material)
-                    .is_none_or(|last| !Arc::ptr_eq(last, &placed.draw.material))
-                {
-                    encoder.bind_set(self.layouts, &placed.draw.material);
-                }
-                if bound.pipeline.replace(pipeline).is_none_or(|last| !Arc::ptr_eq(last, pipeline)) {
-                    self.sets.bind(encoder, pipeline);
-                }
-                self.draw_one(encoder, &mut bound, placed);
+            let GpuDraw { variant, material, .. } = placed.draw;
+            let pipeline = match last {
+                Some((of, pipeline)) if of == *variant => pipeline,
+                _ => *known.entry(*variant).or_insert_with(|| pipeline_of(*variant)),
+            };
+            last = Some((*variant, pipeline));
+            let Some(pipeline) = pipeline else { continue };
+            if bound.material.replace(material).is_none_or(|last| !Arc::ptr_eq(last, material)) {
+                encoder.bind_set(self.layouts, material);
             }
+            if bound.pipeline.replace(pipeline).is_none_or(|last| !Arc::ptr_eq(last, pipeline)) {
+                self.sets.bind(encoder, pipeline);
+            }
+            self.draw_one(encoder, &mut bound, placed);
         }
     }
 

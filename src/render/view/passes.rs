@@ -329,12 +329,8 @@ fn within(rect: Rect, area: Rect) -> Rect {
 /// The draws of a scene in the order that blending and depth require.
 pub(super) fn sort<'a>(placed: Option<&'a Arc<PlacedScene>>, state: &FrameState) -> Sorted<'a> {
     let eye = state.camera.eye;
-    let distance = |placed: &PlacedDraw<'_>| placed.placement.center_ws.distance_squared(eye);
-    let draws = placed.into_iter().flat_map(|placed| placed.draws());
-    let mut by_distance: Vec<_> = draws.map(|placed| (distance(&placed), placed)).collect();
-    by_distance.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut sorted = Sorted::default();
-    for (_, placed) in by_distance {
+    for placed in placed.into_iter().flat_map(|placed| placed.front_to_back(eye)) {
         match placed.draw.variant {
             v if v.alpha == ALPHA_BLEND => sorted.blended.push(placed),
             v if state.pipelines.is_transmissive(v) => sorted.transmissive.push(placed),
