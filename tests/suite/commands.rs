@@ -1,6 +1,7 @@
 //! The program as a process: options, files, exit codes, messages, and what the README promises.
 
 mod attacks;
+mod bench;
 mod cache;
 mod cli;
 mod files;

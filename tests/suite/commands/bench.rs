@@ -1,0 +1,19 @@
+//! `specula bench`: what it prints.
+
+use crate::support::process::run;
+use serde_json::Value;
+
+#[test]
+fn bench_scale_prints_the_growth_from_step_to_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["bench", "scale", "--json", "--samples", "1", "--size", "16x16", "--env", "none"];
+    let told = run(folder.path(), &args).expect(0, &[]).json();
+    let counts = |series: &str, of: &str| -> Vec<u64> {
+        let steps: &[Value] = told[series].as_array().unwrap();
+        assert!(steps.iter().all(|step| step["cpu_ms"]["min"].as_f64().is_some_and(|ms| ms > 0.0)), "{told}");
+        assert!(steps[0]["growth"].is_null() && steps[1..].iter().all(|step| step["growth"].is_f64()), "{told}");
+        steps.iter().filter_map(|step| step[of].as_u64()).collect()
+    };
+    assert_eq!(counts("primitives", "primitives"), [10, 100, 1_000, 10_000, 100_000]);
+    assert_eq!(counts("materials", "materials"), [10, 100, 1_000, 10_000]);
+}
