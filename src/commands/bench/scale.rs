@@ -96,7 +96,7 @@ fn grid(primitives: usize, materials: usize) -> Result<Model, Failure> {
         Instance { primitive: index, world_from_object, ..instance.clone() }
     };
     Ok(Model {
-        materials: (0..materials).map(material).collect(),
+        materials: Arc::new((0..materials).map(material).collect()),
         primitives: Arc::new((0..primitives).map(triangle).collect()),
         instances: (0..primitives).map(place).collect(),
         ..base.clone()

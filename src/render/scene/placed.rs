@@ -9,7 +9,7 @@ use super::deformables::Moved;
 use super::{GpuDraw, GpuScene};
 use crate::gpu::{Buffer, vk};
 use crate::interface::{ATTRIBUTE_MOVED, Before, Draw};
-use crate::scene::Pose;
+use crate::scene::Model;
 
 /// The part of a draw that depends on the pose.
 pub(crate) struct Placement {
@@ -25,10 +25,10 @@ pub(crate) struct PlacedDraw<'a> {
     pub(crate) placement: &'a Placement,
 }
 
-/// A pose, and the vertices that it has moved if there are any.
+/// The model in a pose, and the vertices that the pose has moved if there are any.
 #[derive(Clone)]
 pub(crate) struct Posed {
-    pub(crate) pose: Arc<Pose>,
+    pub(crate) model: Arc<Model>,
     pub(crate) vertices: Option<Arc<Buffer>>,
 }
 
@@ -47,17 +47,17 @@ pub(crate) struct PlacedScene {
 impl Posed {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let vertices = [self, other].map(|posed| posed.vertices.as_ref().map(Arc::as_ptr));
-        Arc::ptr_eq(&self.pose, &other.pose) && vertices[0] == vertices[1]
+        Arc::ptr_eq(&self.model, &other.model) && vertices[0] == vertices[1]
     }
 
     /// The object to world transform of a draw.
     fn world(&self, draw: &GpuDraw) -> Mat4 {
-        self.pose.instances.get(draw.instance).copied().unwrap_or(Mat4::IDENTITY)
+        self.model.instances.get(draw.instance).map_or(Mat4::IDENTITY, |instance| instance.world_from_object)
     }
 
     /// The moved vertices of a draw; `None` if it has none.
     fn moved(&self, scene: &GpuScene, draw: &GpuDraw) -> Option<Moved> {
-        self.vertices.as_ref().and(scene.deformables.as_ref())?.of_instance(draw.instance, &self.pose)
+        self.vertices.as_ref().and(scene.deformables.as_ref())?.of_instance(draw.instance, &self.model.pose)
     }
 
     fn place(&self, scene: &GpuScene, draw: &GpuDraw, address: Option<u64>) -> Before {

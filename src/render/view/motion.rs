@@ -48,10 +48,10 @@ impl Motion {
             return Ok(None);
         };
         let vertices = self.moved.of(encoder, slot, frame, frame_set)?;
-        let posed = Posed { pose: state.pose().clone(), vertices };
+        let posed = Posed { model: state.model().clone(), vertices };
         let last = self.placed.take().filter(|(loaded, _)| Arc::ptr_eq(loaded, state.loaded())).map(|(_, last)| last);
         let from =
-            last.as_ref().map(|last| last.posed()).filter(|from| follows && !Arc::ptr_eq(&from.pose, &posed.pose));
+            last.as_ref().map(|last| last.posed()).filter(|from| follows && !Arc::ptr_eq(&from.model, &posed.model));
         let is_same =
             |last: &PlacedScene| Arc::ptr_eq(&last.scene, scene) && last.posed().is_same(&posed) && !last.has_moved();
         let placed = match (&last, from) {

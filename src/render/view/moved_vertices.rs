@@ -55,7 +55,8 @@ impl Source {
 
     fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.deformables, &other.deformables)
-            && Arc::ptr_eq(&self.pose, &other.pose)
+            && (Arc::ptr_eq(&self.pose, &other.pose)
+                || (&self.pose.joints, &self.pose.weights) == (&other.pose.joints, &other.pose.weights))
             && Arc::ptr_eq(&self.pipeline, &other.pipeline)
             && self.params == other.params
     }
