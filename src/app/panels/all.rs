@@ -73,7 +73,11 @@ impl Panels {
             PanelRequest::ShowExercise if self.layout.is_in_sight(Panel::LEARN) => {}
             PanelRequest::ShowExercise => self.layout.arrange_temporarily(Preset::Learn),
             PanelRequest::ToggleTheme => self.layout.set_light(!self.layout.is_light()),
-            PanelRequest::ToggleKeys => self.show_keys ^= true,
+            PanelRequest::ToggleKeys => {
+                // The palette would lie half over the list.
+                self.palette = Palette::default();
+                self.show_keys ^= true;
+            }
             PanelRequest::TogglePalette => self.palette.toggle(),
             PanelRequest::ChooseFile(dialog) => self.palette.choose_file(dialog),
             PanelRequest::ShowGallery => self.open_gallery.is_open = true,

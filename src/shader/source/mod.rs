@@ -80,6 +80,9 @@ impl Source {
             let source = Self::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
             return if source.is_bounded() { Ok(source) } else { Err(too_many_files(path)) };
         }
+        if !path.exists() {
+            return Err(format!("{}: there is no such file or folder", path.display()));
+        }
         Err(format!(
             "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
             path.display()

@@ -219,7 +219,7 @@ fn a_look_whose_shaders_are_gone_keeps_the_shaders_and_their_versions() {
     assert_eq!(viewer.running.done(json!({"command": "versions"})), versions);
     viewer.running.end_input();
     let stderr = viewer.quit();
-    assert!(stderr.contains("gone is no Specula shader tree"), "{stderr}");
+    assert!(stderr.contains("gone: there is no such file or folder"), "{stderr}");
 }
 
 #[test]

@@ -225,7 +225,7 @@ fn a_second_tree_draws_its_side_and_is_reloaded() {
     viewer.running.done(json!({"command": "mode", "name": "d"}));
     viewer.until("D of the second tree", |shot| *shot != other && *shot != own);
     let message = viewer.running.refused(json!({"command": "compare", "tree": "nowhere"}));
-    assert!(message.contains("nowhere is no Specula shader tree"), "{message}");
+    assert!(message.contains("nowhere: there is no such file or folder"), "{message}");
     viewer.quit();
 }
 

@@ -186,6 +186,11 @@ fn the_list_of_keys_takes_letters_and_escape() {
     harness.run_steps(2);
     assert!(!harness.state().panels.show_keys && !texts(&harness).contains_key("Ctrl+Z"));
     assert!(asked(&mut harness).is_empty());
+    // The list closes a palette that is open before it.
+    let panels = &mut harness.state_mut().panels;
+    panels.palette.open();
+    panels.carry_out(&PanelRequest::ToggleKeys);
+    assert!(panels.show_keys && !panels.palette.is_open());
 }
 
 /// Opens the palette, types, and presses Enter. Returns the commands.
