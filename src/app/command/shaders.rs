@@ -96,7 +96,7 @@ pub(in crate::app) struct WriteDefaults {
 }
 
 pub(in crate::app) static WRITE_DEFAULTS: Spec<WriteDefaults> = Spec::new("write-defaults", write_defaults).takes(
-    r#""names"?: ["Rim", ...]"#,
+    r#""names"?: ["rim_strength", ...]"#,
     "Writes the values of these parameters, or of all, into the GLSL as their defaults. Does not ask. Result: edits",
 );
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::Edit;
 use super::literals::float;
+use crate::message::did_you_mean;
 use crate::settings::ShaderValue;
 use crate::shader::glsl::{Line, Token, is_name, is_word, lines};
 use crate::shader::source::TreePath;
@@ -17,13 +18,18 @@ use crate::shader::{Constant, Parameter, ShaderSet};
 /// gives the path of a file as annotations know it. Values that are the defaults already give none.
 ///
 /// # Errors
-/// A message if a value does not fit, or if a declaration has a form that cannot be rewritten.
+/// A message if `only` is no name, if a value does not fit, or if a declaration has a form that cannot be rewritten.
 pub fn defaults(
     shaders: &ShaderSet,
     values: &BTreeMap<String, ShaderValue>,
     only: Option<&str>,
     display: impl Fn(&TreePath) -> String,
 ) -> Result<Vec<Edit>, String> {
+    let parameters = shaders.parameters.iter().map(|parameter| parameter.name.as_str());
+    let names = parameters.chain(shaders.constants.iter().map(|constant| constant.name.as_str()));
+    if let Some(only) = only.filter(|only| names.clone().all(|name| name != *only)) {
+        return Err(format!("there is no parameter `{only}`.{}", did_you_mean(only, names)));
+    }
     let wanted: BTreeMap<String, ShaderValue> = values
         .iter()
         .filter(|(name, _)| only.is_none_or(|only| only == *name))

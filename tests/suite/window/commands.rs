@@ -264,6 +264,8 @@ fn clicks_grids_defaults_and_looks_are_commands() {
     let running = &mut viewer.running;
     running.reload(true);
     assert!(running.refused(json!({"command": "write-defaults"})).contains("have these values already"));
+    let unknown = running.refused(json!({"command": "write-defaults", "names": ["rim_strenght"]}));
+    assert_eq!(unknown, "there is no parameter `rim_strenght`. Did you mean `rim_strength`?");
     viewer.running.end_input();
     viewer.quit();
 }
