@@ -8,22 +8,25 @@ use crate::shader::Mode;
 /// A picture of a sheet.
 #[derive(Clone, Debug, Default)]
 pub struct Cell {
-    /// Name of the picture.
+    /// Its settings.
     pub settings: Settings,
     /// Its name, as `Roughness 0.25`.
     pub name: String,
+    /// A shorter name for narrow pictures, without the names of settings, as `0.25`.
+    pub short: String,
     /// Text after the name, in a quieter color.
     pub note: String,
 }
 
 impl Cell {
-    fn add(&mut self, name: &str, note: &str) {
+    fn add(&mut self, [name, short, note]: [&str; 3]) {
         let join = |text: &mut String, more: &str| match (text.is_empty(), more.is_empty()) {
             (_, true) => {}
             (true, false) => more.clone_into(text),
             (false, false) => *text += &format!(" · {more}"),
         };
         join(&mut self.name, name);
+        join(&mut self.short, short);
         join(&mut self.note, note);
     }
 }
@@ -37,7 +40,7 @@ pub fn cells_of_modes(settings: &Settings, modes: &[Mode]) -> Vec<Cell> {
             settings.view.frames = 1;
         }
         let note = if mode.name.eq_ignore_ascii_case(&mode.slug) { String::new() } else { mode.slug.clone() };
-        Cell { settings, name: mode.name.clone(), note }
+        Cell { settings, name: mode.name.clone(), short: mode.slug.clone(), note }
     };
     modes.iter().map(cell).collect()
 }
@@ -56,8 +59,8 @@ pub fn swept(mut cells: Vec<Cell>, sweeps: &[Sweep], session: &Session) -> Resul
             for value in &values {
                 let mut cell = cell.clone();
                 sweep.apply(&mut cell.settings, value)?;
-                let (name, note) = sweep.label(value, session);
-                cell.add(&name, &note);
+                let [name, short, note] = sweep.label(value, session);
+                cell.add([&name, &short, &note]);
                 all.push(cell);
             }
         }

@@ -17,8 +17,27 @@ impl Labels {
         FontVec::try_from_vec(data.font.to_vec()).map(Self).map_err(|error| error.to_string())
     }
 
-    /// Writes a line whose upper left corner is at `at`, `size` pixels high. What does not fit in `width` ends with an ellipsis.
-    /// Returns the width.
+    /// The width of a line that is `size` pixels high.
+    pub(super) fn width(&self, size: f32, text: &str) -> f32 {
+        let font = self.0.as_scaled(PxScale::from(size));
+        text.chars().map(|character| font.h_advance(font.glyph_id(character))).sum()
+    }
+
+    /// The text, or its beginning and its end around an ellipsis: it is often the ends that differ.
+    fn fitting(&self, size: f32, text: &str, width: f32) -> String {
+        if self.width(size, text) <= width {
+            return text.to_owned();
+        }
+        let letters: Vec<char> = text.chars().collect();
+        let cut = |kept: usize| -> String {
+            let (begin, end) = (kept.div_ceil(2), letters.len() - kept / 2);
+            letters[..begin].iter().chain(&['…']).chain(&letters[end..]).collect()
+        };
+        (0..letters.len()).rev().map(cut).find(|text| self.width(size, text) <= width).unwrap_or_default()
+    }
+
+    /// Writes a line whose upper left corner is at `at`, `size` pixels high. What does not fit in `width` has an ellipsis in its
+    /// middle. Returns the width.
     pub(super) fn write(
         &self,
         image: &mut RgbaImage,
@@ -30,15 +49,8 @@ impl Labels {
         let font = self.0.as_scaled(PxScale::from(size));
         let mut x = 0.0;
         let mut glyphs = Vec::new();
-        let ellipsis = font.h_advance(font.glyph_id('…'));
-        let whole: f32 = text.chars().map(|character| font.h_advance(font.glyph_id(character))).sum();
-        for character in text.chars() {
+        for character in self.fitting(size, text, width).chars() {
             let id = font.glyph_id(character);
-            if whole > width && x + font.h_advance(id) + ellipsis > width {
-                glyphs.push((font.glyph_id('…'), x));
-                x += ellipsis;
-                break;
-            }
             glyphs.push((id, x));
             x += font.h_advance(id);
         }
@@ -79,5 +91,6 @@ mod tests {
         assert!(image.pixels().any(|pixel| pixel[0] > 200));
         let cut = labels.write(&mut image, (0, 0), (14.0, 60.0), [255; 3], "Normal distribution D");
         assert!(cut <= 60.0 && cut > 30.0, "{cut}");
+        assert!(labels.width(14.0, "Normal distribution D") > 60.0 && (labels.width(14.0, "D") - short).abs() < 0.01);
     }
 }

@@ -125,7 +125,10 @@ impl SheetPlan {
             imageops::overlay(&mut sheet, &picture, i64::from(x), i64::from(y));
             let room = self.size.0 as f32;
             let at = (x, y + self.size.1 + 3);
-            let name = labels.write(&mut sheet, at, (TEXT, room), ink, &cell.name);
+            // A name that is cut would be that of its neighbors, too.
+            let is_narrow = !cell.short.is_empty() && labels.width(TEXT, &cell.name) > room;
+            let name = if is_narrow { &cell.short } else { &cell.name };
+            let name = labels.write(&mut sheet, at, (TEXT, room), ink, name);
             let left = room - name - 12.0;
             let note = [range(renderer), cell.note.clone()].into_iter().filter(|part| !part.is_empty());
             let note = note.collect::<Vec<_>>().join(" · ");

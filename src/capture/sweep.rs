@@ -103,10 +103,11 @@ impl Sweep {
         settings.check()
     }
 
-    /// The caption of a picture: the setting with its value and unit, and its valid values.
-    pub(super) fn label(&self, value: &str, session: &Session) -> (String, String) {
+    /// The caption of a picture: the setting with its value and unit, the value with its unit alone, and the valid values.
+    pub(super) fn label(&self, value: &str, session: &Session) -> [String; 3] {
         let takes = self.takes(session);
-        (format!("{} {value}{}", takes.title, takes.unit), takes.valid)
+        let short = format!("{value}{}", takes.unit);
+        [format!("{} {short}", takes.title), short, takes.valid]
     }
 
     fn takes(&self, session: &Session) -> Takes {
