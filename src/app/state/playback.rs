@@ -231,6 +231,20 @@ mod tests {
     }
 
     #[test]
+    fn the_clock_stays_at_the_end_of_an_animation_and_goes_on_from_there() {
+        let mut frames = Frames::new();
+        frames.animated();
+        let last = frames.next(true);
+        frames.playback.step = true;
+        for _ in 0..10 {
+            frames.now += Duration::from_millis(250);
+            assert_eq!(frames.playback.stay(), last);
+        }
+        assert_eq!(frames.next(true), last, "neither the time since then nor a step counts");
+        assert_eq!(frames.animated(), (0.5, 2));
+    }
+
+    #[test]
     fn a_step_goes_on_by_one_sixtieth_and_pauses() {
         let mut frames = Frames::new();
         frames.animated();

@@ -98,7 +98,7 @@ fn center(model: &Model, world: &[DMat4], warnings: &mut Vec<String>) -> Result<
         }
     }
     let size = min.abs().max(max.abs()).max_element();
-    if !(size <= f64::from(LARGEST_COORDINATE)) {
+    if size.is_nan() || size > f64::from(LARGEST_COORDINATE) {
         let expected = format!("coordinates up to {LARGEST_COORDINATE:e} in world space");
         return Err(Problem::invalid("the scene", expected, format!("{size:e}")));
     }

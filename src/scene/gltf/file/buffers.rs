@@ -51,7 +51,7 @@ impl<'t> Files<'t> {
                 Err(Problem::invalid(user, "all data inside of a built-in model", found))
             }
             Place::Archive(archive, folder) => {
-                let inside = |name: &PathBuf| inside(&format!("{folder}/{}", name.to_str()?).trim_start_matches('/'));
+                let inside = |name: &PathBuf| inside(format!("{folder}/{}", name.to_str()?).trim_start_matches('/'));
                 let named: Vec<String> = names.iter().filter_map(inside).collect();
                 let Some(first) = named.first() else {
                     let (uri, found) = (names[0].display().to_string(), "a path that leaves the archive".to_owned());

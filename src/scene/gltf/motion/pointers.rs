@@ -197,22 +197,18 @@ fn material(index: usize, path: &str, root: &json::Root) -> Option<Pointed> {
 fn light(index: usize, path: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
     let lights: &[json::extensions::scene::khr_lights_punctual::Light] = root.as_ref();
     let of_file = serde_json::to_value(lights.get(index)?).ok()?;
-    let (make, first, parts): (fn(usize) -> Property, usize, &[(&str, &[f64])]) = match path {
-        "color" => (Property::Light, 0, &[("color", &[1.0; 3]), ("intensity", &[1.0])]),
-        "intensity" => (Property::Light, 3, &[("color", &[1.0; 3]), ("intensity", &[1.0])]),
-        "range" => (Property::Range, 0, &[("range", &[0.0])]),
-        "spot/innerConeAngle" | "spot/outerConeAngle" => {
-            let outer = std::f64::consts::FRAC_PI_4;
-            let number = |path: &str, default: f64| numbers(&of_file, path, &[default]);
-            let rest = [number("spot/innerConeAngle", 0.0), number("spot/outerConeAngle", outer)].concat();
-            let of = |light: usize| Values { property: Property::Cone(light), numbers: rest.clone() };
-            let first = usize::from(path.ends_with("outerConeAngle"));
-            return Some(Pointed::Values(rig.lights_of(index).map(of).collect(), first, 1));
-        }
+    let number = |path: &str, default: f64| numbers(&of_file, path, &[default]);
+    let outer = std::f64::consts::FRAC_PI_4;
+    let angles = || [number("spot/innerConeAngle", 0.0), number("spot/outerConeAngle", outer)].concat();
+    let intensity = || [numbers(&of_file, "color", &[1.0; 3]), number("intensity", 1.0)].concat();
+    let (make, first, width, rest): (fn(usize) -> Property, _, _, _) = match path {
+        "color" => (Property::Light, 0, 3, intensity()),
+        "intensity" => (Property::Light, 3, 1, intensity()),
+        "range" => (Property::Range, 0, 1, number("range", 0.0)),
+        "spot/innerConeAngle" => (Property::Cone, 0, 1, angles()),
+        "spot/outerConeAngle" => (Property::Cone, 1, 1, angles()),
         _ => return None,
     };
-    let rest: Vec<f64> = parts.iter().flat_map(|(path, default)| numbers(&of_file, path, default)).collect();
-    let width = if path == "color" { 3 } else { 1 };
     let of = |light: usize| Values { property: make(light), numbers: rest.clone() };
     Some(Pointed::Values(rig.lights_of(index).map(of).collect(), first, width))
 }

@@ -173,7 +173,7 @@ fn a_model_that_cannot_be_seen_says_why() {
         let mut builder = Builder::triangle();
         change(&mut builder);
         let warnings = builder.model().warnings;
-        warnings.iter().cloned().find(|warning| warning.contains("Nothing of the model can be seen"))
+        warnings.iter().find(|warning| warning.contains("Nothing of the model can be seen")).cloned()
     };
     let says = |change, words: &str| {
         let reason = reason(change);
