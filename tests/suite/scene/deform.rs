@@ -219,8 +219,8 @@ fn velocity_follows_matrices_joints_and_morph_targets() {
         document.json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
         document.clip(&[(0, "weights", "SCALAR", vec![-1.0, 1.0])]);
     };
-    let all: [(&str, &dyn Fn(&mut Document)); 3] =
-        [("a node", &rigid), ("joints", &of_joints), ("a morph target", &of_targets)];
+    type Bend<'a> = &'a dyn Fn(&mut Document);
+    let all: [(&str, Bend<'_>); 3] = [("a node", &rigid), ("joints", &of_joints), ("a morph target", &of_targets)];
     for (what, bend) in all {
         let mut document = Document::new(&mesh);
         bend(&mut document);
