@@ -32,7 +32,6 @@
 pub mod app;
 mod cancel;
 pub mod capture;
-pub mod comparison;
 pub mod control;
 pub mod cpu_clock;
 #[cfg(test)]
@@ -48,6 +47,7 @@ pub mod learn;
 pub mod measure;
 pub mod message;
 pub mod picture;
+pub mod picture_difference;
 pub mod pipeline;
 pub mod recovery;
 mod regular_file;
@@ -56,6 +56,6 @@ pub mod scene;
 pub mod session;
 pub mod settings;
 pub mod shader;
-mod state;
+mod state_folder;
 mod threads;
 pub mod write_back;

@@ -7,7 +7,6 @@ mod camera;
 mod catalog;
 mod check;
 mod declare;
-mod display;
 mod entry;
 mod environment;
 mod expression;
@@ -20,6 +19,7 @@ mod part;
 mod scene;
 mod setting;
 mod value;
+mod value_display;
 mod view;
 
 use std::collections::BTreeMap;
@@ -31,7 +31,6 @@ pub use assign::unknown_setting;
 pub use camera::CameraSettings;
 pub use catalog::{catalog, setting};
 use declare::settings;
-pub use display::{Channels, Colormap, ViewRange, linear_from_srgb};
 pub use entry::{Curve, Entry, Slider, Unit, Valid};
 pub use environment::EnvironmentSettings;
 pub use expression::ExpressionSettings;
@@ -44,6 +43,7 @@ pub use part::choice_name;
 pub use scene::{ModelSettings, SceneSettings};
 pub use setting::Setting;
 pub use value::Value;
+pub use value_display::{Channels, Colormap, ViewRange, linear_from_srgb};
 pub use view::{Tonemap, ViewSettings};
 
 settings! {

@@ -16,7 +16,7 @@ mod frames;
 mod gallery;
 mod input;
 mod interface;
-mod keys;
+mod key_codes;
 mod layout;
 mod messages;
 mod mouse;

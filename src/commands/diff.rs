@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use specula::comparison::{Comparison, Measure, Picture};
 use specula::picture;
+use specula::picture_difference::{Comparison, Measure, Picture};
 
 use super::progress::Progress;
 use super::{Failure, print_json};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{Exercise, exercises};
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "learn.json";
 
@@ -36,19 +36,19 @@ pub struct Progress {
 impl Progress {
     /// The stored progress. A file that cannot be read counts as no progress.
     pub fn load() -> Self {
-        state::load(FILE).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+        state_folder::load(FILE).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
     }
 
     /// Forgets what was solved, but not where the folders are.
     pub fn reset(&mut self) {
         self.records.clear();
-        state::change(FILE, |stored: &mut Self| stored.records.clear());
+        state_folder::change(FILE, |stored: &mut Self| stored.records.clear());
     }
 
     /// Remembers where the folders of the exercises are.
     pub fn set_folder(&mut self, folder: PathBuf) {
         self.folder = Some(folder.clone());
-        state::change(FILE, |stored: &mut Self| stored.folder = Some(folder));
+        state_folder::change(FILE, |stored: &mut Self| stored.folder = Some(folder));
     }
 
     /// The record of an exercise.
@@ -63,7 +63,7 @@ impl Progress {
         change(record);
         if *record != before {
             let record = record.clone();
-            state::change(FILE, |stored: &mut Self| _ = stored.records.insert(exercise.name.clone(), record));
+            state_folder::change(FILE, |stored: &mut Self| _ = stored.records.insert(exercise.name.clone(), record));
         }
     }
 

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::declare::settings;
-use super::display::{Channels, Colormap, ViewRange, linear_from_srgb};
 use super::part::Choice;
+use super::value_display::{Channels, Colormap, ViewRange, linear_from_srgb};
 use crate::message::did_you_mean;
 
 /// Tone maps, in the order of `TONEMAP_*` in common/tonemap.glsl.

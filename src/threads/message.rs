@@ -10,13 +10,13 @@ use crossbeam_channel::Receiver;
 use winit::event_loop::EventLoopProxy;
 
 use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
-use crate::comparison::{Comparison, Picture, Still};
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
 use crate::picture::Look;
+use crate::picture_difference::{Comparison, Picture, Still};
 use crate::render::PathTracingKey;
 use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;

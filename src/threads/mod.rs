@@ -56,8 +56,8 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Sender, unbounded};
 use image::{RgbaImage, imageops};
 
-use crate::comparison::{Comparison, Picture, Still};
 use crate::gpu::{Gpu, Rect, SetLayouts, fault};
+use crate::picture_difference::{Comparison, Picture, Still};
 use crate::render::Readback;
 use crate::render::tools::Tools;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};

@@ -21,8 +21,8 @@ use crate::app::options::OtherPicture;
 use crate::app::state::State;
 use crate::app::state::compare::{Difference, With};
 use crate::app::state::shaders::versions::Versions;
-use crate::comparison::Comparison;
 use crate::events::{Event, emit};
+use crate::picture_difference::Comparison;
 use switch::{REPLACED, compare, end};
 pub(super) use write::write_files;
 

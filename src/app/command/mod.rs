@@ -9,6 +9,7 @@ pub(super) mod capture;
 pub(super) mod compare;
 mod fields;
 pub(super) mod file;
+mod history;
 pub(super) mod layout;
 pub(super) mod modes;
 mod numbers;

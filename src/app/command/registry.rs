@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
-use super::{camera, capture, compare, file, layout, modes, numbers, playback, program, scene, settings, shaders};
+use super::{
+    camera, capture, compare, file, history, layout, modes, numbers, playback, program, scene, settings, shaders,
+};
 use crate::app::palette::entries::{entries, entry_with};
 
 /// All commands.
@@ -58,8 +60,8 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &shaders::DRAFT,
     &shaders::WRITE_EDITS,
     &numbers::NUMBERS,
-    &settings::UNDO,
-    &settings::REDO,
+    &history::UNDO,
+    &history::REDO,
     &shaders::PASS,
     &playback::PLAYBACK,
     &modes::MODES,

@@ -5,12 +5,10 @@ use std::rc::Rc;
 
 use serde_json::{Value as Json, json};
 
-use super::about::{About, Group};
+use super::about::About;
 use super::assignments::assignments;
 use super::fields::{self, Fields};
-use super::shortcut::Shortcut;
 use super::spec::{Command, Spec, Until};
-use crate::app::actions::edits::take_back;
 use crate::app::actions::files::begin_reading;
 use crate::app::control::short;
 use crate::app::state::State;
@@ -42,32 +40,6 @@ pub(in crate::app) static GET: Spec<Option<String>> =
 
 pub(in crate::app) static SETTINGS: Spec<()> = Spec::fallible("settings", |_, _, ()| Ok(Until::Now(settings_json())))
     .line("All settings, with what each takes, its range, unit and meaning");
-
-pub(in crate::app) static UNDO: Spec<()> = Spec::fallible("undo", |state, engine, ()| {
-    let files = state.history.undo(&mut state.session.settings).ok_or("there is nothing to undo")?;
-    files.into_iter().for_each(|files| take_back(engine, files, false));
-    Ok(Until::SHOWN)
-})
-.line("Takes the last change of a setting back, or what the window last wrote to the shader files")
-.label("Undo", "")
-.shortcuts(
-    Group::Program,
-    &[Shortcut::key('z').ctrl()],
-    "undo a change of the settings, or what was written to the shader files; camera and mode are not undone",
-);
-
-pub(in crate::app) static REDO: Spec<()> = Spec::fallible("redo", |state, engine, ()| {
-    let files = state.history.redo(&mut state.session.settings).ok_or("there is nothing to redo")?;
-    files.into_iter().for_each(|files| take_back(engine, files, true));
-    Ok(Until::SHOWN)
-})
-.line("Takes the last undo back")
-.label("Redo", "")
-.shortcuts(
-    Group::Program,
-    &[Shortcut::key('z').ctrl().shift(), Shortcut::key('y').ctrl()],
-    "redo a change of the settings",
-);
 
 /// A change of the settings.
 #[derive(Clone)]

@@ -3,7 +3,7 @@
 use winit::event::KeyEvent;
 use winit::keyboard::{self, ModifiersState, NamedKey, PhysicalKey};
 
-use crate::app::keys;
+use crate::app::key_codes;
 
 /// The number of the digit 0 of the numeric keypad.
 const NUMPAD: u8 = 96;
@@ -92,7 +92,7 @@ impl Shortcut {
             }
             (Key::Named(key), keyboard::Key::Named(pressed)) => key == *pressed,
             (Key::At(number), _) => match event.physical_key {
-                PhysicalKey::Code(code) => keys::number(code) == Some(number),
+                PhysicalKey::Code(code) => key_codes::number(code) == Some(number),
                 PhysicalKey::Unidentified(_) => false,
             },
             _ => false,

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::last_complete::LastComplete;
-use crate::comparison::{Picture, Still};
 use crate::frame::FrameState;
+use crate::picture_difference::{Picture, Still};
 use crate::pipeline::PipelineSet;
 use crate::threads::second_tree::SecondTree;
 use crate::threads::worker::Snapshot;

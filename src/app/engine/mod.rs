@@ -9,9 +9,9 @@ mod tools;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::comparison::Still;
 use crate::gpu::Gpu;
 use crate::learn::exercise_of;
+use crate::picture_difference::Still;
 use crate::recovery::Recorder;
 use crate::render::Resources;
 use crate::render::tools::Tools;

@@ -9,7 +9,7 @@ use crate::app::command::modes::TOGGLE_MODE;
 use crate::app::command::spec::Command;
 use crate::app::engine::Engine;
 use crate::app::interface::Interface;
-use crate::app::keys;
+use crate::app::key_codes;
 use crate::app::state::State;
 use crate::scene::CameraController;
 
@@ -105,7 +105,7 @@ fn is_shortcut(key: &Key, modifiers: ModifiersState, is_everywhere: bool) -> boo
 /// key gets stuck.
 fn shader_key(state: &mut State, key: PhysicalKey, pressed: bool) -> bool {
     let PhysicalKey::Code(code) = key else { return false };
-    let Some(number) = keys::number(code) else { return false };
+    let Some(number) = key_codes::number(code) else { return false };
     let keys = state.playback.keys();
     if pressed {
         keys.press(number)

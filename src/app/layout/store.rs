@@ -5,7 +5,7 @@ use egui_tiles::{Tile, Tree};
 use serde::{Deserialize, Serialize};
 
 use crate::app::state::arrangement::{Panel, Preset};
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "layout.json";
 
@@ -28,7 +28,7 @@ pub(super) struct Stored {
 
 /// The stored arrangement.
 pub(super) fn load() -> Option<Stored> {
-    parse(&state::load(FILE)?)
+    parse(&state_folder::load(FILE)?)
 }
 
 fn parse(text: &str) -> Option<Stored> {
@@ -52,7 +52,7 @@ fn is_whole(tree: &Tree<Panel>) -> bool {
 /// Stores an arrangement.
 pub(super) fn save(stored: &Stored) {
     match serde_json::to_string(stored) {
-        Ok(text) => state::save(FILE, &text),
+        Ok(text) => state_folder::save(FILE, &text),
         Err(error) => tracing::debug!("the layout was not stored: {error}"),
     }
 }

@@ -2,7 +2,7 @@
 //! a thread.
 
 use super::Screen;
-use super::measured::{Copied, ErrorMap, Pair};
+use super::difference_pair::{Copied, ErrorMap, Pair};
 use super::reference_view::ReferenceView;
 use crate::gpu::{GpuError, Rect, Use};
 use crate::render::{BoundFrame, Output, Redraw};

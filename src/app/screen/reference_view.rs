@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use crate::comparison::Still;
 use crate::gpu::{Encoder, GpuError, Image, Rect, Use};
+use crate::picture_difference::Still;
 use crate::render::{BoundFrame, Output, Redraw, View};
 use crate::threads::Side;
 

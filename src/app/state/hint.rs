@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::events::ReloadEvent;
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "hint.json";
 /// The content of the file once the hint is dismissed.
@@ -20,7 +20,7 @@ pub(in crate::app) struct Hint {
 
 impl Hint {
     pub(in crate::app) fn restored() -> Self {
-        Self { is_shown: state::load(FILE).is_none(), folder: standard_folder(Path::new("")) }
+        Self { is_shown: state_folder::load(FILE).is_none(), folder: standard_folder(Path::new("")) }
     }
 
     #[cfg(test)]
@@ -40,7 +40,7 @@ impl Hint {
     /// Hides it permanently.
     pub(in crate::app) fn dismiss(&mut self) {
         self.is_shown = false;
-        state::save(FILE, DISMISSED);
+        state_folder::save(FILE, DISMISSED);
     }
 
     /// Dismisses the hint once a save of the user's own files has changed the picture: the hint has been followed.

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "sessions.json";
 /// Most sessions that are remembered.
@@ -83,7 +83,7 @@ impl LastSessions {
     /// Stores whether windows restore the last session by themselves.
     pub(in crate::app) fn set_always(&mut self, always: bool) {
         self.always = always;
-        state::change(FILE, |stored: &mut Stored| stored.always = always);
+        state_folder::change(FILE, |stored: &mut Stored| stored.always = always);
     }
 }
 
@@ -97,7 +97,7 @@ pub fn session_to_restore(tree: Option<&Path>) -> Option<SessionState> {
 pub(in crate::app) fn remember(work: &SessionState) {
     let Ok(directory) = std::env::current_dir() else { return };
     let session = LastSession { at: Local::now().timestamp(), work: absolute(work.clone()), directory };
-    state::change(FILE, |stored: &mut Stored| insert(stored, session));
+    state_folder::change(FILE, |stored: &mut Stored| insert(stored, session));
 }
 
 /// The state with absolute paths of files. Names of built-in models and environments stay.
@@ -134,7 +134,7 @@ fn find(stored: &Stored, directory: &Path, tree: Option<&Path>) -> Option<LastSe
 }
 
 fn load() -> Stored {
-    state::load(FILE).map(|text| parse(&text)).unwrap_or_default()
+    state_folder::load(FILE).map(|text| parse(&text)).unwrap_or_default()
 }
 
 /// A file that cannot be read counts as empty.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "recent.json";
 /// Most files of a kind.
@@ -41,7 +41,7 @@ pub(in crate::app) struct Recent {
 impl Recent {
     /// The files of the last run that still exist.
     pub(in crate::app) fn restored() -> Self {
-        state::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
+        state_folder::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
     }
 
     pub(in crate::app) fn of(&self, kind: Kind) -> &[PathBuf] {
@@ -63,7 +63,7 @@ impl Recent {
     /// Moves an opened file to the front, and stores the list.
     pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
         if self.insert(kind, path) {
-            state::change(FILE, |stored: &mut Self| {
+            state_folder::change(FILE, |stored: &mut Self| {
                 stored.drop_missing();
                 stored.insert(kind, path);
             });
@@ -76,7 +76,7 @@ impl Recent {
         let list = self.of_mut(kind);
         if list.contains(&path) && !path.exists() {
             list.retain(|known| *known != path);
-            state::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
+            state_folder::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
         }
     }
 

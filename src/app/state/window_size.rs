@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state;
+use crate::state_folder;
 
 const FILE: &str = "window.json";
 /// Smallest width and height that is restored, pixels.
@@ -16,7 +16,7 @@ struct Stored {
 
 /// Width and height of the last window, pixels.
 pub fn last_size() -> Option<(u32, u32)> {
-    parse(&state::load(FILE)?)
+    parse(&state_folder::load(FILE)?)
 }
 
 fn parse(text: &str) -> Option<(u32, u32)> {
@@ -28,7 +28,7 @@ fn parse(text: &str) -> Option<(u32, u32)> {
 /// Stores the size of a window that closes.
 pub(in crate::app) fn remember(size: (u32, u32)) {
     if let Ok(text) = serde_json::to_string(&Stored { size }) {
-        state::save(FILE, &text);
+        state_folder::save(FILE, &text);
     }
 }
 

@@ -138,7 +138,7 @@ fn nothing_that_reads_a_file_waits_for_a_pipe() {
     refuses("a measured BRDF", |pipe| MeasuredBrdf::open(pipe).is_err());
     refuses("an environment", |pipe| EnvironmentFile::open(pipe.to_str().unwrap()).is_err());
     refuses("a model", |pipe| load(pipe, &LoadOptions::default()).is_err());
-    refuses("a picture", |pipe| specula::comparison::Picture::open(pipe).is_err());
+    refuses("a picture", |pipe| specula::picture_difference::Picture::open(pipe).is_err());
     refuses("an exercise", |pipe| specula::learn::exercise_of(pipe.parent().unwrap()).is_none());
 }
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use crate::support::{model, render, renderer};
 use image::{DynamicImage, RgbImage};
-use specula::comparison::{Comparison, Picture};
+use specula::picture_difference::{Comparison, Picture};
 use specula::render::Capture;
 use specula::scene::BUILT_IN;
 use specula::settings::Settings;

@@ -11,7 +11,7 @@ use crate::app::engine::compared::{Compared, ScaledPicture};
 use crate::app::state::State;
 use crate::app::state::compare::file::PictureFile;
 use crate::app::state::compare::{Opening, With};
-use crate::comparison::{Picture, Still};
+use crate::picture_difference::{Picture, Still};
 use crate::threads::Message;
 
 /// Reads a picture on a thread, and then compares with it.
