@@ -149,6 +149,7 @@ impl Session {
             problems.extend(model.unknown_material(self.settings.materials.keys()));
             problems.extend(model.unknown_camera(&self.settings.camera));
             problems.extend(model.unknown_clip(&self.settings.animation));
+            problems.extend(model.unknown_target(&self.settings.animation));
         }
         problems
     }

@@ -64,6 +64,8 @@ pub struct Scene {
     look: Arc<Look>,
     /// The clips that give the pose, with their time.
     playing: Arc<[Playing]>,
+    /// The morph weights that the settings hold: [`Model::held_weights`].
+    held: Arc<[(usize, f32)]>,
     /// Whether the pose depends on the time.
     is_animated: bool,
     /// Whether it changes as the clock goes on. A clip that is not repeated ends.
@@ -113,16 +115,20 @@ impl Scene {
         let playing = self.loaded.playing(animation, time_s);
         let is_animated = self.loaded.is_animated(animation, &playing);
         let is_playing = self.loaded.is_playing(animation, &playing);
-        if *self.playing == *playing {
+        let held = self.loaded.held_weights(animation);
+        if *self.playing == *playing && *self.held == *held {
             return Self { is_animated, is_playing, ..self.clone() };
         }
         let place = self.look.place.transform();
         let are_same = |(a, b): (&Playing, &Playing)| (a.clip, a.weight) == (b.clip, b.weight);
-        let is_same_mix = self.playing.len() == playing.len() && self.playing.iter().zip(&playing).all(are_same);
-        let extent = if is_same_mix { self.model.whole_extent() } else { self.loaded.extent(&playing, place) };
-        let model = Arc::new(self.loaded.posed(&self.loaded.pose_at(&playing, place).into(), &extent));
+        let is_same_mix = *self.held == *held
+            && self.playing.len() == playing.len()
+            && self.playing.iter().zip(&playing).all(are_same);
+        let extent = if is_same_mix { self.model.whole_extent() } else { self.loaded.extent(&playing, &held, place) };
+        let model = Arc::new(self.loaded.posed(&self.loaded.pose_with(&playing, &held, place).into(), &extent));
         let has_same_materials = model.pose.has_same_materials(&self.model.pose);
-        let scene = Self { model, playing: playing.into(), is_animated, is_playing, ..self.clone() };
+        let (playing, held) = (playing.into(), held.into());
+        let scene = Self { model, playing, held, is_animated, is_playing, ..self.clone() };
         if has_same_materials {
             return scene;
         }
@@ -140,15 +146,17 @@ impl Scene {
     fn with(loaded: &Arc<Model>, settings: &Settings, time_s: f32) -> Self {
         let look = Look::new(loaded, settings);
         let playing = loaded.playing(&settings.animation, time_s);
-        let model = match (look.place.transform(), playing.as_slice()) {
-            (None, []) => loaded.clone(),
-            (Some(place), []) => Arc::new(loaded.placed(place)),
-            (place, playing) => Arc::new(loaded.at(playing, place)),
+        let held = loaded.held_weights(&settings.animation);
+        let model = match (look.place.transform(), playing.as_slice(), held.as_slice()) {
+            (None, [], []) => loaded.clone(),
+            (Some(place), [], []) => Arc::new(loaded.placed(place)),
+            (place, playing, held) => Arc::new(loaded.at(playing, held, place)),
         };
         let scene = Self {
             is_animated: loaded.is_animated(&settings.animation, &playing),
             is_playing: loaded.is_playing(&settings.animation, &playing),
             playing: playing.into(),
+            held: held.into(),
             visible: model.visible(&look.parts).map(Into::into),
             changed: changed(&model, &look),
             loaded: loaded.clone(),

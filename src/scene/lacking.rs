@@ -26,6 +26,12 @@ impl Model {
             settings.animation.clips.clear();
             told.push(problem);
         }
+        if settings.animation.weights == look.animation.weights
+            && let Some(problem) = self.unknown_target(&look.animation)
+        {
+            settings.animation.weights.clear();
+            told.push(problem);
+        }
         let is_known = |name: &String| self.unknown_material(std::iter::once(name)).is_none();
         let lacking: Vec<&String> = look.materials.keys().filter(|name| !is_known(name)).collect();
         settings

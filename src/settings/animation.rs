@@ -14,6 +14,10 @@ settings! {
         /// NAME:0.5 half of it. Empty: the first clip.
         #[serde(deserialize_with = "names")]
         clips: Vec<String>, row("Clips") title("Animations");
+        /// Weights of morph targets in place of those of the file and its clips: NAME:0.5 for each, where NAME is that of the target, or its
+        /// number in its mesh, from 0. Targets of equal name move together.
+        #[serde(deserialize_with = "names")]
+        weights: Vec<String>, row("Morph weights");
         /// Time in the clips when the clock is at 0.
         time: f32, limits(-1e6, 1e6) unit(SECONDS) row("Start") title("Start of the animation") slider(0.0, 10.0, 2);
         /// Speed of the clips; below 0 they play backwards.

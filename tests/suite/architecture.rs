@@ -14,9 +14,9 @@ use syn::{Attribute, Item, UseTree, Visibility};
 /// of one layer do not know each other.
 const LAYERS: &[&[&str]] = &[
     &["cancel", "cpu_clock", "interface", "message", "regular_file"],
-    &["disk_cache", "settings", "state"],
+    &["disk_cache", "settings", "state_folder"],
     &["shader", "gpu", "scene"],
-    &["frame", "comparison", "control", "file_kind", "recovery"],
+    &["frame", "picture_difference", "control", "file_kind", "recovery"],
     &["pipeline", "session"],
     &["render"],
     &["headless", "measure", "picture"],

@@ -61,6 +61,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             let unknown = model.unknown_part(&settings.scene);
             let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
             let unknown = unknown.or_else(|| model.unknown_clip(&settings.animation));
+            let unknown = unknown.or_else(|| model.unknown_target(&settings.animation));
             unknown.into_iter().for_each(|problem| state.say(problem));
         }
         Err((message, tried)) => {

@@ -2,6 +2,7 @@
 //! what it shows and sets. `crate::app::layout` arranges them; `all` shows them.
 
 pub(super) mod all;
+mod animation;
 mod baking;
 mod camera;
 mod capture;

@@ -4,15 +4,13 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
-use super::clock;
+use super::animation;
 use crate::app::command::file::{OPEN, Open};
-use crate::app::command::playback::{PLAYBACK, PlaybackFields};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec};
 use crate::app::state::model::ModelStatus;
-use crate::app::state::playback::Playback;
 use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
 use crate::app::widgets::theme::{QUIET, WARNING};
@@ -32,10 +30,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let Commands { settings, list, .. } = commands;
     let model = context.model();
     show(ui, settings, &model, &context.state.model, recent, list);
-    if !model.motion.clips.is_empty() {
-        let asked = animation(ui, settings, &model, &context.state.playback);
-        list.extend(asked.map(|asked| PLAYBACK.with(asked)));
-    }
+    list.extend(animation::show(ui, settings, &model, &context.state.playback));
     place(ui, settings);
     override_material(ui, settings);
     statistics(ui, &model, &context.state.model);
@@ -129,37 +124,6 @@ fn channel(ui: &mut Ui, settings: &mut Settings, path: &str) -> bool {
         });
     });
     true
-}
-
-/// The clips that play, and how. Returns what the user changes of the clock.
-fn animation(ui: &mut Ui, settings: &mut Settings, model: &Model, playback: &Playback) -> Option<PlaybackFields> {
-    heading(ui, "Animation");
-    let playing = model.playing(&settings.animation, 0.0);
-    let clips = playing.iter().filter_map(|playing| model.motion.clips.get(playing.clip));
-    let length_s = clips.map(|clip| clip.duration_s).fold(0.0, f32::max);
-    let mut asked = None;
-    if length_s > 0.0 {
-        asked = clock::buttons(ui, playback);
-        asked = clock::scrub(ui, playback, length_s).or(asked);
-    }
-    group(ui, settings, "animation", |ui, settings, path| {
-        if path != "animation.clips" {
-            return false;
-        }
-        special(ui, settings, path, |ui, settings| {
-            let chosen = &mut settings.animation.clips;
-            let shown = if chosen.is_empty() { "the first".to_owned() } else { chosen.join(", ") };
-            choose(ui, path, shown, |ui| {
-                let clips = (0..model.motion.clips.len()).map(|clip| model.clip_key(clip));
-                for key in ["none", "all"].map(str::to_owned).into_iter().chain(clips) {
-                    let name = key.clone();
-                    ui.selectable_value(chosen, vec![key], name);
-                }
-            })
-        });
-        true
-    });
-    asked
 }
 
 /// Where the model stands.

@@ -126,7 +126,7 @@ fn settle(model: &mut Model) {
     let extents: Vec<Extent> = (0..model.motion.clips.len()).map(|clip| Extent::of_clip(model, clip)).collect();
     let motion = Arc::make_mut(&mut model.motion);
     motion.clips.iter_mut().zip(extents).for_each(|(clip, extent)| clip.extent = extent);
-    if motion.clips.is_empty() && motion.rig.skins.is_empty() {
+    if motion.clips.is_empty() && motion.rig.skins.is_empty() && motion.target_names.is_empty() {
         // It never moves.
         motion.rig = Rig::default();
     }

@@ -35,27 +35,28 @@ impl Extent {
     /// The extent of a model while a clip plays.
     pub fn of_clip(model: &Model, clip: usize) -> Self {
         let most = MOST_VERTICES / model.motion.clips.len();
-        Self::while_playing(model, &[Playing { clip, weight: 1.0, time_s: 0.0 }], most)
+        Self::while_playing(model, &[Playing { clip, weight: 1.0, time_s: 0.0 }], &[], most)
     }
 
-    /// The extent of a model, as it was loaded, while these clips play together, whatever their time is now.
-    pub fn of_clips(model: &Model, playing: &[Playing]) -> Self {
-        Self::while_playing(model, playing, MOST_VERTICES_AT_ONCE)
+    /// The extent of a model, as it was loaded, while these clips play together, whatever their time is now, and these weights are held.
+    pub fn of_mix(model: &Model, playing: &[Playing], held: &[(usize, f32)]) -> Self {
+        Self::while_playing(model, playing, held, MOST_VERTICES_AT_ONCE)
     }
 
     /// About `most` vertices are deformed.
-    fn while_playing(model: &Model, playing: &[Playing], most: usize) -> Self {
+    fn while_playing(model: &Model, playing: &[Playing], held: &[(usize, f32)], most: usize) -> Self {
         let duration_s = |playing: &Playing| f64::from(model.motion.clips[playing.clip].duration_s);
         let longest_s = playing.iter().map(duration_s).fold(0.0, f64::max);
         let moments = (most / deformed_vertices(model).max(1)).clamp(LEAST_MOMENTS, MOST_MOMENTS);
+        let moments = if longest_s > 0.0 { moments } else { 1 };
         let pose = |moment: usize| {
-            let passed_s = longest_s * moment as f64 / (moments - 1) as f64;
+            let passed_s = longest_s * moment as f64 / (moments - 1).max(1) as f64;
             let at = |playing: &Playing| {
                 let duration_s = duration_s(playing);
                 let is_repeated = passed_s > duration_s && duration_s > 0.0;
                 Playing { time_s: if is_repeated { passed_s.rem_euclid(duration_s) } else { passed_s }, ..*playing }
             };
-            model.pose_at(&playing.iter().map(at).collect::<Vec<_>>(), None)
+            model.pose_with(&playing.iter().map(at).collect::<Vec<_>>(), held, None)
         };
         let poses: Vec<Pose> = (0..moments).into_par_iter().map(pose).collect();
         Self::during(model, &points(model, most / moments), &poses)

@@ -1,9 +1,11 @@
 //! Brings models into poses: which clips play, where everything is then, and what that does to vertices and bounds.
 
 mod extents;
+mod held;
 mod playing;
 mod pose;
 mod values;
 mod vertices;
 
+pub use held::held_entry;
 pub use values::moved_materials;

@@ -53,6 +53,11 @@ impl Model {
     /// The pose of this model, which is as it was loaded, while clips play. Of two clips that move the same, the later one replaces the
     /// earlier one by its weight. `place`: where the settings put the model.
     pub fn pose_at(&self, playing: &[Playing], place: Option<Mat4>) -> Pose {
+        self.pose_with(playing, &[], place)
+    }
+
+    /// The same with weights of morph targets that replace those of file and clips ([`Model::held_weights`]).
+    pub fn pose_with(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Pose {
         let rig = &self.motion.rig;
         let mut moved = Moved {
             nodes: vec![None; rig.nodes.len()],
@@ -63,7 +68,8 @@ impl Model {
             let channels = self.motion.clips.get(*clip).into_iter().flat_map(|clip| &clip.channels);
             channels.for_each(|channel| moved.apply(channel, f64::from(*weight), *time_s, rig));
         }
-        let Moved { nodes, weights, values } = moved;
+        let Moved { nodes, mut weights, values } = moved;
+        held.iter().for_each(|(index, weight)| weights[*index] = *weight);
         let nodes = Nodes::new(rig, &nodes);
         let transform = place.unwrap_or(Mat4::IDENTITY);
         let world_from_file = transform.as_dmat4() * DMat4::from_translation(-rig.shift);
@@ -128,18 +134,18 @@ impl Model {
         model
     }
 
-    /// This model, as it was loaded, while clips play.
+    /// This model, as it was loaded, while clips play and weights are held.
     #[must_use]
-    pub fn at(&self, playing: &[Playing], place: Option<Mat4>) -> Self {
-        self.posed(&self.pose_at(playing, place).into(), &self.extent(playing, place))
+    pub fn at(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Self {
+        self.posed(&self.pose_with(playing, held, place).into(), &self.extent(playing, held, place))
     }
 
-    /// Where this model, as it was loaded, is while these clips play.
-    pub fn extent(&self, playing: &[Playing], place: Option<Mat4>) -> Extent {
-        let extent = match playing {
-            [] => self.whole_extent(),
-            [Playing { clip, weight: 1.0, .. }] => self.motion.clips[*clip].extent.clone(),
-            mixed => Extent::of_clips(self, mixed),
+    /// Where this model, as it was loaded, is while these clips play and these weights are held.
+    pub fn extent(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Extent {
+        let extent = match (playing, held) {
+            ([], []) => self.whole_extent(),
+            ([Playing { clip, weight: 1.0, .. }], []) => self.motion.clips[*clip].extent.clone(),
+            _ => Extent::of_mix(self, playing, held),
         };
         place.map_or(extent.clone(), |place| extent.placed(place))
     }

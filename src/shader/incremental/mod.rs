@@ -19,7 +19,7 @@
 //!
 //! A stage is compiled as a whole at start, with the reload key, after an edit of a declaration or a signature, where a
 //! function is ambiguous or its effect reaches others (`precise`, `__LINE__`, a macro with half a block), if it is a
-//! task or mesh stage, if it has a block with two arrays of the same type (glslang declares that type twice), and
+//! task or mesh stage, if it has a block with two arrays of the same type or two references to it (glslang declares that type twice), and
 //! whenever the thin text gives an error or a warning. So no message ever comes from a thin text, and its line numbers
 //! need not be right.
 

@@ -3,7 +3,9 @@
 use glam::{DMat4, DQuat, DVec3, Mat4, Vec3};
 
 use super::*;
+use crate::frame::Scene;
 use crate::scene::motion::Playing;
+use crate::settings::Settings;
 
 /// A square with normals whose lower two vertices follow the node 1 and whose upper two follow half the node 2. The node 2 stands on node 1.
 fn skinned() -> Builder {
@@ -60,7 +62,7 @@ fn positions(model: &Model, instance: usize) -> Vec<DVec3> {
 
 /// The model while its first clip plays.
 fn at(model: &Model, time_s: f64) -> Model {
-    model.at(&[Playing { clip: 0, weight: 1.0, time_s }], None)
+    model.at(&[Playing { clip: 0, weight: 1.0, time_s }], &[], None)
 }
 
 /// Adds an animation with a channel for each target, all with these times.
@@ -183,6 +185,35 @@ fn morph_targets_add_to_every_attribute() {
 }
 
 #[test]
+fn weights_that_the_settings_hold_replace_those_of_the_file() {
+    let mut builder = morphed();
+    builder.json["meshes"][0]["extras"] = json!({ "targetNames": ["smile"] });
+    let model = std::sync::Arc::new(builder.model());
+    assert_eq!(model.target_keys(), ["smile", "1"]);
+    let mut settings = Settings::default();
+    let scene = |settings: &Settings| Scene::new(&model, settings).model().clone();
+    let rest = scene(&settings);
+    assert_eq!(rest.pose.weights, model.pose.weights);
+    settings.assign("animation.weights=smile:0.25, 1:2").unwrap();
+    let held = scene(&settings);
+    assert_eq!(
+        (held.pose.weights.as_slice(), held.weight_of("smile"), held.weight_of("1")),
+        (&[0.25, 2.0][..], 0.25, 2.0)
+    );
+    let points = positions(&held, 0);
+    let (low, high) = (held.bounds.min.as_dvec3() - 1e-4, held.bounds.max.as_dvec3() + 1e-4);
+    assert!(points.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()), "{points:?} {:?}", held.bounds);
+    for (weights, told) in
+        [("smlie:1", "has no morph target 'smlie'"), ("smile", "is no morph weight"), ("smile:x", "NAME:WEIGHT")]
+    {
+        settings.assign(&format!("animation.weights={weights}")).unwrap();
+        let problem = model.unknown_target(&settings.animation).unwrap();
+        assert!(problem.contains(told), "{problem}");
+        assert_eq!(scene(&settings).pose.weights, model.pose.weights);
+    }
+}
+
+#[test]
 fn faces_without_normals_turn_with_the_targets() {
     let mut builder = Builder::positions(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
     builder.indices(U8, &[0, 1, 2, 0, 2, 3]);
@@ -219,7 +250,7 @@ fn clips_move_nodes_joints_and_weights() {
     // Half of the weight is half of the way from the file's own pose.
     let half = model.pose_at(&[Playing { clip: 0, weight: 0.5, time_s: 0.0 }], None);
     let angle = 2.0 * 0.6_f64.asin() * 0.5;
-    let posed = model.posed(&half.into(), &model.extent(&[], None));
+    let posed = model.posed(&half.into(), &model.extent(&[], &[], None));
     near(&positions(&posed, 0), &skinned_positions(DQuat::from_rotation_z(angle)), 1e-5);
     // The camera stands still, since the bounds hold for the whole clip.
     assert_eq!(at(&model, 0.7).bounds, at(&model, 1.9).bounds);
@@ -410,8 +441,8 @@ fn bounds_hold_for_clips_that_play_together() {
     animate(&mut builder, &[0.0, 2.0], &[(json!({ "node": 1, "path": "translation" }), "LINEAR", "VEC3", &values)]);
     let model = builder.model();
     let both = [0, 1].map(|clip| Playing { clip, weight: 1.0, time_s: 0.0 });
-    assert_eq!(model.at(&both[..1], None).bounds.max.x, 5.0);
-    assert!((8.5..9.1).contains(&model.at(&both, None).bounds.max.x), "{:?}", model.at(&both, None).bounds);
+    assert_eq!(model.at(&both[..1], &[], None).bounds.max.x, 5.0);
+    assert!((8.5..9.1).contains(&model.at(&both, &[], None).bounds.max.x), "{:?}", model.at(&both, &[], None).bounds);
     let half = [Playing { weight: 0.5, ..both[0] }];
-    assert_eq!(model.at(&half, None).bounds.max.x, 3.0);
+    assert_eq!(model.at(&half, &[], None).bounds.max.x, 3.0);
 }

@@ -2,10 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use foldhash::HashSet;
+
 use crate::shader::spirv::enums::built_in::{PRIMITIVE_ID, SAMPLE_ID, SAMPLE_POSITION};
 use crate::shader::spirv::enums::decoration::BUILT_IN;
 use crate::shader::spirv::enums::{extended, model};
-use crate::shader::spirv::module::{Instruction, Module};
+use crate::shader::spirv::fold::drop_results;
+use crate::shader::spirv::module::{Id, Instruction, Module};
 use crate::shader::spirv::op::{Class, Op};
 
 const GEOMETRY: u32 = 2;
@@ -42,6 +45,7 @@ pub fn declare(module: &mut Module, base: &Module) -> Option<()> {
     if all != others(module) {
         return None;
     }
+    drop_unused(module);
     let code = module.decorations.iter().copied().chain(module.code());
     // Other stages than the fragment stage have gl_PrimitiveID anyway.
     let is_needed = |capability: &u32| *capability != GEOMETRY || module.model() == Some(model::FRAGMENT);
@@ -52,4 +56,21 @@ pub fn declare(module: &mut Module, base: &Module) -> Option<()> {
     module.head.retain(|i| i.op != Op::Capability);
     module.head.splice(0..0, capabilities);
     Some(())
+}
+
+/// Takes out the built-in values of a capability that the thin module declares for functions that nothing calls.
+fn drop_unused(module: &mut Module) {
+    let used: HashSet<Id> = module.code().flat_map(|i| module.ids_of(i)).collect();
+    let of_unused = |i: &Instruction| {
+        (i.op == Op::Decorate && needed(module, *i).is_some()).then(|| module[*i][1]).filter(|id| !used.contains(id))
+    };
+    let unused: HashSet<Id> = module.decorations.iter().filter_map(of_unused).collect();
+    if unused.is_empty() {
+        return;
+    }
+    let mut globals = std::mem::take(&mut module.globals);
+    globals.retain(|i| module.result(*i).is_none_or(|id| !unused.contains(&id)));
+    module.globals = globals;
+    drop_results(module, &unused);
+    module.leave_interface(&unused);
 }

@@ -1,8 +1,10 @@
 //! Adds types, constants, variables and decorations to a module.
 
+use foldhash::HashSet;
+
 use super::instruction::{Id, Instruction};
 use super::words::Module;
-use crate::shader::spirv::op::Op;
+use crate::shader::spirv::op::{Op, after_text};
 
 impl Module {
     /// The id of the type or constant with these operands besides its result, declared if the module lacks it. The operands of a
@@ -48,6 +50,19 @@ impl Module {
     pub fn decorate(&mut self, operands: &[u32]) {
         let made = self.make(Op::Decorate, operands);
         self.decorations.push(made);
+    }
+
+    /// Takes variables out of the interface of the entry points.
+    pub fn leave_interface(&mut self, variables: &HashSet<Id>) {
+        for place in 0..self.head.len() {
+            let entry = self.head[place];
+            if entry.op == Op::EntryPoint {
+                let (before, interface) = self[entry].split_at(after_text(&self[entry], 3));
+                let left = interface.iter().filter(|id| !variables.contains(id));
+                let operands: Vec<u32> = before[1..].iter().chain(left).copied().collect();
+                self.head[place] = self.make(Op::EntryPoint, &operands);
+            }
+        }
     }
 
     /// Adds variables to the interface of the entry points.

@@ -202,7 +202,7 @@ fn another_kind_of_file_is_answered_with_its_option() {
         ("paint.binary", "is a measured BRDF; use `--measured paint.binary`"),
         ("shaders", "is a shader tree; use `--shaders shaders`"),
         ("shaders/pbr.frag", "is a shader; use `--shaders shaders`"),
-        ("folder", "is a folder"),
+        ("folder", "has no .gltf or .glb file in it"),
     ] {
         for arguments in [&[name][..], &["render", name], &["info", name]] {
             run(&here, arguments).expect(2, &[name, told]);
