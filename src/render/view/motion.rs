@@ -20,12 +20,14 @@ pub(super) struct Motion {
     befores: Vec<Option<Arc<Buffer>>>,
     /// The model that was loaded, in the pose of the last frame.
     placed: Option<(Arc<Model>, Arc<PlacedScene>)>,
+    /// Whether the next frame has no frame before it.
+    begins: bool,
 }
 
 impl Motion {
     pub(super) fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, slots: usize) -> Self {
         let moved = MovedVertices::new(gpu, layouts, slots);
-        Self { gpu: gpu.clone(), moved, befores: vec![None; slots], placed: None }
+        Self { gpu: gpu.clone(), moved, befores: vec![None; slots], placed: None, begins: true }
     }
 
     /// The model as [`Motion::place`] has placed it last.
@@ -47,6 +49,7 @@ impl Motion {
             self.placed = None;
             return Ok(None);
         };
+        let follows = follows && !std::mem::take(&mut self.begins);
         let vertices = self.moved.of(encoder, slot, frame, frame_set)?;
         let posed = Posed { model: state.model().clone(), vertices };
         let last = self.placed.take().filter(|(loaded, _)| Arc::ptr_eq(loaded, state.loaded())).map(|(_, last)| last);
@@ -79,9 +82,9 @@ impl Motion {
         self.placed().is_some_and(|placed| placed.has_moved())
     }
 
-    /// Makes the next frame begin anew, without a frame before it.
+    /// Makes the next frame begin anew, without a frame before it. A model in the same pose stays, and with it what passes keep of it.
     pub(super) fn restart(&mut self) {
-        self.placed = None;
+        self.begins = true;
     }
 
     /// Makes the next frame move all vertices again: the commands of a frame were not submitted.
