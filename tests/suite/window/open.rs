@@ -22,7 +22,7 @@ fn a_dropped_model_opens_and_any_other_file_changes_nothing() {
     let first = viewer.screenshot();
     let (display, window) = (viewer.display.name().to_owned(), viewer.window());
     drop_file(&display, window, (300, 200), &note);
-    viewer.running.until_stderr("note.txt: expected a .gltf or .glb model");
+    viewer.running.until_stderr("note.txt: expected a model (.gltf, .glb or a .zip with one)");
     assert!(viewer.screenshot() == first, "a text changed the picture");
     drop_file(&display, window, (300, 200), &model);
     viewer.until("the dropped model", |shot| *shot != first);
