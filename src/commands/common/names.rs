@@ -48,6 +48,10 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let message = match FileKind::of(path) {
         FileKind::ShaderTree => format!("{shown} is a shader tree; use `--shaders {shown}`"),
+        FileKind::Folder => match scene::find_model(path) {
+            Ok(_) => return Ok(()),
+            Err(problem) => format!("{shown} {problem}"),
+        },
         FileKind::Environment => format!("{shown} is an environment; use `--env {shown}`"),
         FileKind::Look => format!("{shown} is a look file; use `--look {shown}`"),
         FileKind::Measured if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin")) => {
@@ -59,8 +63,8 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
         FileKind::Shader => {
             format!("{shown} is a shader; use `--shaders {}`, the folder of its tree", folder.display())
         }
-        // The loader says more: glTF names its buffers .bin, too, and a folder may have a model.
-        FileKind::Measured | FileKind::Model | FileKind::Folder | FileKind::Other => return Ok(()),
+        // glTF names its buffers .bin, too; the loader says more.
+        FileKind::Measured | FileKind::Model | FileKind::Other => return Ok(()),
     };
     Err(Failure::Usage(message))
 }
