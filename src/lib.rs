@@ -18,7 +18,7 @@
 //! - [`session`]: what the user works on; it survives the loss of the device.
 //! - [`recovery`]: what a window hands to the process that takes its place after a loss.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
-//! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
+//! - [`picture`], [`picture_difference`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
 //! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - [`capture`]: contact sheets and animations of many pictures.

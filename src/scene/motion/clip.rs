@@ -27,7 +27,7 @@ pub struct Channel {
     pub curve: Arc<Curve>,
 }
 
-/// What a channel moves. Nodes are indices into the nodes of the [`Rig`](super::Rig).
+/// What a channel moves. Nodes are indices into the nodes of the `Rig`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Translation of a node.
