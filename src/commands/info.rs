@@ -203,7 +203,7 @@ fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// What moves: clips, skins, morph targets and cameras.
+/// The parts of a model that move: clips, skins, morph targets and cameras.
 fn motion(model: &Model) -> serde_json::Value {
     let clip =
         |clip: &Clip| json!({ "name": clip.name, "duration_s": clip.duration_s, "channels": clip.channels.len() });

@@ -120,7 +120,7 @@ pub struct Primitive {
     pub attributes: u32,
     /// Object-space bounds.
     pub bounds: Bounds,
-    /// What joints and morph targets do to the vertices; `None` if they keep their shape.
+    /// Joints and morph targets that move the vertices; `None` if they keep their shape.
     pub deformation: Option<Arc<Deformation>>,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Deformables {
 struct Part {
     /// Index into `Model::instances`.
     instance: usize,
-    /// What does not depend on the pose.
+    /// The part that does not depend on the pose.
     record: Deformation,
     /// The number of its first moved vertex.
     first_vertex: u64,
@@ -43,7 +43,7 @@ struct Part {
 pub(crate) struct Moved {
     /// The place of its first vertex among the moved ones, bytes.
     pub(crate) offset: u64,
-    /// What the skin does to a vertex of the instance, if it has a skin.
+    /// The matrix by which the skin moves a vertex of the instance, if it has a skin.
     pub(crate) skin: Option<Mat4>,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Uploaded {
     pub(super) ranges: Vec<Range>,
     /// The textures of the materials, and the defaults for missing ones.
     pub(super) textures: Textures,
-    /// What moves vertices; `None` if nothing does.
+    /// The data by which joints and morph targets move vertices; `None` if nothing moves.
     pub(super) deformers: Option<Deformers>,
 }
 

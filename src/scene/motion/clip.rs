@@ -10,7 +10,7 @@ use super::extent::Extent;
 pub struct Clip {
     /// Name, or empty.
     pub name: String,
-    /// What it moves.
+    /// Its channels, each of which moves one target.
     pub channels: Vec<Channel>,
     /// Time of its last key, seconds.
     pub duration_s: f32,
@@ -21,13 +21,13 @@ pub struct Clip {
 /// A curve, and what follows it.
 #[derive(Clone, Debug)]
 pub struct Channel {
-    /// What follows it.
+    /// The property that follows it.
     pub target: Target,
     /// Values over time, with as many numbers as the target takes.
     pub curve: Arc<Curve>,
 }
 
-/// What a channel moves. Nodes are indices into the nodes of the `Rig`.
+/// The property that a channel moves. Nodes are indices into the nodes of the `Rig`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Translation of a node.

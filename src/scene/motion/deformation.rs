@@ -1,4 +1,4 @@
-//! What joints and morph targets do to the vertices of a primitive.
+//! Moving the vertices of a primitive by joints and morph targets.
 
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use crate::interface::Vertex;
 
 pub use crate::interface::{Displacement, Influence};
 
-/// What joints and morph targets do to the vertices of a primitive. Morph targets come first, then the skin.
+/// The joints and morph targets that move the vertices of a primitive. Morph targets come first, then the skin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deformation {
     /// Influences of each vertex: 4, 8, 12 ...; 0 without a skin.

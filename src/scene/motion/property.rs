@@ -1,4 +1,4 @@
-//! What animations move beside nodes: numbers of materials, lights and cameras (KHR_animation_pointer).
+//! The properties that animations move beside nodes: numbers of materials, lights and cameras (KHR_animation_pointer).
 
 use glam::Vec3;
 

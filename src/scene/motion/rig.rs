@@ -13,7 +13,7 @@ pub struct Rig {
     pub nodes: Vec<RigNode>,
     /// The skins that instances have.
     pub skins: Vec<Skin>,
-    /// What each entry of `Model::instances` follows.
+    /// The node or skin that each entry of `Model::instances` follows.
     pub instances: Vec<Placement>,
     /// The node of each entry of `Model::lights`, and the light's index in the file.
     pub lights: Vec<(usize, usize)>,
@@ -51,7 +51,7 @@ pub struct Skin {
     pub joints: Vec<(usize, DMat4)>,
 }
 
-/// What an instance follows.
+/// The node or skin that an instance follows.
 #[derive(Clone, Debug)]
 pub struct Placement {
     /// Its node.

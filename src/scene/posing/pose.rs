@@ -156,7 +156,7 @@ impl Model {
     }
 }
 
-/// What clips have moved so far.
+/// The nodes, weights and values as the clips so far have moved them.
 struct Moved {
     /// The transforms of the nodes of the rig that are not as they are in the file.
     nodes: Vec<Option<Transform>>,

@@ -71,7 +71,7 @@ pub fn read(
     (read, clips.values)
 }
 
-/// What is wrong with channels. Equal sentences are told once.
+/// The problems of channels. Equal sentences are told once.
 #[derive(Default)]
 struct Faults(BTreeMap<String, usize>);
 
@@ -101,7 +101,7 @@ struct Clips<'a> {
     times: HashMap<usize, Arc<[f32]>>,
     /// By the accessors of times and values.
     curves: HashMap<(usize, usize, Interpolation), Arc<Curve>>,
-    /// What pointers name.
+    /// The properties that pointers name.
     values: Vec<Values>,
     /// Numbers that were read so far.
     numbers: usize,

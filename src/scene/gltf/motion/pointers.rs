@@ -10,7 +10,7 @@ use crate::settings::Factor;
 /// The extension's name.
 pub const EXTENSION: &str = "KHR_animation_pointer";
 
-/// What a pointer names.
+/// The property that a pointer names.
 pub enum Pointed {
     /// A property of a node, as the `path` of a channel names it; or of all nodes that show a mesh, if these have no weights of their own.
     Nodes(Vec<usize>, String),
