@@ -8,13 +8,13 @@
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_control_flow_attributes : require
 
-const uint INTERFACE_VERSION = 10u;
+const uint INTERFACE_VERSION = 11u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
 const int SET_TASK = 3;
 const int BINDING_FRAME = 0;
-const int BINDING_LIGHTS = 1;
+const int BINDING_FEW_LIGHTS = 1;
 const int BINDING_PARAMS = 2;
 const int BINDING_ENVIRONMENT = 3;
 const int BINDING_PREFILTERED = 4;
@@ -33,6 +33,8 @@ const int BINDING_TRACED_MATERIALS = 17;
 const int BINDING_TRACED_TEXTURES = 18;
 const int BINDING_ENVIRONMENT_CELLS = 19;
 const int BINDING_LOOPS = 20;
+const int BINDING_LIGHTS = 21;
+const int BINDING_LIGHT_GRID = 22;
 const int BINDING_MATERIAL = 0;
 const int BINDING_TASK = 0;
 const int BINDING_SOURCE = 1;
@@ -139,7 +141,8 @@ const uint TEXTURE_THICKNESS = 16u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION = 17u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION_COLOR = 18u;
 const int TEXTURE_COUNT = 19;
-const int MAX_LIGHTS = 200;
+const int MAX_LIGHTS = 32768;
+const int FEW_LIGHTS = 48;
 const int MAX_SUNS = 4;
 const int MAX_LIGHT_VIEWS = 16;
 const int COLORMAP_STEPS = 17;
@@ -153,6 +156,7 @@ layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few;
 layout(constant_id = 6) const uint MAPS_VALUES = 0u; // not 0: the display maps values by range, channels or colormap
 layout(constant_id = 7) const uint SUN_COUNT = 0u; // suns of the environment, which its irradiance and specular levels leave out
 layout(constant_id = 8) const uint SAMPLES = 0u; // samples of a pixel; for the pass with to=resolve
+layout(constant_id = 9) const uint MANY_LIGHTS = 0u; // not 0: more than FEW_LIGHTS lights; see lighting/light_grid.glsl
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 clip_from_world;              // World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
@@ -171,7 +175,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec2 viewport_origin_px;           // Upper left corner of the picture in the output image, pixels.
     float near;                        // Near plane distance, meters.
     float far;                         // Far plane distance for debug modes, meters; the projection is infinite.
-    uint light_count;                  // Number of lights in BINDING_LIGHTS.
+    uint light_count;                  // Number of lights in `lights`; the suns follow them.
     uint chosen_light;                 // The light that the BRDF term modes show: 0 all, else 1-based.
     uint mode;                         // Debug mode on screen, for passes that are not specialized by mode.
     float largest_value;               // Largest value that the HDR target holds: 65504 for half floats.
@@ -212,8 +216,20 @@ struct Light {
     vec3 half_y_ws;                    // Rectangle: from its center to the middle of a neighboring edge, meters.
 };
 
-layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then SUN_COUNT suns
+layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
+    Light lights[]; // frame.light_count lights, then SUN_COUNT suns
+};
+
+layout(set = SET_FRAME, binding = BINDING_FEW_LIGHTS, scalar) uniform FewLights {
+    Light few_lights[FEW_LIGHTS + MAX_SUNS]; // the same, if MANY_LIGHTS is 0
+};
+
+struct LightGrid {
+    vec3 min_ws;                       // Smallest corner of the grid, world space.
+    uint everywhere;                   // Place of the list of the lights that reach every point.
+    vec3 cells_per_m;                  // Cells for each meter along the axes, 1/m.
+    uint everywhere_count;             // Number of lights in that list.
+    uvec3 cells;                       // Cells along the axes; 0: there is no grid.
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {

@@ -14,6 +14,7 @@ use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWr
 use crate::interface::{self, Task};
 use crate::pipeline::PipelineSet;
 use crate::render::{GpuEnvironment, PathTracing, SharedImages, Sources, Tables, Uniforms, compute, measured_buffer};
+use crate::scene::LightGrid;
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
 
@@ -183,7 +184,7 @@ impl BrdfMeter {
         let (measured, path_tracing) = (shared.measured.clone(), shared.path_tracing.clone());
         let sources = Sources { environment: shared.environment.clone(), tables, measured, path_tracing };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
-        uniforms.write(&interface::Frame::default(), &[], &params);
+        uniforms.write(&interface::Frame::default(), (&[], &LightGrid::default()), &params);
         let frame = uniforms.set(&shared.layouts, &sources, &shared.images)?;
         Ok(Self { shared, constants: request.constants, frame })
     }

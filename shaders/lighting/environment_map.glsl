@@ -35,7 +35,10 @@ const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
 
 // Sun i of the map as a directional light. Irradiance and prefiltered levels leave out SUN_COUNT suns (ibl/small_lights/list.glsl). Its
 // intensity includes that of the environment.
-Light sun_at(uint i) { return lights[frame.light_count + i]; }
+Light sun_at(uint i) {
+    if (MANY_LIGHTS == 0u) return few_lights[frame.light_count + i];
+    return lights[frame.light_count + i];
+}
 
 // E / pi of all but the suns.
 vec3 irradiance_over_pi_without_suns(vec3 n) {

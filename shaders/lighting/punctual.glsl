@@ -11,9 +11,30 @@ struct Illumination {
     vec3 irradiance;           // on a plane perpendicular to l; the surface receives NoL times it
 };
 
+// Light `i`, or sun i - frame.light_count. A software device reads a uniform block once for a group of pixels, a buffer once for each pixel
+// and member, so it reads what a light of this kind has alone. A point light has no direction here.
+Light given_light(uint i) {
+    if (MANY_LIGHTS == 0u) return few_lights[i];
+    vec4 position_ws = lights[i].position_ws;
+    uint kind = lights[i].kind;
+    Light light = Light(position_ws, -position_ws.xyz, kind, lights[i].intensity, lights[i].inverse_range, 0.0, 1.0,
+                        vec3(0.0), vec3(0.0));
+    bool is_rectangle = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && kind == LIGHT_RECT;
+    if (kind == LIGHT_SPOT || is_rectangle) {
+        light.direction_ws = lights[i].direction_ws;
+        light.angle_scale = lights[i].angle_scale;
+        light.angle_offset = lights[i].angle_offset;
+    }
+    if (is_rectangle) {
+        light.half_x_ws = lights[i].half_x_ws;
+        light.half_y_ws = lights[i].half_y_ws;
+    }
+    return light;
+}
+
 // Light `i` as the user's hook leaves it for this point.
 Light light_at(uint i, vec3 position_ws) {
-    Light light = lights[i];
+    Light light = given_light(i);
     user_light(light, i, position_ws);
     return light;
 }

@@ -7,6 +7,7 @@
 #include "brdf/evaluate.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/image_based.glsl"
+#include "lighting/light_grid.glsl"
 #include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/rectangle.glsl"
@@ -83,10 +84,33 @@ void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float vi
     // L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
     Illumination illumination = illuminate(light, s.position_ws);
     if (is_below_horizon(s, illumination.l, for_terms)) return;
+    if (MANY_LIGHTS != 0u && !for_terms && illumination.irradiance == vec3(0.0)) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
     add(lit.punctual, lobes, illumination.irradiance * (abs(dot(s.n, illumination.l)) * visibility));
+}
+
+// Adds what the surface reflects of many lights.
+void add_many(inout Lit lit, Surface s, vec3 v, Albedo albedo, LightRange range) {
+    // Terms count even of lights that do not reach the surface.
+    if (range.for_terms) {
+        for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) add_light(lit, s, v, albedo, i, 1.0, true);
+        return;
+    }
+    // Shadows first, since the loops in them would count for each of the many lights (src/shader/spirv/loops/mod.rs).
+    float visibility[MAX_LIGHT_VIEWS];
+    if (SHADOWS != NO_SHADOWS) {
+        for (uint i = 0u; i < MAX_LIGHT_VIEWS; ++i) visibility[i] = is_in(range, i) ? light_visibility(i, s, false) : 1.0;
+    }
+    LightWalk walk = lights_near(s.position_ws);
+    for (uint n = 0u; n < uint(MAX_LIGHTS); ++n) {
+        uint i = next_light(walk);
+        if (i == NO_LIGHT) break;
+        if (!is_in(range, i)) continue;
+        bool has_shadow = SHADOWS != NO_SHADOWS && i < MAX_LIGHT_VIEWS;
+        add_light(lit, s, v, albedo, i, has_shadow ? visibility[min(i, uint(MAX_LIGHT_VIEWS) - 1u)] : 1.0, false);
+    }
 }
 
 Lit shade(Surface s, vec3 v, LightRange range) {
@@ -109,11 +133,13 @@ Lit shade(Surface s, vec3 v, LightRange range) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) {
             if (is_in(range, i)) add_light(lit, s, v, albedo, i, visibility[i], range.for_terms);
         }
-    } else {
+    } else if (MANY_LIGHTS == 0u) {
         // With a limit that the compiler can see, the loop needs no budget of rounds.
-        for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
+        for (uint i = range.first; i < min(range.end, uint(FEW_LIGHTS)); ++i) {
             add_light(lit, s, v, albedo, i, light_visibility(i, s, range.for_terms), range.for_terms);
         }
+    } else {
+        add_many(lit, s, v, albedo, range);
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {
         cross_volume(s, lit.punctual);

@@ -3,7 +3,9 @@
 #define PATHS_LIGHTS_GLSL
 
 #include "interface.glsl"
+#include "common/color.glsl"
 #include "common/math.glsl"
+#include "lighting/light_grid.glsl"
 #include "lighting/punctual.glsl"
 #include "paths/environment_sampling.glsl"
 #include "paths/lobe_sampling.glsl"
@@ -37,20 +39,79 @@ float pdf_of_rectangle(Light light, vec3 to_light) {
     return cosine > 0.0 ? distance_squared / (cosine * area) : 0.0;
 }
 
-LightSample sample_lamp(vec3 position_ws, vec3 u, float probability) {
-    uint index = min(uint(u.z * float(lamp_count())), lamp_count() - 1u);
-    Light light = light_at(index, position_ws);
-    probability /= float(lamp_count());
-    if (light.kind == LIGHT_RECT) {
-        vec2 at = 2.0 * u.xy - 1.0;
-        vec3 to_light = light.position_ws.xyz + light.half_x_ws * at.x + light.half_y_ws * at.y - position_ws;
-        float distance = length(to_light);
-        float pdf = pdf_of_rectangle(light, to_light) * probability;
-        return LightSample(to_light / distance, distance, light.intensity, pdf, false, false);
-    }
+LightSample sample_of_rectangle(Light light, vec3 position_ws, vec2 u, float probability) {
+    vec2 at = 2.0 * u - 1.0;
+    vec3 to_light = light.position_ws.xyz + light.half_x_ws * at.x + light.half_y_ws * at.y - position_ws;
+    float distance = length(to_light);
+    float pdf = pdf_of_rectangle(light, to_light) * probability;
+    return LightSample(to_light / distance, distance, light.intensity, pdf, false, false);
+}
+
+LightSample sample_of_point(Light light, vec3 position_ws, float probability) {
     Illumination lit = illuminate(light, position_ws);
     float distance = light.position_ws.w == 0.0 ? FAR_AWAY : length(light.position_ws.xyz - position_ws);
     return LightSample(lit.l, distance, lit.irradiance, probability, true, false);
+}
+
+// Of many lights, the rectangle is drawn with this probability. It is the last light.
+const float RECTANGLE_SHARE = 0.25;
+bool has_rectangle() { return (FEATURES & FEATURE_RECT_LIGHTS) != 0u; }
+// Lights that are compared with each other to draw one of them.
+const uint CANDIDATES = 16u;
+
+// Of many lights, one of those that may reach the point. Candidates are taken from their lists at equal steps from a random place; one of
+// them is drawn with a probability proportional to its illuminance without shadows (resampled importance sampling: Talbot, Cline and
+// Egbert 2005). So a light's mean does not depend on how often it is drawn, and steps of 1 compare all lights.
+LightSample sample_of_many(vec3 position_ws, vec3 u, float probability) {
+    if (has_rectangle()) {
+        if (u.z < RECTANGLE_SHARE) {
+            Light light = light_at(frame.light_count - 1u, position_ws);
+            return sample_of_rectangle(light, position_ws, u.xy, probability * RECTANGLE_SHARE);
+        }
+        u.z = (u.z - RECTANGLE_SHARE) / (1.0 - RECTANGLE_SHARE);
+        probability *= 1.0 - RECTANGLE_SHARE;
+    }
+    uint cell = light_cell(position_ws);
+    uint first = light_words[cell].word;
+    // Each list has NO_LIGHT behind it.
+    uint in_cell = light_words[cell + 1u].word - 1u - first;
+    uint everywhere = light_grid.everywhere_count;
+    uint count = in_cell + everywhere;
+    float stride = max(float(count) / float(CANDIDATES), 1.0);
+    float sum = 0.0;
+    float chosen_weight = 0.0;
+    uint chosen = NO_LIGHT;
+    for (uint n = 0u; n < CANDIDATES; ++n) {
+        float at = (float(n) + u.z) * stride;
+        if (at >= float(count)) break;
+        uint place = min(uint(at), count - 1u);
+        uint i = light_words[place < in_cell ? first + place : light_grid.everywhere + (place - in_cell)].word;
+        Light light = light_at(i, position_ws);
+        if (light.kind == LIGHT_RECT) continue;
+        float weight = luminance(illuminate(light, position_ws).irradiance);
+        if (weight <= 0.0) continue;
+        sum += weight;
+        // The newest of all so far is kept with its share of their sum. The rest of the random number is used again.
+        float share = weight / sum;
+        if (u.x < share) {
+            chosen = i;
+            chosen_weight = weight;
+            u.x /= share;
+        } else {
+            u.x = (u.x - share) / (1.0 - share);
+        }
+    }
+    if (chosen == NO_LIGHT) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0, false, false);
+    return sample_of_point(light_at(chosen, position_ws), position_ws, probability * chosen_weight / (sum * stride));
+}
+
+LightSample sample_lamp(vec3 position_ws, vec3 u, float probability) {
+    if (MANY_LIGHTS != 0u) return sample_of_many(position_ws, u, probability);
+    uint index = min(uint(u.z * float(lamp_count())), lamp_count() - 1u);
+    Light light = light_at(index, position_ws);
+    probability /= float(lamp_count());
+    if (light.kind == LIGHT_RECT) return sample_of_rectangle(light, position_ws, u.xy, probability);
+    return sample_of_point(light, position_ws, probability);
 }
 
 // Without `with_lamps`, only the environment counts.
@@ -73,8 +134,9 @@ float balance(float own, float other) { return own / (own + other); }
 vec3 rectangles_along(Ray ray, float farthest, float pdf) {
     vec3 sum = vec3(0.0);
     if ((FEATURES & FEATURE_RECT_LIGHTS) == 0u) return sum;
-    float probability = (1.0 - sky_probability(true)) / float(lamp_count());
-    for (uint i = 0u; i < lamp_count(); ++i) {
+    bool is_last = MANY_LIGHTS != 0u;
+    float probability = (1.0 - sky_probability(true)) * (is_last ? RECTANGLE_SHARE : 1.0 / float(lamp_count()));
+    for (uint i = is_last ? lamp_count() - 1u : 0u; i < lamp_count(); ++i) {
         Light light = light_at(i, ray.origin_ws);
         float facing = dot(ray.direction_ws, light.direction_ws);
         if (light.kind != LIGHT_RECT || facing >= 0.0) continue;

@@ -7,6 +7,7 @@ mod folder;
 mod passes;
 mod samples;
 mod scale;
+mod scale_lights;
 
 use std::collections::BTreeMap;
 use std::time::Instant;

@@ -132,6 +132,8 @@ fn build_choices(
     let every_material =
         PipelineRequest { materials: all_materials, target, light_count: 0, sun_count: 1, ..plain.clone() };
     build(&every_material, &args.common.source()?.name(), 1, "some kind of material".to_owned());
+    let lit_by_many = PipelineRequest { many_lights: true, light_count: 0, ..plain.clone() };
+    build(&lit_by_many, &args.common.source()?.name(), 1, "a scene with many lights".to_owned());
     for mode in &shaders.modes {
         let of_mode = request(&Settings { mode: mode.slug.clone(), ..settings.clone() });
         build(&of_mode, &mode.file, mode.line, format!("mode {}", mode.slug));

@@ -40,7 +40,9 @@ use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
-use crate::scene::{Bounds, CameraView, Model, Sun, has_exact_sun, lights, separates_suns, view_of, view_of_light};
+use crate::scene::{
+    Bounds, CameraView, LightGrid, Model, Sun, has_exact_sun, lights, separates_suns, view_of, view_of_light,
+};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{Mode, ShaderSet, values};
@@ -189,6 +191,8 @@ pub struct FrameState {
     pub camera: CameraView,
     /// Lights in world space, at most [`MAX_LIGHTS`].
     pub lights: Vec<Light>,
+    /// The lights by the places that they reach.
+    pub light_grid: Arc<LightGrid>,
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
     /// How the display maps values to colors.
@@ -206,7 +210,7 @@ impl FrameState {
     /// Describes a frame. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
-        Self::with_needs(inputs, Needs::new(inputs, PipelineRequest::new(settings, shaders, scene, target)))
+        Self::with_needs(inputs, Needs::new(inputs, PipelineRequest::new(settings, shaders, scene, target)), None)
     }
 
     /// The same picture from another camera, with orbiting lights in other directions, at another time or size, so that the model is in
@@ -226,7 +230,7 @@ impl FrameState {
         let posed = posed.filter(fits).or_else(|| self.scene.clone());
         let (shaders, scene, target) = (&self.shaders, posed.as_ref(), self.pipelines.target);
         let revisions = Revisions::default();
-        Self::with_needs(&FrameInputs { settings, shaders, scene, revisions, clock, size, target }, needs)
+        Self::with_needs(&FrameInputs { settings, shaders, scene, revisions, clock, size, target }, needs, Some(self))
     }
 
     /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model except the tone map are
@@ -235,11 +239,11 @@ impl FrameState {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
         let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
         let pipelines = PipelineRequest::of_modes(settings, shaders, scene, target, modes);
-        Self { displays: displays.collect(), ..Self::with_needs(inputs, Needs::new(inputs, pipelines)) }
+        Self { displays: displays.collect(), ..Self::with_needs(inputs, Needs::new(inputs, pipelines), None) }
     }
 
-    /// `needs` are those of the inputs.
-    fn with_needs(inputs: &FrameInputs<'_>, needs: Needs) -> Self {
+    /// `needs` are those of the inputs. `before`: a frame of the same pipelines.
+    fn with_needs(inputs: &FrameInputs<'_>, needs: Needs, before: Option<&Self>) -> Self {
         let FrameInputs { settings, shaders, scene, clock, size, target, .. } = *inputs;
         let Needs { pipelines, params, tables, environment, measured } = needs;
         let size = (size.0.max(1), size.1.max(1));
@@ -249,6 +253,11 @@ impl FrameState {
         let camera = view_of(model, &settings.camera, size.0 as f32 / size.1 as f32);
         let mut lights = lights(&settings.lights, model, 0.0);
         lights.truncate(MAX_LIGHTS);
+        let has_grid = pipelines.many_lights && !shaders.moves_lights();
+        let light_grid = before.filter(|before| before.is_lit_by(&lights, bounds)).map_or_else(
+            || Arc::new(if has_grid { LightGrid::new(&lights, bounds) } else { LightGrid::everywhere(lights.len()) }),
+            |before| before.light_grid.clone(),
+        );
         let lit = settings.environment.is_lit();
         let clip_from_world = camera.clip_from_world();
         let turn = settings.environment.rotation.to_radians();
@@ -302,6 +311,7 @@ impl FrameState {
             pipelines,
             camera,
             lights,
+            light_grid,
             size,
             pass_memory: u64::from(settings.view.pass_memory) << 20,
             constants,
@@ -350,10 +360,17 @@ impl FrameState {
             && blocks(self) == blocks(other)
     }
 
+    /// Whether these are its lights, shining on a model with these bounds.
+    fn is_lit_by(&self, lights: &[Light], bounds: &Bounds) -> bool {
+        self.scene.as_ref().is_some_and(|scene| scene.model().bounds == *bounds)
+            && bytemuck::cast_slice::<Light, u8>(&self.lights) == bytemuck::cast_slice::<Light, u8>(lights)
+    }
+
     fn is_same_with(&self, other: &Self, own: &Frame, others: &Frame) -> bool {
         self.shaders.generation == other.shaders.generation
             && bytemuck::bytes_of(own) == bytemuck::bytes_of(others)
             && bytemuck::cast_slice::<Light, u8>(&self.lights) == bytemuck::cast_slice::<Light, u8>(&other.lights)
+            && self.light_grid == other.light_grid
             && self.params == other.params
             && self.pipelines == other.pipelines
             && self.scene == other.scene
@@ -386,7 +403,7 @@ impl FrameState {
         all.map(move |sun| (sun, sun.light(self.constants.environment_rotation, factor)))
     }
 
-    /// The content of the block of lights: those of the frame, then the suns. `environment`: the scale of its images, and its suns.
+    /// The content of the buffer of lights: those of the frame, then the suns. `environment`: the scale of its images, and its suns.
     pub(crate) fn lights_and_suns(&self, environment: (f32, &[Sun])) -> Vec<Light> {
         self.lights.iter().copied().chain(self.suns(environment).map(|(_, light)| light)).collect()
     }

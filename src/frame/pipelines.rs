@@ -13,7 +13,7 @@ use super::material_variant::{MaterialVariant, shared_features};
 use super::stages::DEFORM;
 use super::{Scene, SharedMode};
 use crate::gpu::{Specialization, vk};
-use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
+use crate::interface::{self, FEW_LIGHTS, TONEMAP_OFF, UNROLLED_LIGHTS};
 use crate::scene::light_count;
 use crate::settings::Settings;
 use crate::shader::annotation::pass::MODEL;
@@ -45,6 +45,8 @@ pub struct PipelineRequest {
     pub hook_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
+    /// Whether there are more than [`FEW_LIGHTS`] lights, which pipelines look up in the grid.
+    pub many_lights: bool,
     /// Number of suns of the environment that the pipelines light with: see [`Self::for_suns`].
     pub sun_count: u32,
     /// Whether frames are accumulated until something changes.
@@ -169,6 +171,7 @@ impl PipelineRequest {
             shared_features: shared_features(settings),
             hook_features: shaders.hook_features(),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
+            many_lights: lights > FEW_LIGHTS,
             sun_count: 0,
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),

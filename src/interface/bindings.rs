@@ -3,12 +3,18 @@
 use super::access::Resource;
 use super::binding::{Binding, BindingKind};
 use super::blocks::{Frame, Light, Task};
-use super::limits::{MAX_SUNS, PARAMS_SIZE, SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK};
+use super::limits::{MAX_LIGHT_VIEWS, MAX_SUNS, PARAMS_SIZE, SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK};
 use super::material::{Material, TEXTURE_COUNT, TEXTURES};
 
-/// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees, with the suns of
-/// the environment after them.
-pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>() - MAX_SUNS;
+/// Maximum number of lights in a frame. A loop with at most so many rounds needs no budget of rounds (`shader::spirv::loops`), and lavapipe
+/// ends all loops of an invocation after twice as many.
+pub const MAX_LIGHTS: usize = 32_768;
+
+/// Up to this many lights, a loop over all of them reads a uniform block. More lights are in the cells of a grid, from which lavapipe needs
+/// as much time for some five lights a pixel as for 40 to 50 of the loop, since it reads a buffer separately for each pixel of a group.
+pub const FEW_LIGHTS: usize = 48;
+// Lights with a shadow map are the first of many.
+const _: () = assert!(FEW_LIGHTS >= MAX_LIGHT_VIEWS);
 
 /// Sets and bindings of the buffer that Specula adds to a stage with loops that might not end: see `shader::spirv::loops`.
 /// Compute stages have it in [`SET_TASK`], the others in [`SET_FRAME`].
@@ -26,8 +32,8 @@ pub const BINDINGS: &[Binding] = &{
     all
 };
 
-/// Bytes of the block of lights and suns.
-pub(crate) const LIGHT_BYTES: usize = (MAX_LIGHTS + MAX_SUNS) * size_of::<Light>();
+/// Bytes of the uniform block of few lights and the suns.
+pub(crate) const FEW_LIGHT_BYTES: usize = (FEW_LIGHTS + MAX_SUNS) * size_of::<Light>();
 
 /// Declares bindings as constants and as a table. A row is `NAME = set, binding, kind(size), resource`; `size`: the largest in bytes that a
 /// shader may declare.
@@ -50,8 +56,9 @@ macro_rules! bindings {
 bindings! {
     /// The block [`Frame`].
     BINDING_FRAME = SET_FRAME, 0, UniformBuffer(size_of::<Frame>()), Some(Resource::Frame);
-    /// The lights. They are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
-    BINDING_LIGHTS = SET_FRAME, 1, UniformBuffer(LIGHT_BYTES), Some(Resource::Lights);
+    /// The lights, if they are few, and the suns. A software device reads a storage buffer separately for each pixel of a group, a uniform
+    /// block once.
+    BINDING_FEW_LIGHTS = SET_FRAME, 1, UniformBuffer(FEW_LIGHT_BYTES), Some(Resource::Lights);
     /// The author's parameters.
     BINDING_PARAMS = SET_FRAME, 2, UniformBuffer(PARAMS_SIZE), Some(Resource::Params);
     /// The environment's cube map.
@@ -91,6 +98,10 @@ bindings! {
     BINDING_ENVIRONMENT_CELLS = SET_FRAME, 19, StorageBuffer(), Some(Resource::Scene);
     /// The report of endless loops of a graphics stage: see [`LOOPS`].
     BINDING_LOOPS = SET_FRAME, 20, StorageBuffer(), None;
+    /// All lights, and the suns after them.
+    BINDING_LIGHTS = SET_FRAME, 21, StorageBuffer(), Some(Resource::Lights);
+    /// The [`LightGrid`](super::LightGrid): lists of the lights that reach each cell.
+    BINDING_LIGHT_GRID = SET_FRAME, 22, StorageBuffer(), Some(Resource::Lights);
     /// The block [`Material`].
     BINDING_MATERIAL = SET_MATERIAL, 0, UniformBuffer(size_of::<Material>()), Some(Resource::Material);
     /// The block [`Task`].

@@ -137,7 +137,7 @@ blocks! {
         near: float,
         /// Far plane distance for debug modes, meters; the projection is infinite.
         far: float,
-        /// Number of lights in BINDING_LIGHTS.
+        /// Number of lights in `lights`; the suns follow them.
         light_count: uint,
         /// The light that the BRDF term modes show: 0 all, else 1-based.
         chosen_light: uint,
@@ -213,6 +213,20 @@ blocks! {
         half_x_ws: vec3,
         /// Rectangle: from its center to the middle of a neighboring edge, meters.
         half_y_ws: vec3,
+    }
+
+    /// The head of the grid of lights. The words of lighting/light_grid.glsl follow it in `BINDING_LIGHT_GRID`.
+    LightGrid: "struct LightGrid", "" {
+        /// Smallest corner of the grid, world space.
+        min_ws: vec3,
+        /// Place of the list of the lights that reach every point.
+        everywhere: uint,
+        /// Cells for each meter along the axes, 1/m.
+        cells_per_m: vec3,
+        /// Number of lights in that list.
+        everywhere_count: uint,
+        /// Cells along the axes; 0: there is no grid.
+        cells: uvec3,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers of the contract: its version, descriptor sets, sizes and counts.
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory, or lack a stage.
-pub const VERSION: u32 = 10;
+pub const VERSION: u32 = 11;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::bindings::{BINDINGS, MAX_LIGHTS};
+use super::bindings::{BINDINGS, FEW_LIGHTS, MAX_LIGHTS};
 use super::blocks::{Block, Member};
 use super::limits::{
     COLORMAP_STEPS, MAX_LIGHT_VIEWS, MAX_SUNS, SET_FRAME, SET_MATERIAL, SET_PASS, SET_TASK, USER_CONSTANTS, VERSION,
@@ -42,6 +42,7 @@ pub fn glsl() -> String {
     }
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
     constant("int", "MAX_LIGHTS", MAX_LIGHTS.to_string());
+    constant("int", "FEW_LIGHTS", FEW_LIGHTS.to_string());
     constant("int", "MAX_SUNS", MAX_SUNS.to_string());
     constant("int", "MAX_LIGHT_VIEWS", MAX_LIGHT_VIEWS.to_string());
     constant("int", "COLORMAP_STEPS", COLORMAP_STEPS.to_string());
@@ -82,8 +83,12 @@ fn print_block(out: &mut String, block: &Block) -> std::fmt::Result {
 }
 
 const LIGHTS: &str = "
-layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
-    Light lights[MAX_LIGHTS + MAX_SUNS]; // frame.light_count lights, then SUN_COUNT suns
+layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
+    Light lights[]; // frame.light_count lights, then SUN_COUNT suns
+};
+
+layout(set = SET_FRAME, binding = BINDING_FEW_LIGHTS, scalar) uniform FewLights {
+    Light few_lights[FEW_LIGHTS + MAX_SUNS]; // the same, if MANY_LIGHTS is 0
 };
 ";
 

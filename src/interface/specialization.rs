@@ -39,6 +39,9 @@ pub const SPEC_SUN_COUNT: u32 = 7;
 /// `constant_id` of the samples of a pixel; for the pass that makes one color from them.
 pub const SPEC_SAMPLES: u32 = 8;
 
+/// `constant_id` of whether there are more than [`FEW_LIGHTS`](super::FEW_LIGHTS) lights, so that shaders look for them in the grid.
+pub const SPEC_MANY_LIGHTS: u32 = 9;
+
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`](super::USER_CONSTANTS) on are the author's.
 pub const SPECIALIZATION: &[Specialization] = &[
     Specialization { id: SPEC_MODE, name: "MODE", doc: "debug mode, one of MODE_* in debug/modes.glsl" },
@@ -62,4 +65,9 @@ pub const SPECIALIZATION: &[Specialization] = &[
         doc: "suns of the environment, which its irradiance and specular levels leave out",
     },
     Specialization { id: SPEC_SAMPLES, name: "SAMPLES", doc: "samples of a pixel; for the pass with to=resolve" },
+    Specialization {
+        id: SPEC_MANY_LIGHTS,
+        name: "MANY_LIGHTS",
+        doc: "not 0: more than FEW_LIGHTS lights; see lighting/light_grid.glsl",
+    },
 ];

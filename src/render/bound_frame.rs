@@ -45,6 +45,11 @@ impl BoundFrame {
         self.state.lights_and_suns(self.environment.scale_and_suns())
     }
 
+    /// The size of [`Self::lights`], bytes.
+    pub(super) fn light_bytes(&self) -> usize {
+        size_of::<Light>() * (self.state.lights.len() + self.state.pipelines.sun_count as usize)
+    }
+
     /// Whether both draw the same frame, bit for bit.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.has_same_resources(other) && (Arc::ptr_eq(&self.state, &other.state) || self.state.is_same(&other.state))

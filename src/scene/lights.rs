@@ -2,8 +2,8 @@
 //!
 //! All kinds of lights use one formula without a branch (`lighting/punctual.glsl`). Up to four are a specialization
 //! constant, `LIGHT_COUNT`, so that the loop over them is unrolled where a mode looks at all of them: on lavapipe that
-//! is a tenth of the frame. A frame has at most 200 lights and four suns: they are a uniform block, which a software
-//! device reads faster than a buffer. `frame.light_clip_from_world` has the views of the first 16 lights, suns of the
+//! is a tenth of the frame. Few lights (`FEW_LIGHTS`) and four suns are a uniform block, which a software device reads
+//! faster than a buffer; more are a buffer, which shaders read by the grid of `light_grid.rs`. `frame.light_clip_from_world` has the views of the first 16 lights, suns of the
 //! environment after the others. Rust computes them, since a software device would do so in each pixel. A light that
 //! `user_light` moves gets its view in GLSL (`lighting/shadows/light_view.glsl`); the pass `light_views` writes the
 //! views to an image for the vertex stage of the shadow map, which cannot include `user.glsl`.
@@ -24,7 +24,7 @@ pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light
     let mut lights: Vec<Light> = match settings.source {
         LightSource::None => return Vec::new(),
         LightSource::Orbit => settings.orbit.iter().map(|light| orbit(light, settings.spin * time_s, model)).collect(),
-        LightSource::Model => model.lights.iter().map(punctual).collect(),
+        LightSource::Model => model.lights.iter().map(|light| punctual(light, settings.cutoff)).collect(),
     };
     if settings.rect.enabled {
         lights.push(rectangle(&settings.rect, model));
@@ -125,7 +125,8 @@ pub fn rectangle_corners(light: &RectLight, bounds: &Bounds) -> [Vec3; 4] {
     [center - x - y, center + x - y, center + x + y, center - x + y]
 }
 
-fn punctual(light: &super::model::Light) -> Light {
+/// `cutoff`: illuminance at which a light without a range ends, lux; 0: it has no end.
+fn punctual(light: &super::model::Light, cutoff: f32) -> Light {
     let (kind, position_ws) = match light.kind {
         LightKind::Directional => (interface::LIGHT_DIRECTIONAL, (-light.direction).extend(0.0)),
         LightKind::Point => (interface::LIGHT_POINT, light.position.extend(1.0)),
@@ -135,7 +136,9 @@ fn punctual(light: &super::model::Light) -> Light {
         LightKind::Spot { inner, outer } => cone(inner, outer),
         _ => (0.0, 1.0),
     };
-    let range = light.range.filter(|range| *range > 0.0 && light.kind != LightKind::Directional);
+    let own = light.range.filter(|range| *range > 0.0);
+    let range = own.or_else(|| (cutoff > 0.0).then(|| (light.intensity.max_element() / cutoff).sqrt()));
+    let range = range.filter(|range| *range > 0.0 && light.kind != LightKind::Directional);
     Light {
         position_ws: position_ws.to_array(),
         direction_ws: light.direction.to_array(),
@@ -279,5 +282,18 @@ mod tests {
         assert_eq!((sun.position_ws, sun.inverse_range), ([0.0, 1.0, 0.0, 0.0], 0.0));
         assert_eq!((sun.angle_scale, sun.angle_offset), (0.0, 1.0));
         assert!(from(LightSource::None).is_empty());
+    }
+
+    #[test]
+    fn a_cutoff_ends_lights_without_a_range() {
+        let mut model = model();
+        model.lights = [LightKind::Point, LightKind::Point, LightKind::Directional].map(own).to_vec();
+        model.lights[1].range = None;
+        model.lights[2].range = None;
+        let settings = LightSettings { source: LightSource::Model, cutoff: 0.2, ..LightSettings::default() };
+        // 5 cd are 0.2 lux at a distance of 5 m.
+        let inverse = lights(&settings, &model, 0.0).iter().map(|light| light.inverse_range).collect::<Vec<_>>();
+        assert!((inverse[1] - 0.2).abs() < 1e-6, "{inverse:?}");
+        assert_eq!((inverse[0], inverse[2]), (1.0 / 7.0, 0.0));
     }
 }

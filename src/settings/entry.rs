@@ -91,6 +91,7 @@ pub(super) mod unit {
     pub(in crate::settings) const RADII: Unit = Unit { name: "radii", suffix: " R" };
     /// Candela for a model with a radius of 1 m, which is the illuminance at a distance of one radius.
     pub(in crate::settings) const CANDELA: Unit = Unit { name: "candela", suffix: " lx" };
+    pub(in crate::settings) const ILLUMINANCE: Unit = Unit { name: "lux", suffix: " lx" };
     pub(in crate::settings) const LUMINANCE: Unit = Unit { name: "cd/m^2", suffix: " cd/m²" };
     pub(in crate::settings) const EV100: Unit = Unit { name: "EV100", suffix: " EV" };
     pub(in crate::settings) const LINEAR_RGB: Unit = Unit { name: "linear RGB", suffix: "" };

@@ -33,6 +33,8 @@ settings! {
         /// Light whose BRDF terms the modes show, counted from 1. 0: all, which means lobes summed over all lights, and light 1 for D, G, V,
         /// F, weights and cosines, which depend on the direction to a single light.
         chosen: u32, row("Terms of");
+        /// Illuminance at which lights of the model without a range end. 0: they reach everything, so each costs time in every pixel.
+        cutoff: f32 = 0.0, limits(0.0, 1e9) unit(ILLUMINANCE) row("Cutoff") slider(0.0, 1.0, 3) when(MODEL);
         /// Speed of the orbiting lights around the model in the window; 0 stops them (L).
         spin: f32 = 0.0, limits(-1e4, 1e4) unit(DEGREES_PER_SECOND) row("Orbit speed") slider(-90.0, 90.0, 0) when(ORBIT);
         /// The three orbiting lights.
@@ -93,6 +95,7 @@ settings! {
     }
 }
 
+const MODEL: When = When::Is("lights.source", "model");
 const ORBIT: When = When::Is("lights.source", "orbit");
 const RECTANGLE: When = When::All(&[When::Is("lights.rect.enabled", "true"), When::Not("lights.source", "none")]);
 /// There is no environment, which would replace the ambient light.

@@ -5,6 +5,7 @@ mod brdf;
 mod edits;
 mod environment;
 mod ltc;
+mod many;
 mod matrix;
 mod paths;
 mod physics;

@@ -10,7 +10,7 @@
 
 // The suns of the environment follow the lights; they are no lights of user_light.
 Light shadow_light(uint i) {
-    Light light = lights[i];
+    Light light = given_light(i);
     if (i < frame.light_count) user_light(light, i, frame.scene_center_ws);
     return light;
 }
@@ -53,7 +53,7 @@ mat4 view_of_light(Light light) {
 // The view of light `i`, which is `light` at the center of the model. Where user_light moves no light, the optimizer sees that the
 // bits are the same, and leaves the matrix that Specula gives.
 mat4 light_view(uint i, Light light) {
-    Light given = lights[i];
+    Light given = given_light(i);
     bool is_moved = !is_same_bits(light.position_ws.xyz, given.position_ws.xyz);
     bool is_of_other_kind = !is_same_bits(light.position_ws.w, given.position_ws.w);
     if (is_moved) return view_of_light(light);

@@ -3,6 +3,7 @@
 #include "pass.glsl"
 #include "common/math.glsl"
 #include "lighting/environment_map.glsl"
+#include "lighting/light_grid.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/shadows/ground.glsl"
 #include "lighting/shadows/shadow.glsl"
@@ -43,6 +44,21 @@ void add_light(inout vec3 whole, inout vec3 left, uint i, vec3 position_ws) {
     left += irradiance * shadow_visibility(i, position_ws, UP, light.l);
 }
 
+// The same for many lights: first those with shadows, then the others that reach the point.
+void add_many(inout vec3 whole, inout vec3 left, vec3 position_ws) {
+    for (uint i = 0u; i < MAX_LIGHT_VIEWS; ++i) add_light(whole, left, i, position_ws);
+    LightWalk walk = lights_near(position_ws);
+    for (uint n = 0u; n < uint(MAX_LIGHTS); ++n) {
+        uint i = next_light(walk);
+        if (i == NO_LIGHT) break;
+        if (i < MAX_LIGHT_VIEWS) continue;
+        Illumination light = illuminate(light_at(i, position_ws), position_ws);
+        vec3 irradiance = light.irradiance * max(light.l.y, 0.0);
+        whole += irradiance;
+        left += irradiance;
+    }
+}
+
 // Part of the irradiance of a point of the ground that reaches it.
 vec3 lit_part_of(vec3 position_ws) {
     vec2 open = texture(ground_sky, uv).rg;
@@ -51,8 +67,10 @@ vec3 lit_part_of(vec3 position_ws) {
     if (SUN_COUNT != 0u) add_suns(whole, left, position_ws, open);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) add_light(whole, left, i, position_ws);
+    } else if (MANY_LIGHTS == 0u) {
+        for (uint i = 0u; i < min(frame.light_count, uint(FEW_LIGHTS)); ++i) add_light(whole, left, i, position_ws);
     } else {
-        for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) add_light(whole, left, i, position_ws);
+        add_many(whole, left, position_ws);
     }
     // Without light there is no shadow.
     return mix(vec3(1.0), left / max(whole, 1e-12), greaterThan(whole, vec3(1e-12)));

@@ -1,4 +1,4 @@
-//! `bench scale`: how the time of a frame grows with the number of primitives and of materials.
+//! `bench scale`: how the time of a frame grows with the number of primitives, of materials and of lights.
 
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use specula::scene::{Instance, Material, Model, Primitive, Topology, built_in};
 
 use super::context::Bench;
 use super::samples::{round, summary};
+use super::scale_lights::lights;
 use crate::commands::Failure;
 
 /// Numbers of primitives, with [`MATERIALS`] materials.
@@ -30,6 +31,7 @@ pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
         "size": [bench.args.common.size().0, bench.args.common.size().1],
         "primitives": series(bench, &mut headless, &of_primitives)?,
         "materials": series(bench, &mut headless, &of_materials)?,
+        "lights": lights(bench, &mut headless)?,
     }))
 }
 

@@ -8,8 +8,8 @@ use crate::frame::material_variant::{MaterialVariant, QUADS};
 use crate::frame::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
-    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES, SPEC_MODE,
-    SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
+    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MANY_LIGHTS,
+    SPEC_MAPS_VALUES, SPEC_MODE, SPEC_SAMPLES, SPEC_SUN_COUNT, SPEC_TONEMAP,
 };
 use crate::shader::annotation::pass::{MODEL, PassTarget, TONEMAP};
 use crate::shader::graph::RenderPhase;
@@ -53,6 +53,7 @@ impl PipelineRequest {
             (SPEC_FEATURES, self.features(material) | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),
             (SPEC_SUN_COUNT, self.sun_count),
+            (SPEC_MANY_LIGHTS, u32::from(self.many_lights)),
         ];
         own.iter().chain(&self.constants).copied().collect()
     }
@@ -183,7 +184,11 @@ impl PipelineRequest {
 
     /// The specialization of declared passes that cover an image or compute, and of the background.
     pub(crate) fn pass_constants(&self) -> Specialization {
-        let lights = [(SPEC_LIGHT_COUNT, self.light_count), (SPEC_SUN_COUNT, self.sun_count)];
+        let lights = [
+            (SPEC_LIGHT_COUNT, self.light_count),
+            (SPEC_SUN_COUNT, self.sun_count),
+            (SPEC_MANY_LIGHTS, u32::from(self.many_lights)),
+        ];
         let shared = [(SPEC_FEATURES, self.shared_features)].into_iter().chain(lights);
         shared.chain(self.constants.iter().copied()).collect()
     }

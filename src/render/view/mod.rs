@@ -238,7 +238,7 @@ impl View {
         let [_, before] = self.cameras.unwrap_or([frame.state.camera.clip_from_world(); 2]);
         let constants = frame.constants(rect, self.sample_index, before);
         let constants = frame.state.display.constants(constants, limits);
-        in_flight.uniforms.write(&constants, &frame.lights(), frame.state.params());
+        in_flight.uniforms.write(&constants, (&frame.lights(), &frame.state.light_grid), frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
@@ -337,6 +337,7 @@ impl View {
             path_tracing: frame.path_tracing.clone(),
         };
         let in_flight = &mut self.in_flight[slot];
+        in_flight.uniforms.reserve(frame.light_bytes(), frame.state.light_grid.bytes().len())?;
         let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;
         in_flight.blocks.write(&self.gpu, frame.state.pass_blocks())?;
         Ok(set)

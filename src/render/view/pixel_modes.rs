@@ -69,7 +69,7 @@ impl PixelModes {
         let mut at_pixel = constants;
         at_pixel.viewport_origin_px = [-(origin.0 as f32), -(origin.1 as f32)];
         for (slot, constants) in [(of_passes, &constants), (of_pixel, &at_pixel)] {
-            view.in_flight[slot].uniforms.write(constants, &frame.lights(), state.params());
+            view.in_flight[slot].uniforms.write(constants, (&frame.lights(), &frame.state.light_grid), state.params());
         }
 
         let placed = view.motion.place(encoder, of_passes, frame, &sets[0], false)?;

@@ -107,7 +107,7 @@ impl Thumbnails {
             let limits =
                 if display.is_measured() { self.limits.get(&mode).copied() } else { display.limits(None, None) };
             let constants = crate::interface::Frame { mode, ..display.constants(constants, limits) };
-            in_flight.uniforms.write(&constants, &frame.lights(), frame.state.params());
+            in_flight.uniforms.write(&constants, (&frame.lights(), &frame.state.light_grid), frame.state.params());
         }
         encoder.bind_set(&view.layouts, &set);
 

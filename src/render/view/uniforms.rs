@@ -12,6 +12,7 @@ use crate::render::brdf::tables::Tables;
 use crate::render::compute;
 use crate::render::environment::maps::GpuEnvironment;
 use crate::render::paths::PathTracing;
+use crate::scene::LightGrid;
 
 /// The resources in set 0 that change.
 #[derive(Clone)]
@@ -49,10 +50,20 @@ impl SharedImages {
     }
 }
 
+const LIGHTS: &str = "lights";
+const LIGHT_GRID: &str = "light grid";
+
+fn storage(gpu: &Arc<Gpu>, name: &str, bytes: u64) -> Result<Arc<Buffer>, GpuError> {
+    Buffer::new(gpu, name, bytes, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Upload)
+}
+
 /// Buffers and set 0 of one frame slot.
 pub(crate) struct Uniforms {
+    gpu: Arc<Gpu>,
     frame: Arc<Buffer>,
+    few_lights: Arc<Buffer>,
     lights: Arc<Buffer>,
+    light_grid: Arc<Buffer>,
     params: Arc<Buffer>,
     set: Option<(Sources, Arc<DescriptorSet>)>,
 }
@@ -61,15 +72,35 @@ impl Uniforms {
     pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let frame = Buffer::new(gpu, "frame", size_of::<Frame>() as u64, uniform, Memory::Upload)?;
-        let lights = Buffer::new(gpu, "lights", interface::LIGHT_BYTES as u64, uniform, Memory::Upload)?;
+        let few = interface::FEW_LIGHT_BYTES as u64;
+        let few_lights = Buffer::new(gpu, "few lights", few, uniform, Memory::Upload)?;
+        let lights = storage(gpu, LIGHTS, few)?;
+        let light_grid = storage(gpu, LIGHT_GRID, 1024)?;
         let params = Buffer::new(gpu, "params", interface::PARAMS_SIZE.into(), uniform, Memory::Upload)?;
-        Ok(Self { frame, lights, params, set: None })
+        Ok(Self { gpu: gpu.clone(), frame, few_lights, lights, light_grid, params, set: None })
+    }
+
+    /// Makes room for the lights of a frame. Called before [`Self::set`], after the slot's fence.
+    pub(crate) fn reserve(&mut self, light_bytes: usize, grid_bytes: usize) -> Result<(), GpuError> {
+        for (buffer, name, bytes) in
+            [(&mut self.lights, LIGHTS, light_bytes), (&mut self.light_grid, LIGHT_GRID, grid_bytes)]
+        {
+            if buffer.size() < bytes as u64 {
+                *buffer = storage(&self.gpu, name, (bytes as u64).next_power_of_two())?;
+                self.set = None;
+            }
+        }
+        Ok(())
     }
 
     /// Writes the buffers. SYNC: after the slot's fence.
-    pub(crate) fn write(&self, frame: &Frame, lights: &[Light], params: &[u8]) {
+    pub(crate) fn write(&self, frame: &Frame, (lights, grid): (&[Light], &LightGrid), params: &[u8]) {
         self.frame.write(0, bytemuck::bytes_of(frame));
-        self.lights.write(0, bytemuck::cast_slice(lights));
+        let lights = bytemuck::cast_slice(lights);
+        // Of many lights, shaders read none here.
+        self.few_lights.write(0, lights);
+        self.lights.write(0, lights);
+        self.light_grid.write(0, grid.bytes());
         self.params.write(0, params);
     }
 
@@ -87,7 +118,9 @@ impl Uniforms {
         let scene = &path_tracing.scene;
         let writer = SetWriter::default()
             .buffer(interface::BINDING_FRAME, &self.frame)
+            .buffer(interface::BINDING_FEW_LIGHTS, &self.few_lights)
             .buffer(interface::BINDING_LIGHTS, &self.lights)
+            .buffer(interface::BINDING_LIGHT_GRID, &self.light_grid)
             .buffer(interface::BINDING_PARAMS, &self.params)
             .texture(interface::BINDING_ENVIRONMENT, &environment.radiance.cube, &environment.sampler)
             .texture(interface::BINDING_PREFILTERED, &environment.prefiltered.levels, &shared.flat)

@@ -203,7 +203,7 @@ fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> 
     }
     let block = found.block.as_ref()?;
     let misplaced = match known.name {
-        "BINDING_LIGHTS" => check_lights(block, texts),
+        "BINDING_LIGHTS" | "BINDING_FEW_LIGHTS" => check_lights(block, known.kind, texts),
         "BINDING_FRAME" => check_block(block, "Frame", texts),
         "BINDING_MATERIAL" => check_block(block, "Material", texts),
         "BINDING_TASK" => check_block(block, "Task", texts),
@@ -219,16 +219,20 @@ fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> 
     misplaced
 }
 
-fn check_lights(block: &Block, texts: Texts<'_>) -> Option<Diagnostic> {
+fn check_lights(block: &Block, kind: BindingKind, texts: Texts<'_>) -> Option<Diagnostic> {
     let size = u32::try_from(size_of::<interface::Light>()).ok()?;
     match block.members.as_slice() {
         [only] if only.offset == 0 && only.stride == size => None,
         _ => {
+            let (array, word) = match kind {
+                BindingKind::UniformBuffer => ("Light few_lights[FEW_LIGHTS + MAX_SUNS]", "uniform"),
+                _ => ("Light lights[]", "buffer"),
+            };
             let message = format!(
-                "shader says `{}` is not an array of {size}-byte lights, Specula says it is `Light lights[MAX_LIGHTS + MAX_SUNS]` alone",
+                "shader says `{}` is not an array of {size}-byte lights, Specula says it is `{array}` alone",
                 block.name
             );
-            Some(texts.error(&[block.name.as_str(), "uniform"], message))
+            Some(texts.error(&[block.name.as_str(), word], message))
         }
     }
 }

@@ -92,6 +92,12 @@ impl ShaderSet {
         current.fold(0, |all, (_, stage)| all | stage.hooks.features)
     }
 
+    /// Whether the author's `user_light` changes which points a light reaches.
+    pub fn moves_lights(&self) -> bool {
+        let current = self.stages.iter().filter(|(path, _)| !self.pending.contains(*path));
+        current.into_iter().any(|(_, stage)| stage.hooks.moves_lights)
+    }
+
     /// Whether the pre-rasterization stages of the fragment stage `fragment` move the vertices of the model.
     pub fn moves_vertices(&self, fragment: &str) -> bool {
         let pass = self.graph.passes.iter().find(|pass| pass.desc.stage == fragment && pass.desc.draws_model());

@@ -1,7 +1,8 @@
-//! Reads from a module what the author's hooks change: members of the surface, and vertices.
+//! Reads from a module what the author's hooks change: members of the surface, lights, and vertices.
 //!
 //! The features of a hook's extensions count for every lit material (`PipelineRequest::hook_features`). If
-//! `user_vertex` moves vertices, a mode that traces tells the user (`PipelineRequest::limit`).
+//! `user_vertex` moves vertices, a mode that traces tells the user (`PipelineRequest::limit`). If `user_light` changes more than the
+//! intensity of a light, no grid can tell which points the light reaches (`scene::light_grid`).
 
 use foldhash::{HashMap, HashSet};
 
@@ -14,6 +15,7 @@ use crate::interface::{
 
 /// glslang's names of the hooks begin like this.
 const SURFACE_HOOK: &str = "user_surface(";
+const LIGHT_HOOK: &str = "user_light(";
 const VERTEX_HOOK: &str = "user_vertex(";
 
 /// Members of `Surface` that bring an extension into the picture, and its feature. Other members of an extension change nothing
@@ -39,6 +41,8 @@ pub struct Hooks {
     pub features: u32,
     /// Whether `user_vertex` changes a vertex.
     pub moves_vertices: bool,
+    /// Whether `user_light` changes the place, direction, range or cone of a light.
+    pub moves_lights: bool,
 }
 
 impl Hooks {
@@ -52,6 +56,8 @@ impl Hooks {
                 all | FEATURES.iter().filter(|(name, _)| name == member).fold(0, |bits, (_, bit)| bits | bit)
             }),
             moves_vertices: !stores(&module, VERTEX_HOOK, "Vertex\0").is_empty(),
+            moves_lights: stores(&module, LIGHT_HOOK, "Light\0").iter().any(|(member, _)| member != "intensity")
+                || replaces(&module, LIGHT_HOOK, "Light\0"),
         }
     }
 }
@@ -68,6 +74,20 @@ fn stores(module: &Module, function: &str, structure: &str) -> Vec<(String, bool
     let both = names.filter(|words| types.contains(&words[1])).flat_map(|words| [(words, false), (words, true)]);
     let stored = both.filter(|(words, keeps_zero)| members.contains(&(words[2], *keeps_zero)));
     stored.map(|(words, keeps_zero)| (text(&words[3..]), keeps_zero)).collect()
+}
+
+/// Whether a function, or one that it calls, stores a whole struct of this type through a parameter.
+fn replaces(module: &Module, function: &str, structure: &str) -> bool {
+    let hook = module.named(function).next();
+    let functions = hook.and_then(|hook| module.callees_first(hook)).unwrap_or_default();
+    let types: HashSet<Id> = module.named(structure).filter(|id| is_struct(module, *id)).collect();
+    let is_parameter = |id: Id| {
+        let parameter = module.definition(id).filter(|i| i.op == Op::FunctionParameter);
+        parameter.and_then(|i| module.pointer(module[i][1])).is_some_and(|(_, to)| types.contains(&to))
+    };
+    let bodies = functions.into_iter().flat_map(|place| module.functions[place].body());
+    let mut stores = bodies.filter(|i| i.op == Op::Store);
+    stores.any(|i| module[i].get(1).is_some_and(|to| is_parameter(*to)))
 }
 
 fn is_struct(module: &Module, id: Id) -> bool {

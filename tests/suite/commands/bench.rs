@@ -16,4 +16,5 @@ fn bench_scale_prints_the_growth_from_step_to_step() {
     };
     assert_eq!(counts("primitives", "primitives"), [10, 100, 1_000, 10_000, 100_000]);
     assert_eq!(counts("materials", "materials"), [10, 100, 1_000, 10_000]);
+    assert_eq!(counts("lights", "lights"), [1, 10, 100, 1_000]);
 }

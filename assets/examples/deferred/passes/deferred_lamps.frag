@@ -3,6 +3,7 @@
 #include "pass.glsl"
 #include "brdf/evaluate.glsl"
 #include "lighting/albedo.glsl"
+#include "lighting/light_grid.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/rectangle.glsl"
 #include "lighting/shadows/shadow.glsl"
@@ -30,6 +31,11 @@ void main() {
     Surface s = surface_at(pixel, direction);
     Albedo albedo = directional_albedo(s, -direction);
     vec3 radiance = vec3(0.0);
-    for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) radiance += radiance_by_light(i, s, -direction, albedo);
+    LightWalk walk = lights_near(s.position_ws);
+    for (uint n = 0u; n < uint(MAX_LIGHTS); ++n) {
+        uint i = next_light(walk);
+        if (i == NO_LIGHT) break;
+        radiance += radiance_by_light(i, s, -direction, albedo);
+    }
     color = vec4(radiance, 1.0);
 }

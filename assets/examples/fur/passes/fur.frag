@@ -5,6 +5,7 @@
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
+#include "lighting/light_grid.glsl"
 #include "lighting/punctual.glsl"
 #include "material/opaque.glsl"
 
@@ -35,7 +36,10 @@ void main() {
 
     vec3 hair = normalize(fragment.normal_ws + vec3(0.0, -0.4, 0.0) * height);
     vec3 light = irradiance_over_pi(fragment.normal_ws);
-    for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) {
+    LightWalk walk = lights_near(fragment.position_ws);
+    for (uint n = 0u; n < uint(MAX_LIGHTS); ++n) {
+        uint i = next_light(walk);
+        if (i == NO_LIGHT) break;
         Illumination from = illuminate(light_at(i, fragment.position_ws), fragment.position_ws);
         float along = dot(hair, from.l);
         float faces = saturate(dot(fragment.normal_ws, from.l) + 0.3);

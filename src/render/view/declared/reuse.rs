@@ -6,7 +6,7 @@ use super::PassContext;
 use super::cache_key::PassCacheKey;
 use super::images::Images;
 use crate::gpu::{Pipeline, ResourceUsage};
-use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
+use crate::interface::{BINDING_FEW_LIGHTS, BINDING_FRAME, BINDING_LIGHT_GRID, BINDING_LIGHTS, BINDING_PARAMS};
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::PassTarget;
 use crate::shader::graph::Input;
@@ -53,13 +53,17 @@ pub(super) fn cache_key(
     for bytes in &usage.frame_bytes {
         from.bytes.extend(constants.get(bytes.start..bytes.end.min(constants.len())).into_iter().flatten());
     }
-    if usage.frame_bindings.contains(&BINDING_LIGHTS) {
+    if usage.frame_bindings.contains(&BINDING_LIGHTS) || usage.frame_bindings.contains(&BINDING_FEW_LIGHTS) {
         from.bytes.extend_from_slice(bytemuck::cast_slice(&frame.lights()));
+    }
+    if usage.frame_bindings.contains(&BINDING_LIGHT_GRID) {
+        from.bytes.extend_from_slice(state.light_grid.bytes());
     }
     if usage.frame_bindings.contains(&BINDING_PARAMS) {
         from.bytes.extend_from_slice(state.params());
     }
-    let is_block = |binding: &u32| [BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS].contains(binding);
+    const BLOCKS: [u32; 5] = [BINDING_FRAME, BINDING_FEW_LIGHTS, BINDING_LIGHTS, BINDING_LIGHT_GRID, BINDING_PARAMS];
+    let is_block = |binding: &u32| BLOCKS.contains(binding);
     if !usage.frame_bindings.iter().all(is_block) {
         from.object(&frame.environment);
         from.object(&frame.tables);
