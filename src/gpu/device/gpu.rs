@@ -7,7 +7,7 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use raw_window_handle::RawDisplayHandle;
 
-use super::adapter::{AdapterInfo, choose, graphics_family};
+use super::adapter::{AdapterInfo, choose, graphics_family, has_texture_format};
 use super::instance::Instance;
 use super::optional::{MeshLimits, Optional};
 use super::pipeline_cache::{PipelineCache, PipelineStore};
@@ -159,6 +159,11 @@ impl Gpu {
         properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
     }
 
+    /// Whether textures can have this format: shaders sample and filter it, and it can be copied and scaled.
+    pub fn has_texture_format(&self, format: vk::Format) -> bool {
+        has_texture_format(&self.instance.raw, self.physical, format)
+    }
+
     /// Reports which optional stages the device supports.
     pub fn optional_stages(&self) -> OptionalStages {
         self.optional_stages
@@ -284,6 +289,9 @@ fn create_device(
         fragment_stores_and_atomics: supported.fragment_stores_and_atomics,
         geometry_shader: vk::TRUE,
         tessellation_shader: supported.tessellation_shader,
+        texture_compression_bc: supported.texture_compression_bc,
+        texture_compression_etc2: supported.texture_compression_etc2,
+        texture_compression_astc_ldr: supported.texture_compression_astc_ldr,
         shader_tessellation_and_geometry_point_size: supported.shader_tessellation_and_geometry_point_size,
         ..Default::default()
     };
