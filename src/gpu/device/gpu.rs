@@ -14,6 +14,10 @@ use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
 
+/// Bytes of the blocks from which images and buffers get memory of the device, and memory that the host maps.
+const DEVICE_BLOCK: u64 = 256 << 20;
+const HOST_BLOCK: u64 = 8 << 20;
+
 /// How to open a device.
 #[derive(Default)]
 pub struct GpuOptions {
@@ -96,7 +100,9 @@ impl Gpu {
             physical_device: physical,
             debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
             buffer_device_address: true,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+            // A larger resource has a block of its own, which is freed with it. On a software device all memory is the host's, and what
+            // staging buffers and textures leave behind in shared blocks would stay resident.
+            allocation_sizes: gpu_allocator::AllocationSizes::new(DEVICE_BLOCK, HOST_BLOCK),
         })
         .map_err(|error| GpuError::allocation(&error, "creating the memory allocator"))?;
         let pipeline_cache = PipelineCache::new(&device, &properties, options.pipelines)?;
