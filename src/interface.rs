@@ -25,8 +25,8 @@ pub use access::{Resource, StageRole};
 pub use binding::{Binding, BindingKind};
 pub use bindings::*;
 pub use blocks::{
-    Before, Block, BvhNode, Deformation, Displacement, Draw, EnvironmentCell, Frame, Influence, Light, LightGrid, Member,
-    Task, TracedCorners, TracedMaterial, TracedTriangle, Vertex,
+    Before, Block, BvhNode, Deformation, Displacement, Draw, EnvironmentCell, Frame, Influence, Light, LightGrid,
+    Member, Task, TracedCorners, TracedMaterial, TracedTriangle, Vertex,
 };
 pub use changes::{CLOCK, KEYS, MOTION};
 pub use constants::*;

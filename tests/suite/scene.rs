@@ -5,4 +5,5 @@ mod deform;
 mod gpu;
 mod look;
 mod materials;
+mod textures;
 mod upload;
