@@ -12,7 +12,7 @@ pub const MAX_LIGHTS: usize = 32_768;
 
 /// Up to this many lights, a loop over all of them reads a uniform block. More lights are in the cells of a grid, from which lavapipe needs
 /// as much time for some five lights a pixel as for 40 to 50 of the loop, since it reads a buffer separately for each pixel of a group.
-pub const FEW_LIGHTS: usize = 48;
+pub const FEW_LIGHTS: usize = 96;
 // Lights with a shadow map are the first of many.
 const _: () = assert!(FEW_LIGHTS >= MAX_LIGHT_VIEWS);
 

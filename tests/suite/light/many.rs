@@ -160,7 +160,7 @@ fn random_paths_draw_many_lights_without_bias() {
     let view = ["camera.eye=[0, 6, 0.001]", "camera.target=[0, 0, 0]", "camera.fovy=30", "view.bounces=0"];
     let rectangle = ["lights.rect.enabled=true", "lights.rect.polar=20"];
     let columns = |lights: &[Light], mode: &str, more: &[&str]| {
-        let settings = settings(&[&BARE[..], &view, &["view.frames=48"], more].concat());
+        let settings = settings(&[&BARE[..], &view, &["view.frames=192"], more].concat());
         let mut renderer = renderer(Model { lights: lights.to_vec(), ..model.clone() }, settings, (48, 32));
         let capture = render(&mut renderer, mode);
         [0, 1, 2, 3].map(|column| -> f64 {
