@@ -1,4 +1,6 @@
-//! `bench scale`: how the time of a frame grows with the number of primitives and of materials.
+//! `bench scale`: how the time of a frame grows with the number of primitives, of materials and of joints.
+
+mod joints;
 
 use std::sync::Arc;
 
@@ -20,7 +22,7 @@ const MATERIALS: [usize; 4] = [10, 100, 1_000, 10_000];
 /// The built-in model whose material and first triangle are copied.
 const BASE: &str = "ior";
 
-/// Draws a grid of triangles while the camera turns, for each number of primitives and of materials.
+/// Draws a grid of triangles while the camera turns, for each number of primitives and of materials, then a mesh that joints move.
 pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
     let (source, settings) = (bench.args.common.source()?, bench.args.common.settings()?);
     let mut headless = bench.renderer(source, settings, grid(1, 1)?)?;
@@ -30,6 +32,7 @@ pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
         "size": [bench.args.common.size().0, bench.args.common.size().1],
         "primitives": series(bench, &mut headless, &of_primitives)?,
         "materials": series(bench, &mut headless, &of_materials)?,
+        "joints": joints::joints(bench, &mut headless)?,
     }))
 }
 
@@ -55,6 +58,7 @@ fn series(bench: &Bench<'_>, headless: &mut Headless, steps: &[(usize, usize)]) 
         found.push(json!({
             "primitives": primitives,
             "materials": materials,
+            "draws": headless.draw_counts().draws,
             "cpu_ms": cpu,
             "device_ms": summary(device),
             "growth": growth,

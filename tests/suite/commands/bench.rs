@@ -16,4 +16,9 @@ fn bench_scale_prints_the_growth_from_step_to_step() {
     };
     assert_eq!(counts("primitives", "primitives"), [10, 100, 1_000, 10_000, 100_000]);
     assert_eq!(counts("materials", "materials"), [10, 100, 1_000, 10_000]);
+    assert_eq!(counts("joints", "joints"), [10, 100, 1_000, 10_000]);
+    // The camera sees the whole grid. The other draws cover the frame.
+    let primitives = counts("primitives", "primitives");
+    let others: Vec<u64> = counts("primitives", "draws").iter().zip(&primitives).map(|(all, own)| all - own).collect();
+    assert!(others.iter().all(|count| *count == others[0]), "{others:?}");
 }
