@@ -25,7 +25,8 @@
 //!
 //! `frame` knows `draws-by-index:N`: models of `N` and more draws are drawn by index.
 //!
-//! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer.
+//! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer; and `plain-textures:1`: textures are RGBA8, or half
+//! floats, as on a device that samples no other forms.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -6,4 +6,5 @@ mod draws;
 mod gpu;
 mod look;
 mod materials;
+mod textures;
 mod upload;

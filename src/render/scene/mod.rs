@@ -10,6 +10,7 @@ mod materials;
 mod placed;
 mod scratch;
 mod sorted;
+mod texel_formats;
 mod upload;
 
 use std::collections::HashMap;
@@ -32,6 +33,7 @@ use materials::{MaterialSets, Textures};
 pub(crate) use placed::{PlacedScene, Posed, normals_from};
 use scratch::Scratch;
 pub(crate) use sorted::{Layer, SortedDraws};
+pub use texel_formats::texel_forms;
 use upload::{Range, Uploaded, upload};
 
 /// A model on the device: geometry, textures and a descriptor set per material.
