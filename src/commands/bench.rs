@@ -315,6 +315,12 @@ fn print_table(result: &Value) {
                     out!("{of:34} cpu_ms min {:>10}   growth {:>8}", step["cpu_ms"]["min"], step["growth"]);
                 }
             }
+            _ if name == "joints" => {
+                for step in value.as_array().into_iter().flatten() {
+                    let of = format!("{} joints", step["joints"]);
+                    out!("{of:34} cpu_ms min {:>10}   growth {:>8}", step["cpu_ms"]["min"], step["growth"]);
+                }
+            }
             _ if name == "passes" => {
                 for (pass, ms) in value.as_object().into_iter().flatten() {
                     out!("{:24} median {:>10}", format!("  pass {pass}"), ms["median"]);

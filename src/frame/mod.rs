@@ -32,6 +32,7 @@ pub(crate) use material_variant::QUADS;
 pub use mode_sets::mode_sets;
 pub(crate) use pipeline_key::PipelineKey;
 pub use pipelines::PipelineRequest;
+pub(crate) use pipelines::draws_by_index;
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 pub use shared_mode::SharedMode;

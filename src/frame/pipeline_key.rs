@@ -58,6 +58,8 @@ pub(crate) struct PipelineKey {
     pub(crate) specialization: Specialization,
     /// Ids of the modes that its fragment stage computes, each for a target of its own; empty for the mode in `specialization`.
     pub(crate) modes: Vec<u32>,
+    /// Whether its stages should find their draw in a buffer, as far as they and the device can.
+    pub(crate) draws_by_index: bool,
 }
 
 impl PipelineKey {

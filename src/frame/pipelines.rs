@@ -12,9 +12,9 @@ use super::formats::{MEAN_FORMAT, TargetFormat};
 use super::material_variant::{MaterialVariant, shared_features};
 use super::stages::DEFORM;
 use super::{Scene, SharedMode};
-use crate::gpu::{Specialization, vk};
+use crate::gpu::{Specialization, fault, vk};
 use crate::interface::{self, FEW_LIGHTS, TONEMAP_OFF, UNROLLED_LIGHTS};
-use crate::scene::light_count;
+use crate::scene::{Model, light_count};
 use crate::settings::Settings;
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, RenderPhase};
@@ -57,6 +57,10 @@ pub struct PipelineRequest {
     pub traces: bool,
     /// Whether `user_vertex` or a later pre-rasterization stage moves the model's vertices, which traced rays ignore.
     pub moves_vertices: bool,
+    /// Whether the stages leave all vertices where the model has them, so that what is beyond the frame need not be drawn.
+    pub keeps_vertices: bool,
+    /// Whether the model has so many draws that its stages find them in a buffer.
+    pub draws_by_index: bool,
     /// Whether transmissive surfaces look up the opaque scene of the final picture instead of this mode's.
     pub through: bool,
     /// The declared passes to draw, in order.
@@ -176,6 +180,9 @@ impl PipelineRequest {
             accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
             moves_vertices: shaders.moves_vertices(&stage),
+            keeps_vertices: shaders.keeps_vertices(&stage)
+                && (!selection.through || shaders.keeps_vertices(&model_stage(shaders))),
+            draws_by_index: scene.is_some_and(|scene| draws_by_index(scene.loaded())),
             through: selection.through,
             stage,
             passes,
@@ -297,6 +304,18 @@ impl PipelineRequest {
         // A stage that has never compiled is not in the graph yet.
         !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
     }
+}
+
+/// Whether the stages find the draws of a model in a buffer, instead of getting each with its commands. That saves the CPU time for
+/// each draw, and takes a little time on the device, so it is for models with many draws.
+pub(crate) fn draws_by_index(model: &Model) -> bool {
+    const MANY: u64 = 256;
+    model.instances.len() as u64 >= fault::value("draws-by-index").unwrap_or(MANY)
+}
+
+/// The fragment stage of the final picture.
+fn model_stage(shaders: &ShaderSet) -> String {
+    shaders.graph.pass(MODEL).map(|pass| pass.desc.stage.clone()).unwrap_or_default()
 }
 
 /// The pass whose stage draws the wireframe: that of the mode which draws lines.

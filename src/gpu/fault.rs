@@ -11,6 +11,7 @@
 //! - `frame-hang-ms:N`, `pipeline-hang-ms:N`: every wait for a submission, or every graphics pipeline, takes so much longer, as if
 //!   the device hung.
 //! - `window-hidden:1`: a window never gets an image of its swapchain, as if it were hidden.
+//! - `single-draws:1`: the device has no `multiDrawIndirect`.
 //! - `by-name:1`: a shader module with a function called `lose_the_device` loses the device: from then on, every wait for a
 //!   submission fails with [`super::GpuError::DeviceLost`]. One with a function called `crash_the_driver` aborts the process.
 //!
@@ -21,6 +22,8 @@
 //! - `load-delay-ms:N`: reading a model takes so much longer.
 //! - `closing-panic:1`, `closing-delay-ms:N`, `closing-limit-ms:N`: closing the window panics, takes so much longer, or may take so long.
 //! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
+//!
+//! `frame` knows `draws-by-index:N`: models of `N` and more draws are drawn by index.
 //!
 //! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer; and `plain-textures:1`: textures are RGBA8, or half
 //! floats, as on a device that samples no other forms.

@@ -23,6 +23,7 @@ pub mod watchdog;
 mod window;
 
 pub use commands::counts::DrawCounts;
+pub use commands::draws::{DrawCommand, DrawRun};
 pub use commands::encoder::{Attachments, Encoder, Rect};
 pub use commands::frames::{Frames, one_shot};
 pub use commands::image_use::Use;
@@ -32,7 +33,7 @@ pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters, texture_formats};
 pub use device::gpu::{Gpu, GpuOptions, OptionalStages};
 pub use device::memory_use::{Heap, MemoryUse};
-pub use device::optional::MeshLimits;
+pub use device::optional::{DrawFeatures, MeshLimits};
 pub use device::pipeline_cache::PipelineStore;
 pub use error::GpuError;
 pub use heap::{return_freed_memory, return_large_blocks};

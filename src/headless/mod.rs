@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::frame::{Clock, FrameState, TargetFormat};
-use crate::gpu::{Frames, Gpu, Image, PassTime, SetLayouts, return_freed_memory};
+use crate::gpu::{DrawCounts, Frames, Gpu, Image, PassTime, SetLayouts, return_freed_memory};
 use crate::pipeline::{Outcome, Reload, Reloader};
 use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, beyond_memory, wrong_values};
 use crate::scene::Model;
@@ -274,6 +274,11 @@ impl Headless {
     /// Device time of each pass of the last frame, if the device supports timestamps.
     pub fn pass_times(&self) -> &[PassTime] {
         self.frames.pass_times()
+    }
+
+    /// What the last frame drew, if the device supports timestamps.
+    pub fn draw_counts(&self) -> DrawCounts {
+        self.frames.draw_counts()
     }
 
     /// Replaces the model. On failure the old model stays.

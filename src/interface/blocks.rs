@@ -415,7 +415,7 @@ blocks! {
         world_from_object: mat4x3,
     }
 
-    /// Push constants of one draw.
+    /// The draw that a stage runs for.
     Draw: "layout(push_constant, scalar) uniform Draw", "draw" {
         /// Device address of the first vertex.
         vertices: Vertices,

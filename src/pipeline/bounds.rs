@@ -53,14 +53,15 @@ fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
 }
 
 /// The module of a stage, specialized with these constants, with bounded loops, optimized. `is_on_display`: its color is shown
-/// unchanged, after the tone map.
+/// unchanged, after the tone map. With `draws_by_index`, it finds its draw in a buffer.
 pub(super) fn shader_module(
     gpu: &Arc<Gpu>,
     stage: &Stage,
     constants: &[(u32, u32)],
     is_on_display: bool,
+    draws_by_index: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
-    bounded_module(gpu, stage, (stage.specialize(constants), 1), constants, is_on_display)
+    bounded_module(gpu, stage, (stage.specialize(constants), 1), constants, is_on_display, draws_by_index)
 }
 
 /// The module of a fragment stage that computes several `modes`, each for a target of its own. `None` if the stage does not
@@ -70,9 +71,10 @@ pub(super) fn module_of_modes(
     stage: &Stage,
     constants: &[(u32, u32)],
     modes: &[u32],
+    draws_by_index: bool,
 ) -> Option<Result<Arc<ShaderModule>, GpuError>> {
     let words = specialize_several(&stage.spirv, constants, SPEC_MODE, modes)?;
-    Some(bounded_module(gpu, stage, (words, modes.len() as u32), constants, false))
+    Some(bounded_module(gpu, stage, (words, modes.len() as u32), constants, false, draws_by_index))
 }
 
 /// A module of `words` that computes this many modes, each with the iteration limit of a single one.
@@ -82,6 +84,7 @@ fn bounded_module(
     (words, modes): (Vec<u32>, u32),
     constants: &[(u32, u32)],
     is_on_display: bool,
+    draws_by_index: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
     let (path, kind) = (stage.path.as_str(), stage.kind);
     let stores = match kind {
@@ -106,7 +109,7 @@ fn bounded_module(
         mark,
     };
     fault::take_module(&words);
-    let Finished { words, unoptimized, is_bounded } = spirv::finish(words, &stage.spirv, &bounds);
+    let Finished { words, unoptimized, is_bounded } = spirv::finish(words, &stage.spirv, &bounds, draws_by_index);
     tracing::debug!(
         "{path}: {unoptimized} words, optimized {}, {}",
         words.len(),

@@ -1,6 +1,7 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
 mod bound;
+mod make;
 mod report;
 
 use std::collections::{HashMap, HashSet};
@@ -10,16 +11,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use rayon::prelude::*;
 
 use crate::frame::stages::DEFORM;
-use crate::frame::{PipelineKey, PipelineRequest, pass_format};
+use crate::frame::{PipelineKey, PipelineRequest};
 use crate::gpu::{
-    ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
-    ShaderModule, Specialization, vk,
+    ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, SetLayouts, ShaderModule,
+    Specialization,
 };
 use crate::interface::StageRole;
-use crate::pipeline::bounds::{module_of_modes, shader_module};
+use crate::pipeline::bounds::shader_module;
 use crate::pipeline::textures::PassTextures;
-use crate::shader::graph::{Input, Inputs, RenderPhase};
-use crate::shader::{GraphPass, ShaderSet, Stage, StageKind};
+use crate::shader::graph::{Input, Inputs};
+use crate::shader::{GraphPass, ShaderSet, Stage};
 use bound::Bound;
 pub(crate) use bound::BoundPipelines;
 pub use report::{InPipeline, StageReport};
@@ -307,66 +308,11 @@ impl PipelineSet {
         if let Some(pipeline) = lock(&self.computes).get(&key) {
             return Ok(pipeline.clone());
         }
-        let module = shader_module(&self.gpu, self.stage(path)?, constants, false)?;
+        let module = shader_module(&self.gpu, self.stage(path)?, constants, false, false)?;
         check_bound(&module, role)?;
         let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout(&module)?)?;
         lock(&self.computes).insert(key, pipeline.clone(), number);
         Ok(pipeline)
-    }
-
-    /// Calls `then` with the create info of the pipeline of `key`.
-    fn make<T>(
-        &self,
-        key: &PipelineKey,
-        then: impl FnOnce(&PipelineDesc<'_>) -> Result<T, GpuError>,
-    ) -> Result<T, GpuError> {
-        let pass = &key.pass.0;
-        let is_on_display = matches!(pass.phase, RenderPhase::Tonemap | RenderPhase::Display);
-        let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
-        let pre_rasterization =
-            pass.pre_rasterization.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
-        let pre_rasterization = pre_rasterization.collect::<Result<Vec<_>, GpuError>>()?;
-        let fragment = match &*key.modes {
-            [] => module(&pass.desc.stage)?,
-            modes => {
-                let several = module_of_modes(&self.gpu, self.stage(&pass.desc.stage)?, &key.specialization, modes);
-                several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.desc.stage)))??
-            }
-        };
-        let pre_rasterization: Vec<_> = pre_rasterization.iter().map(|(flag, module)| (*flag, &**module)).collect();
-        let modules: Vec<&ShaderModule> =
-            pre_rasterization.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
-        modules.iter().try_for_each(|module| check_bound(module, pass.role()))?;
-        let layout = self.layout(&pass.inputs, &modules, pass.desc.draws_model());
-        let layout = layout.map_err(|error| of_pass(pass, error))?;
-        let more = pass.desc.also.iter().map(|(_, format)| pass_format(*format));
-        let modes = key.modes.iter().skip(1).map(|_| key.format);
-        let colors: Vec<_> = std::iter::once(key.format).chain(more).chain(modes).collect();
-        let desc = PipelineDesc {
-            pre_rasterization: &pre_rasterization,
-            fragment: &fragment,
-            colors: &colors,
-            depth: pass.desc.model.is_some() || pass.phase == RenderPhase::Model,
-            raster: key.raster,
-            samples: key.samples,
-            class: key.class,
-            layout,
-        };
-        then(&desc)
-    }
-}
-
-fn flag_of(kind: StageKind) -> vk::ShaderStageFlags {
-    use vk::ShaderStageFlags as S;
-    match kind {
-        StageKind::Vertex => S::VERTEX,
-        StageKind::TessellationControl => S::TESSELLATION_CONTROL,
-        StageKind::TessellationEvaluation => S::TESSELLATION_EVALUATION,
-        StageKind::Geometry => S::GEOMETRY,
-        StageKind::Task => S::TASK_EXT,
-        StageKind::Mesh => S::MESH_EXT,
-        StageKind::Fragment => S::FRAGMENT,
-        StageKind::Compute => S::COMPUTE,
     }
 }
 

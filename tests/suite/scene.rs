@@ -2,6 +2,7 @@
 
 mod cameras;
 mod deform;
+mod draws;
 mod gpu;
 mod look;
 mod materials;

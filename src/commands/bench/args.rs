@@ -21,8 +21,8 @@ pub(super) enum What {
     Thumbnails,
     /// Time of a frame with hard shadows, ambient occlusion and bloom, and with 100 passes of one pixel, in turn with one without
     Passes,
-    /// CPU time of a frame of 10 to 100,000 primitives, and of 10 to 10,000 materials; device time of 1 to 1,000 lights; upload time and
-    /// memory of textures up to 4 GiB
+    /// CPU time of a frame of 10 to 100,000 primitives, of 10 to 10,000 materials, and of 10 to 10,000 joints; device time of 1 to 1,000 lights;
+    /// upload time and memory of textures up to 4 GiB
     Scale,
 }
 

@@ -1,4 +1,6 @@
-//! `bench scale`: how the time of a frame grows with the number of primitives, of materials and of lights.
+//! `bench scale`: how the time of a frame grows with the number of primitives, of materials, of joints and of lights.
+
+mod joints;
 
 use std::sync::Arc;
 
@@ -21,7 +23,7 @@ const MATERIALS: [usize; 4] = [10, 100, 1_000, 10_000];
 /// The built-in model whose material and first triangle are copied.
 const BASE: &str = "ior";
 
-/// Draws a grid of triangles while the camera turns, for each number of primitives and of materials.
+/// Draws a grid of triangles while the camera turns, for each number of primitives and of materials, then a mesh that joints move.
 pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
     let (source, settings) = (bench.args.common.source()?, bench.args.common.settings()?);
     let mut headless = bench.renderer(source, settings, grid(1, 1)?)?;
@@ -32,6 +34,7 @@ pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
         "primitives": series(bench, &mut headless, &of_primitives)?,
         "materials": series(bench, &mut headless, &of_materials)?,
         "lights": lights(bench, &mut headless)?,
+        "joints": joints::joints(bench, &mut headless)?,
     }))
 }
 
@@ -57,6 +60,7 @@ fn series(bench: &Bench<'_>, headless: &mut Headless, steps: &[(usize, usize)]) 
         found.push(json!({
             "primitives": primitives,
             "materials": materials,
+            "draws": headless.draw_counts().draws,
             "cpu_ms": cpu,
             "device_ms": summary(device),
             "growth": growth,

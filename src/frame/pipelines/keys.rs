@@ -42,6 +42,7 @@ impl PipelineRequest {
             samples: self.target.samples,
             specialization: self.material_constants(material),
             modes: self.modes.iter().map(|mode| mode.id).collect(),
+            draws_by_index: self.draws_by_index && !pass.desc.quads,
         }
     }
 
@@ -99,6 +100,7 @@ impl PipelineRequest {
             samples: 1,
             specialization,
             modes: Vec::new(),
+            draws_by_index: false,
         }
     }
 

@@ -31,16 +31,21 @@ impl Counter {
         self.counts.triangles += u64::from(vertices / 3);
     }
 
-    /// Counts a draw with indices.
-    pub(super) fn draw_indexed(&mut self, indices: u32, instances: u32) {
+    /// Counts this many draws, which have `indices` together.
+    pub(super) fn draw_run(&mut self, draws: u32, indices: u64, instances: u32) {
         use vk::PrimitiveTopology as T;
         let triangles = match self.topology.unwrap_or(T::TRIANGLE_LIST) {
             T::TRIANGLE_LIST | T::PATCH_LIST => indices / 3,
-            T::TRIANGLE_STRIP | T::TRIANGLE_FAN => indices.saturating_sub(2),
+            T::TRIANGLE_STRIP | T::TRIANGLE_FAN => indices.saturating_sub(2 * u64::from(draws)),
             _ => 0,
         };
-        self.counts.draws += 1;
-        self.counts.triangles += u64::from(triangles) * u64::from(instances);
+        self.counts.draws += u64::from(draws);
+        self.counts.triangles += triangles * u64::from(instances);
+    }
+
+    /// Counts a draw with indices.
+    pub(super) fn draw_indexed(&mut self, indices: u32, instances: u32) {
+        self.draw_run(1, indices.into(), instances);
     }
 
     /// Counts a draw of a mesh pipeline.
@@ -65,5 +70,8 @@ mod tests {
         counter.set_topology(vk::PrimitiveTopology::LINE_LIST);
         counter.draw_indexed(10, 1);
         assert_eq!(counter.counts, DrawCounts { draws: 4, triangles: 1 + 20 + 8 });
+        counter.set_topology(vk::PrimitiveTopology::TRIANGLE_STRIP);
+        counter.draw_run(3, 15, 2);
+        assert_eq!(counter.counts, DrawCounts { draws: 7, triangles: 29 + 18 });
     }
 }

@@ -4,6 +4,7 @@ pub(in crate::gpu) mod blit;
 pub(in crate::gpu) mod compute;
 pub(in crate::gpu) mod copy;
 pub(in crate::gpu) mod counts;
+pub(in crate::gpu) mod draws;
 pub(in crate::gpu) mod encoder;
 pub(in crate::gpu) mod frames;
 pub(in crate::gpu) mod image_use;

@@ -9,7 +9,7 @@ use raw_window_handle::RawDisplayHandle;
 
 use super::adapter::{AdapterInfo, choose, graphics_family, has_texture_format};
 use super::instance::Instance;
-use super::optional::{MeshLimits, Optional};
+use super::optional::{DrawFeatures, MeshLimits, Optional};
 use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
@@ -67,6 +67,7 @@ pub struct Gpu {
     vertex_stores: bool,
     fragment_stores: bool,
     pub(in crate::gpu) has_memory_budget: bool,
+    draws: DrawFeatures,
     info: AdapterInfo,
 }
 
@@ -114,6 +115,7 @@ impl Gpu {
                 .then(|| khr::pipeline_executable_properties::Device::new(&instance.raw, &device)),
             mesh_shader: optional.mesh.map(|_| ext::mesh_shader::Device::new(&instance.raw, &device)),
             has_memory_budget: optional.memory_budget,
+            draws: optional.draws,
             debug_utils: instance.has_debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device)),
             allocator: Arc::new(Mutex::new(allocator)),
             device,
@@ -173,6 +175,11 @@ impl Gpu {
     /// Reports which optional stages the device supports.
     pub fn optional_stages(&self) -> OptionalStages {
         self.optional_stages
+    }
+
+    /// Reports how stages can tell draws apart.
+    pub fn draw_features(&self) -> DrawFeatures {
+        self.draws
     }
 
     /// Whether the driver reports pipeline statistics: [`crate::gpu::CompileInfo::statistics`].
@@ -299,8 +306,11 @@ fn create_device(
         texture_compression_etc2: supported.texture_compression_etc2,
         texture_compression_astc_ldr: supported.texture_compression_astc_ldr,
         shader_tessellation_and_geometry_point_size: supported.shader_tessellation_and_geometry_point_size,
+        multi_draw_indirect: supported.multi_draw_indirect,
+        draw_indirect_first_instance: supported.draw_indirect_first_instance,
         ..Default::default()
     };
+    let mut v11 = vk::PhysicalDeviceVulkan11Features::default().shader_draw_parameters(optional.draws.by_index);
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true).scalar_block_layout(true);
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
@@ -313,6 +323,7 @@ fn create_device(
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
         .enabled_features(&core)
+        .push_next(&mut v11)
         .push_next(&mut v12)
         .push_next(&mut v13);
     if optional.executables {

@@ -1,8 +1,10 @@
-//! Extensions that Specula uses where the device has them. It works without any of them.
+//! Extensions and features that Specula uses where the device has them. It works without any of them.
 
 use std::ffi::{CStr, c_char};
 
 use ash::{ext, khr, vk};
+
+use crate::gpu::fault;
 
 /// The optional extensions that a device has.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,6 +15,34 @@ pub(in crate::gpu) struct Optional {
     pub(in crate::gpu) memory_budget: bool,
     /// Task and mesh stages.
     pub(in crate::gpu) mesh: Option<MeshLimits>,
+    /// Draws that stages can tell apart.
+    pub(in crate::gpu) draws: DrawFeatures,
+}
+
+/// How a device tells stages which draw they run for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrawFeatures {
+    /// Stages can read `gl_BaseInstance`, also in draws whose arguments are in a buffer.
+    pub by_index: bool,
+    /// The most draws of one command; 1 without `multiDrawIndirect`.
+    pub at_once: u32,
+}
+
+impl DrawFeatures {
+    fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Self {
+        let mut v11 = vk::PhysicalDeviceVulkan11Features::default();
+        let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut v11);
+        // SAFETY: `physical` comes from this live instance; the chain is valid for the call.
+        unsafe { instance.get_physical_device_features2(physical, &mut features) };
+        let core = features.features;
+        // SAFETY: as above.
+        let limits = unsafe { instance.get_physical_device_properties(physical) }.limits;
+        let has_several = core.multi_draw_indirect == vk::TRUE && fault::value("single-draws").is_none();
+        Self {
+            by_index: v11.shader_draw_parameters == vk::TRUE && core.draw_indirect_first_instance == vk::TRUE,
+            at_once: if has_several { limits.max_draw_indirect_count.max(1) } else { 1 },
+        }
+    }
 }
 
 /// The limits of task and mesh stages.
@@ -63,6 +93,7 @@ impl Optional {
         Self {
             executables: executables.pipeline_executable_info == vk::TRUE,
             memory_budget: has(ext::memory_budget::NAME),
+            draws: DrawFeatures::of(instance, physical),
             mesh: has(ext::mesh_shader::NAME).then(|| mesh_limits(instance, physical)).flatten(),
         }
     }

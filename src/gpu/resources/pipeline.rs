@@ -143,6 +143,8 @@ pub struct PipelineDesc<'a> {
     pub class: PrimitiveClass,
     /// The pipeline layout, with what the stages read by name.
     pub layout: Arc<PassLayout>,
+    /// Whether the stages find their draw by `gl_BaseInstance`.
+    pub draws_by_index: bool,
 }
 
 impl PipelineDesc<'_> {
@@ -168,6 +170,9 @@ pub struct Pipeline {
     gpu: Arc<Gpu>,
     /// Its layout.
     pub layout: Arc<PassLayout>,
+    /// Whether the stages find their draw by `gl_BaseInstance`, in a buffer whose address is in the push constants. Otherwise the push
+    /// constants are the draw.
+    pub draws_by_index: bool,
     /// The descriptors that its stages use.
     pub usage: ResourceUsage,
     /// Information about the compiled code.
@@ -193,7 +198,15 @@ impl Pipeline {
         let names_loops = desc.modules().any(|(_, module)| module.names_loops);
         let loops = names_loops.then(|| layouts.blank.loops.clone());
         let usage = desc.modules().fold(ResourceUsage::default(), |usage, (_, module)| usage.union(&module.usage));
-        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), usage, compile_info, loops, raw }))
+        Ok(Arc::new(Self {
+            gpu: gpu.clone(),
+            layout: desc.layout.clone(),
+            draws_by_index: desc.draws_by_index,
+            usage,
+            compile_info,
+            loops,
+            raw,
+        }))
     }
 
     /// Builds a pipeline once more to query its statistics, which drivers keep only if the flag asks for them.

@@ -128,7 +128,7 @@ impl PipelineSet {
     }
 
     fn ask_about(&self, pass: &GraphPass, constants: &Specialization) -> Result<Vec<Executable>, GpuError> {
-        let module = shader_module(&self.gpu, self.stage(&pass.desc.stage)?, constants, false)?;
+        let module = shader_module(&self.gpu, self.stage(&pass.desc.stage)?, constants, false, false)?;
         let layout = self.layout(&pass.inputs, &[&module], false)?;
         ComputePipeline::statistics(&self.gpu, &self.layouts, &module, Some(&layout))
     }

@@ -1,44 +1,40 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set per material.
 
+mod buffers;
 mod deformables;
+mod draw_list;
 mod error;
+mod frustum;
+mod gpu_draw;
 mod materials;
 mod placed;
+mod scratch;
+mod sorted;
 mod texel_formats;
 mod upload;
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::Vec3;
 
-use crate::frame::{Appearance, MaterialVariant, Scene};
+use crate::frame::{Appearance, Scene, draws_by_index};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
 use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
+use buffers::BufferPool;
 pub(crate) use deformables::Deformables;
+use draw_list::DrawLists;
+pub(crate) use draw_list::Run;
 pub use error::UploadError;
+pub(crate) use frustum::Frustum;
+pub(crate) use gpu_draw::GpuDraw;
 use materials::{MaterialSets, Textures};
-pub(crate) use placed::{PlacedDraw, PlacedScene, Posed, normals_from};
+pub(crate) use placed::{PlacedScene, Posed, normals_from};
+use scratch::Scratch;
+pub(crate) use sorted::{Layer, SortedDraws};
 pub use texel_formats::texel_forms;
 use upload::{Range, Uploaded, upload};
-
-/// One draw call, wherever the pose of a frame puts it.
-#[derive(Clone)]
-pub(crate) struct GpuDraw {
-    /// Index into `Model::instances`.
-    pub(crate) instance: usize,
-    /// The push constants that do not depend on the pose.
-    pub(crate) push: Draw,
-    pub(crate) first_index: u32,
-    pub(crate) index_count: u32,
-    pub(crate) topology: vk::PrimitiveTopology,
-    pub(crate) double_sided: bool,
-    pub(crate) material: Arc<DescriptorSet>,
-    pub(crate) variant: MaterialVariant,
-    /// Center of the primitive's bounds, object space.
-    pub(crate) center: Vec3,
-}
 
 /// A model on the device: geometry, textures and a descriptor set per material.
 pub struct GpuModel {
@@ -103,7 +99,15 @@ impl GpuModel {
         let draws = scene.numbered_instances().filter_map(draw).collect();
         let Self { vertices, indices, deformables, .. } = self;
         let (vertices, indices, deformables) = (vertices.clone(), indices.clone(), deformables.clone());
-        Ok(Arc::new(GpuScene { vertices, indices, draws, deformables }))
+        Ok(Arc::new(GpuScene {
+            vertices,
+            indices,
+            draws,
+            deformables,
+            buffers: draws_by_index(&self.model).then(|| BufferPool::new(gpu).into()),
+            scratch: Mutex::default(),
+            lists: Mutex::default(),
+        }))
     }
 }
 
@@ -114,6 +118,22 @@ pub struct GpuScene {
     pub(crate) draws: Vec<GpuDraw>,
     /// The instances whose vertices move, drawn or not.
     pub(crate) deformables: Option<Arc<Deformables>>,
+    /// Buffers for draws and commands, if the stages find their draw in one, as far as they and the device can.
+    buffers: Option<Arc<BufferPool>>,
+    scratch: Mutex<Scratch>,
+    /// The lists of the last pose.
+    lists: Mutex<Option<Arc<DrawLists>>>,
+}
+
+impl GpuScene {
+    /// The lists of the draws, of which a pose mirrors some.
+    fn lists(&self, mirrored: Vec<bool>) -> Arc<DrawLists> {
+        let mut lists = self.lists.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*lists {
+            Some(known) if known.mirrored == mirrored => known.clone(),
+            _ => lists.insert(Arc::new(DrawLists::new(mirrored, self.buffers.clone()))).clone(),
+        }
+    }
 }
 
 fn draw(
@@ -147,6 +167,10 @@ fn draw(
         material,
         variant: appearance.variant,
         center: primitive.bounds.center(),
+        half_size: match primitive.bounds.is_empty() {
+            true => Vec3::INFINITY,
+            false => primitive.bounds.max - primitive.bounds.center(),
+        },
     }
 }
 

@@ -1,29 +1,22 @@
 //! Where the draws of a scene are in one frame. The list of draws stays while the model moves; a pose adds the matrices, the
-//! vertices that it has moved, the winding and the centers.
+//! vertices that it has moved, the winding and the bounds.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{Mat3, Mat4, Vec3};
+use rayon::prelude::*;
 
+use super::GpuScene;
 use super::deformables::Moved;
-use super::{GpuDraw, GpuScene};
-use crate::gpu::{Buffer, vk};
+use super::draw_list::DrawLists;
+use super::frustum::Spheres;
+use super::gpu_draw::GpuDraw;
+use crate::gpu::{Buffer, GpuError, vk};
 use crate::interface::{ATTRIBUTE_MOVED, Before, Draw};
 use crate::scene::Model;
 
-/// The part of a draw that depends on the pose.
-pub(crate) struct Placement {
-    pub(crate) push: Draw,
-    pub(crate) front_face: vk::FrontFace,
-    pub(crate) center_ws: Vec3,
-}
-
-/// A draw with its place in a frame.
-#[derive(Clone, Copy)]
-pub(crate) struct PlacedDraw<'a> {
-    pub(crate) draw: &'a GpuDraw,
-    pub(crate) placement: &'a Placement,
-}
+/// Draws that one thread places at once.
+const AT_ONCE: usize = 1024;
 
 /// The model in a pose, and the vertices that the pose has moved if there are any.
 #[derive(Clone)]
@@ -38,10 +31,23 @@ pub(crate) struct PlacedScene {
     posed: Posed,
     /// The pose of the frame before, and the places of the draws in it. `None` if nothing has moved.
     before: Option<(Posed, Arc<Buffer>)>,
-    /// Of each entry of [`GpuScene::draws`].
-    placements: Vec<Placement>,
+    /// Of each entry of [`GpuScene::draws`]: what its stages read.
+    pushes: Vec<Draw>,
+    /// Around each draw.
+    spheres: Spheres,
+    lists: Arc<DrawLists>,
+    /// The content of `pushes`, if stages find their draw in a buffer.
+    records: Option<Arc<Buffer>>,
     /// Indices of the draws, as they were sorted last: while the camera moves little, they are nearly sorted.
     order: Mutex<Vec<u32>>,
+}
+
+/// The part of a draw that depends on the pose.
+struct Placement {
+    push: Draw,
+    is_mirrored: bool,
+    center_ws: Vec3,
+    radius: f32,
 }
 
 impl Posed {
@@ -68,6 +74,23 @@ impl Posed {
         }
     }
 
+    fn placement(&self, scene: &GpuScene, draw: &GpuDraw, address: Option<u64>) -> Placement {
+        let (Before { vertices, world_from_object }, world) = (self.place(scene, draw, address), self.world(draw));
+        let linear = Mat3::from_mat4(world);
+        let moved = self.moved(scene, draw);
+        // Nothing bounds vertices that joints and morph targets move.
+        let radius = if moved.is_some() { f32::INFINITY } else { (abs(linear) * draw.half_size).length() };
+        let center = moved.and_then(|moved| moved.skin).map_or(draw.center, |skin| skin.transform_point3(draw.center));
+        let normal_ws_from_object = normals_from(linear).to_cols_array_2d();
+        Placement {
+            push: Draw { vertices, world_from_object, normal_ws_from_object, ..draw.push },
+            // A transform that mirrors flips the winding.
+            is_mirrored: linear.determinant() < 0.0,
+            center_ws: world.transform_point3(center),
+            radius,
+        }
+    }
+
     fn address(&self) -> Option<u64> {
         self.vertices.as_ref().map(|vertices| vertices.address())
     }
@@ -76,49 +99,47 @@ impl Posed {
 impl PlacedScene {
     pub(crate) fn new(scene: &Arc<GpuScene>, posed: Posed) -> Self {
         let address = posed.address();
-        let place = |draw: &GpuDraw| {
-            let (Before { vertices, world_from_object }, world) =
-                (posed.place(scene, draw, address), posed.world(draw));
-            let linear = Mat3::from_mat4(world);
-            let skin = posed.moved(scene, draw).and_then(|moved| moved.skin);
-            let center = skin.map_or(draw.center, |skin| skin.transform_point3(draw.center));
-            let normal_ws_from_object = normals_from(linear).to_cols_array_2d();
-            Placement {
-                push: Draw { vertices, world_from_object, normal_ws_from_object, ..draw.push },
-                // A transform that mirrors flips the winding.
-                front_face: match linear.determinant() < 0.0 {
-                    true => vk::FrontFace::CLOCKWISE,
-                    false => vk::FrontFace::COUNTER_CLOCKWISE,
-                },
-                center_ws: world.transform_point3(center),
-            }
-        };
-        let placements: Vec<Placement> = scene.draws.iter().map(place).collect();
-        let order = Mutex::new((0..placements.len() as u32).collect());
-        Self { scene: scene.clone(), posed, before: None, placements, order }
+        let draws = scene.draws.par_iter().with_min_len(AT_ONCE);
+        let placements: Vec<Placement> = draws.map(|draw| posed.placement(scene, draw, address)).collect();
+        let mut spheres = Spheres::with_capacity(placements.len());
+        placements.iter().for_each(|placement| spheres.push(placement.center_ws, placement.radius));
+        let lists = scene.lists(placements.iter().map(|placement| placement.is_mirrored).collect());
+        let pushes: Vec<Draw> = placements.into_iter().map(|placement| placement.push).collect();
+        let order = Mutex::new((0..pushes.len() as u32).collect());
+        Self { scene: scene.clone(), posed, before: None, pushes, spheres, lists, records: None, order }
     }
 
     /// The places of all draws in another pose. Empty if none of them has moved.
     pub(crate) fn places_in(&self, other: &Posed) -> Vec<Before> {
         let address = other.address();
-        let places = self.scene.draws.iter().map(|draw| other.place(&self.scene, draw, address));
-        let places: Vec<Before> = places.collect();
-        let is_same = self.placements.iter().zip(&places).all(|(now, before)| !now.has_moved(before));
+        let draws = self.scene.draws.par_iter().with_min_len(AT_ONCE);
+        let places: Vec<Before> = draws.map(|draw| other.place(&self.scene, draw, address)).collect();
+        let is_same = self.pushes.iter().zip(&places).all(|(now, before)| !has_moved(now, before));
         if is_same { Vec::new() } else { places }
     }
 
     /// Lets the draws that have moved read the places in the frame before, which `buffer` holds.
     pub(crate) fn with_before(mut self, posed: &Posed, places: &[Before], buffer: &Arc<Buffer>) -> Self {
         let mut address = buffer.address();
-        for (now, before) in self.placements.iter_mut().zip(places) {
-            if now.has_moved(before) {
-                now.push.attributes |= ATTRIBUTE_MOVED;
-                now.push.before = address;
+        for (now, before) in self.pushes.iter_mut().zip(places) {
+            if has_moved(now, before) {
+                now.attributes |= ATTRIBUTE_MOVED;
+                now.before = address;
             }
             address += size_of::<Before>() as u64;
         }
         self.before = Some((posed.clone(), buffer.clone()));
         self
+    }
+
+    /// The same with the draws in a buffer for the device, if its stages find them there.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub(crate) fn with_records(mut self) -> Result<Self, GpuError> {
+        let content = bytemuck::cast_slice(&self.pushes);
+        self.records = self.scene.buffers.as_ref().map(|buffers| buffers.filled(content)).transpose()?;
+        Ok(self)
     }
 
     /// The pose and its vertices.
@@ -131,26 +152,49 @@ impl PlacedScene {
         self.before.is_some()
     }
 
-    /// The draws by the distance of their centers from a point; those at equal distances in the order of the scene.
-    pub(crate) fn front_to_back(&self, eye: Vec3) -> Vec<PlacedDraw<'_>> {
-        let distance = |placement: &Placement| placement.center_ws.distance_squared(eye);
-        let distances: Vec<f32> = self.placements.iter().map(distance).collect();
-        let mut order = self.order.lock().unwrap_or_else(PoisonError::into_inner);
-        order.sort_by(|a, b| distances[*a as usize].total_cmp(&distances[*b as usize]).then(a.cmp(b)));
-        let placed = |index: &u32| (&self.scene.draws[*index as usize], &self.placements[*index as usize]);
-        order.iter().map(placed).map(|(draw, placement)| PlacedDraw { draw, placement }).collect()
+    /// What the stages of a draw read.
+    pub(crate) fn push(&self, draw: u32) -> &Draw {
+        &self.pushes[draw as usize]
     }
 
-    pub(crate) fn draws(&self) -> impl Iterator<Item = PlacedDraw<'_>> {
-        let draws = self.scene.draws.iter().zip(&self.placements);
-        draws.map(|(draw, placement)| PlacedDraw { draw, placement })
+    /// The device address of what the stages of all draws read.
+    pub(crate) fn records(&self) -> Option<u64> {
+        self.records.as_ref().map(|records| records.address())
+    }
+
+    /// The winding of a draw's front faces.
+    pub(crate) fn front_face(&self, draw: u32) -> vk::FrontFace {
+        match self.lists.mirrored[draw as usize] {
+            true => vk::FrontFace::CLOCKWISE,
+            false => vk::FrontFace::COUNTER_CLOCKWISE,
+        }
+    }
+
+    /// The draws in lists.
+    pub(crate) fn lists(&self) -> &DrawLists {
+        &self.lists
+    }
+
+    /// All draws, and what their stages read.
+    pub(crate) fn draws(&self) -> impl Iterator<Item = (&GpuDraw, &Draw)> {
+        self.scene.draws.iter().zip(&self.pushes)
+    }
+
+    pub(super) fn spheres(&self) -> &Spheres {
+        &self.spheres
+    }
+
+    pub(super) fn order(&self) -> MutexGuard<'_, Vec<u32>> {
+        self.order.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Placement {
-    fn has_moved(&self, before: &Before) -> bool {
-        (self.push.vertices, self.push.world_from_object) != (before.vertices, before.world_from_object)
-    }
+fn has_moved(now: &Draw, before: &Before) -> bool {
+    (now.vertices, now.world_from_object) != (before.vertices, before.world_from_object)
+}
+
+fn abs(linear: Mat3) -> Mat3 {
+    Mat3::from_cols(linear.x_axis.abs(), linear.y_axis.abs(), linear.z_axis.abs())
 }
 
 /// Transforms normals as `linear` transforms positions. The result is not normalized.

@@ -70,6 +70,7 @@ impl Tools {
                     gpu,
                     layouts,
                     &PipelineDesc {
+                        draws_by_index: false,
                         pre_rasterization: &[(vk::ShaderStageFlags::VERTEX, vertex)],
                         fragment,
                         colors: &[format],

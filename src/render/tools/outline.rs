@@ -15,7 +15,7 @@ use crate::gpu::{
     SamplerDesc, Use, vk,
 };
 use crate::render::BoundFrame;
-use crate::render::scene::{GpuDraw, PlacedDraw, PlacedScene};
+use crate::render::scene::{GpuDraw, PlacedScene};
 
 /// The style of an outline.
 #[derive(Clone, Copy, Debug)]
@@ -102,11 +102,11 @@ impl Outline {
         let clip_from_world = frame.state.camera.clip_from_world();
         let triangles = |class| class == PrimitiveClass::Triangles;
         let is_drawn = |draw: &GpuDraw| is_selected(draw.instance) && triangles(draw.variant.class);
-        for PlacedDraw { draw, placement } in placed.draws().filter(|placed| is_drawn(placed.draw)) {
-            let [x, y, z, w] = placement.push.world_from_object.map(Vec3::from);
+        for (draw, push) in placed.draws().filter(|(draw, _)| is_drawn(draw)) {
+            let [x, y, z, w] = push.world_from_object.map(Vec3::from);
             let world = Mat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), w.extend(1.0));
             let clip_from_object = (clip_from_world * world).to_cols_array_2d();
-            encoder.push(&tools.layouts, &MaskPush { clip_from_object, vertices: placement.push.vertices });
+            encoder.push(&tools.layouts, &MaskPush { clip_from_object, vertices: push.vertices });
             encoder.draw_indexed(draw.index_count, draw.first_index, 1);
         }
         encoder.end_rendering();

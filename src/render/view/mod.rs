@@ -11,8 +11,9 @@
 //!
 //! HDR alpha is coverage plus flags: "no data" and "not finite" survive half floats, clamping and the MSAA resolve
 //! (`common/pixel.glsl`, decoded by `shader/pixel.rs`). Depth is reversed and infinite. Vertices are read by device
-//! address, a draw's matrices are push constants, and a material is a descriptor set. The debug mode is one
-//! specialization constant of `debug.frag`, `MODE`, so the driver keeps the code of one mode only.
+//! address, a draw's matrices are push constants or, in a model of many draws, in a buffer (`model_draws.rs`), and a
+//! material is a descriptor set. The debug mode is one specialization constant of `debug.frag`, `MODE`, so the driver
+//! keeps the code of one mode only.
 
 mod capture;
 mod declared;

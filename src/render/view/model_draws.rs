@@ -1,5 +1,12 @@
 //! Draws the model with the pipelines of a pass: with vertices and indices, or with mesh stages. Also draws quads.
 //!
+//! **Two ways to a draw.** Stages read the matrices, addresses and numbers of their draw from a block `draw`. In a model of
+//! few draws, the block is push constants, which are recorded with each draw: a device reads nothing faster. In a model
+//! of many, Specula rewrites the stages (`spirv/draw_index.rs`): they read the block from a buffer of all draws, which
+//! is written when the pose changes, and one command draws all that share their state. The commands are in a buffer,
+//! too. `frame::draws_by_index` decides. Stages that cannot be rewritten, such as those with tessellation, draw one by
+//! one; so does a device without `multiDrawIndirect`, which needs no push constants then.
+//!
 //! **Mesh stages** (`VK_EXT_mesh_shader`) run in place of the vertex stage. Indices have an address in `Draw`, as
 //! vertices do, so a mesh stage reads both through push constants, and no descriptor changes between draws. The
 //! workgroup size of the stage says how many triangles a group has: the reflected `local_size`, 32 in
@@ -18,10 +25,10 @@ use std::sync::Arc;
 
 use super::declared::PassSets;
 use crate::frame::{MaterialVariant, PipelineKey, QUADS};
-use crate::gpu::{DescriptorSet, Encoder, Pipeline, SetLayouts, vk};
+use crate::gpu::{Buffer, DescriptorSet, DrawCommand, DrawRun, Encoder, Pipeline, SetLayouts, vk};
 use crate::interface::{ALPHA_BLEND, Draw, MAX_LIGHT_VIEWS};
 use crate::render::bound_frame::BoundFrame;
-use crate::render::scene::{GpuDraw, PlacedDraw, PlacedScene};
+use crate::render::scene::{GpuDraw, PlacedScene, Run};
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Cull, Instances};
 use crate::shader::graph::MeshStages;
@@ -41,6 +48,15 @@ pub(super) struct ModelDraws<'a> {
     pub(super) pass: &'a Arc<GraphPass>,
 }
 
+/// Draws in the order in which they are recorded.
+pub(super) struct Draws<'a> {
+    pub(super) runs: &'a [Run],
+    /// The commands of the runs.
+    pub(super) commands: &'a [DrawCommand],
+    /// The same commands for the device.
+    pub(super) buffer: Option<&'a Arc<Buffer>>,
+}
+
 /// State that stays between draws. Only changes are recorded, since a scene may have many draws and few materials.
 #[derive(Default)]
 struct Bound<'a> {
@@ -51,10 +67,10 @@ struct Bound<'a> {
 
 impl ModelDraws<'_> {
     /// Draws with the pipelines that `key` selects by material.
-    pub(super) fn draw<'d>(
+    pub(super) fn draw(
         &self,
         encoder: &mut Encoder,
-        draws: impl IntoIterator<Item = PlacedDraw<'d>>,
+        draws: &Draws<'_>,
         key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
     ) {
         let Some(placed) = self.placed else { return };
@@ -63,22 +79,27 @@ impl ModelDraws<'_> {
         encoder.bind_indices(&placed.scene.indices);
         let pipeline_of = |material| key(material).and_then(|key| self.frame.pipelines.get(&key));
         let (mut known, mut bound) = (HashMap::new(), Bound::default());
-        let mut last = None;
-        for placed in draws {
-            let GpuDraw { variant, material, .. } = placed.draw;
+        let (mut last, records) = (None, placed.records());
+        for run in draws.runs {
+            let GpuDraw { variant, material, .. } = &placed.scene.draws[run.draw as usize];
             let pipeline = match last {
                 Some((of, pipeline)) if of == *variant => pipeline,
                 _ => *known.entry(*variant).or_insert_with(|| pipeline_of(*variant)),
             };
             last = Some((*variant, pipeline));
-            let Some(pipeline) = pipeline else { continue };
+            let Some(pipeline) = pipeline.filter(|pipeline| !pipeline.draws_by_index || records.is_some()) else {
+                continue;
+            };
             if bound.material.replace(material).is_none_or(|last| !Arc::ptr_eq(last, material)) {
                 encoder.bind_set(self.layouts, material);
             }
             if bound.pipeline.replace(pipeline).is_none_or(|last| !Arc::ptr_eq(last, pipeline)) {
                 self.sets.bind(encoder, pipeline);
+                if let Some(records) = records.filter(|_| pipeline.draws_by_index) {
+                    encoder.push(self.layouts, &records);
+                }
             }
-            self.draw_one(encoder, &mut bound, placed);
+            self.draw_run(encoder, &mut bound, draws, run, pipeline.draws_by_index);
         }
     }
 
@@ -86,8 +107,9 @@ impl ModelDraws<'_> {
     pub(super) fn draw_pass(&self, encoder: &mut Encoder) {
         let request = &self.frame.state.pipelines;
         if !self.pass.desc.quads {
-            let draws = self.placed.into_iter().flat_map(|placed| placed.draws());
-            return self.draw(encoder, draws, |material| Some(request.model_pass_key(self.pass, material)));
+            let key = |material| Some(request.model_pass_key(self.pass, material));
+            // Blended surfaces keep the order of the scene.
+            return self.draw_all(encoder, self.pass.desc.blend, key);
         }
         let Some(pipeline) = self.frame.pipelines.get(&request.model_pass_key(self.pass, QUADS)) else { return };
         // World space is object space.
@@ -109,12 +131,25 @@ impl ModelDraws<'_> {
         encoder.draw_quads(self.instances);
     }
 
-    fn draw_one(&self, encoder: &mut Encoder, bound: &mut Bound<'_>, placed: PlacedDraw<'_>) {
-        let PlacedDraw { draw, placement } = placed;
-        if self.pass.pre_rasterization.mesh.is_none() {
-            encoder.push(self.layouts, &placement.push);
-        }
-        // A blended double-sided surface is drawn back faces first, since they lie behind.
+    /// Draws the whole model, seen or not; if `is_ordered`, in the order of the scene.
+    pub(super) fn draw_all(
+        &self,
+        encoder: &mut Encoder,
+        is_ordered: bool,
+        key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
+    ) {
+        let Some(placed) = self.placed else { return };
+        let (draws, lists) = (&placed.scene.draws, placed.lists());
+        let list = if is_ordered { lists.ordered(draws) } else { lists.grouped(draws) };
+        let commands = list.commands(self.instances);
+        let draws = Draws { runs: &list.runs, commands: &commands.list, buffer: commands.buffer.as_ref() };
+        self.draw(encoder, &draws, key);
+    }
+
+    fn draw_run(&self, encoder: &mut Encoder, bound: &mut Bound<'_>, draws: &Draws<'_>, run: &Run, by_index: bool) {
+        let Some(placed) = self.placed else { return };
+        let (draw, front_face) = (&placed.scene.draws[run.draw as usize], placed.front_face(run.draw));
+        // A blended double-sided surface is drawn back faces first, since they lie behind. Its run is a single draw.
         let passes: &[vk::CullModeFlags] = match (self.pass.desc.cull, draw.double_sided, draw.variant.alpha) {
             (Some(Cull::None), ..) => &[vk::CullModeFlags::NONE],
             (Some(Cull::Front), ..) => &[vk::CullModeFlags::FRONT],
@@ -126,18 +161,27 @@ impl ModelDraws<'_> {
             Some(_) => vk::PrimitiveTopology::PATCH_LIST,
             None => draw.topology,
         };
+        let DrawRun { first, count, .. } = run.commands;
+        let commands = &draws.commands[first as usize..][..count as usize];
         for cull in passes {
-            let raster = (topology, *cull, placement.front_face);
+            let raster = (topology, *cull, front_face);
             let is_new = bound.raster.replace(raster) != Some(raster);
             if let Some(mesh) = &self.pass.pre_rasterization.mesh {
                 if is_new {
-                    encoder.set_facing(*cull, placement.front_face);
+                    encoder.set_facing(*cull, front_face);
                 }
-                self.draw_mesh(encoder, &placement.push, mesh);
-            } else {
-                if is_new {
-                    encoder.set_raster(topology, *cull, placement.front_face);
-                }
+                commands.iter().for_each(|draw| self.draw_mesh(encoder, placed.push(draw.first_instance), mesh));
+                continue;
+            }
+            if is_new {
+                encoder.set_raster(topology, *cull, front_face);
+            }
+            if by_index {
+                encoder.draw_run(draws.commands, draws.buffer, &run.commands, self.instances);
+                continue;
+            }
+            for draw in commands {
+                encoder.push(self.layouts, placed.push(draw.first_instance));
                 encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
             }
         }

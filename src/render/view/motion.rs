@@ -59,8 +59,8 @@ impl Motion {
             |last: &PlacedScene| Arc::ptr_eq(&last.scene, scene) && last.posed().is_same(&posed) && !last.has_moved();
         let placed = match (&last, from) {
             (Some(last), None) if is_same(last) => last.clone(),
-            (_, None) => Arc::new(PlacedScene::new(scene, posed)),
-            (_, Some(from)) => Arc::new(self.after(slot, PlacedScene::new(scene, posed), from)?),
+            (_, None) => Arc::new(PlacedScene::new(scene, posed).with_records()?),
+            (_, Some(from)) => Arc::new(self.after(slot, PlacedScene::new(scene, posed), from)?.with_records()?),
         };
         self.placed = Some((state.loaded().clone(), placed.clone()));
         Ok(Some(placed))

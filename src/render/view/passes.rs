@@ -6,7 +6,7 @@
 //! the environment where nothing covers it; blended surfaces back to front. A mode that says `through` draws the opaque
 //! surfaces twice: as in the final picture for the copy, then as the mode shows them. Lines of the wireframe come last,
 //! in the same multisampled target, flagged as "no data" over data. Blended primitives are sorted by their centers, so
-//! interleaved ones blend in the wrong order. Nothing is culled: this is a viewer of models, not of worlds.
+//! interleaved ones blend in the wrong order. Draws beyond the frame are left out, unless a stage may move them into it.
 //!
 //! How `model` is drawn stays in Rust: the order of its surfaces, the copy of the opaque scene and the number of
 //! samples depend on the scene and the settings, not on the shader tree.
@@ -14,13 +14,13 @@
 use std::sync::Arc;
 
 use super::declared::PassSets;
-use super::model_draws::{ModelDraws, instances};
+use super::model_draws::{Draws, ModelDraws, instances};
 use super::targets::{ColorTarget, Targets};
-use crate::frame::{FrameState, MaterialVariant, PipelineKey, PipelineRequest};
+use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::ALPHA_BLEND;
 use crate::render::bound_frame::BoundFrame;
-use crate::render::scene::{PlacedDraw, PlacedScene};
+use crate::render::scene::{Frustum, Layer, PlacedScene, Run, SortedDraws};
 use crate::shader::GraphPass;
 
 /// The destination of a view's output.
@@ -48,17 +48,6 @@ pub(super) struct Passes<'a> {
     pub(super) more: &'a [ColorTarget],
 }
 
-/// Draws in the order that blending and depth require.
-#[derive(Default)]
-pub(super) struct Sorted<'a> {
-    /// Opaque and masked, front to back, so that the depth test rejects hidden fragments.
-    pub(super) opaque: Vec<PlacedDraw<'a>>,
-    /// Transmissive, back to front.
-    pub(super) transmissive: Vec<PlacedDraw<'a>>,
-    /// Alpha-blended, back to front.
-    pub(super) blended: Vec<PlacedDraw<'a>>,
-}
-
 impl Passes<'_> {
     /// Draws the scene to the HDR target and resolves it. Leaves `color` in [`Use::Color`].
     pub(super) fn model(&self, encoder: &mut Encoder) {
@@ -68,11 +57,12 @@ impl Passes<'_> {
         if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
         }
-        let sorted = sort(self.placed, &self.frame.state);
+        let sorted = self.sorted();
         if let Some(opaque_scene) = &targets.opaque_scene {
-            encoder.pass("behind", |encoder| self.opaque_scene(encoder, &sorted.opaque, opaque_scene));
+            encoder.pass("behind", |encoder| self.opaque_scene(encoder, &sorted, opaque_scene));
         }
         encoder.pass("model", |encoder| self.surfaces(encoder, &sorted));
+        self.take_back(sorted);
     }
 
     /// Draws the surfaces of several modes at once, each mode to its own target, and the sky to each. Transmissive surfaces show nothing
@@ -85,7 +75,7 @@ impl Passes<'_> {
             encoder.transition(image, Use::Undefined, Use::Color);
         }
         encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
-        let sorted = sort(self.placed, &self.frame.state);
+        let sorted = self.sorted();
         let drawn: Vec<Arc<Image>> = self.more.iter().map(|target| target.drawn().clone()).collect();
         let attachments = Attachments {
             more: &drawn,
@@ -95,10 +85,11 @@ impl Passes<'_> {
             ..Attachments::of(first.drawn())
         };
         encoder.begin_rendering(&attachments);
-        for draws in [&sorted.opaque, &sorted.transmissive, &sorted.blended] {
-            self.draw(encoder, draws, PipelineRequest::model_key);
+        for runs in [&sorted.opaque, &sorted.transmissive, &sorted.blended] {
+            self.draw(encoder, &sorted, runs, PipelineRequest::model_key);
         }
         encoder.end_rendering();
+        self.take_back(sorted);
         for target in all {
             encoder.transition(target.drawn(), Use::Color, Use::Color);
             encoder.transition(&targets.depth, Use::Depth, Use::Depth);
@@ -116,7 +107,7 @@ impl Passes<'_> {
     }
 
     /// Draws the surfaces that the opaque scene color does not hold yet, and the sky.
-    fn surfaces(&self, encoder: &mut Encoder, sorted: &Sorted<'_>) {
+    fn surfaces(&self, encoder: &mut Encoder, sorted: &SortedDraws) {
         let targets = self.targets;
         // Opaque surfaces in the opaque scene color are not drawn again, unless this mode draws them differently from the final
         // picture, which that image holds.
@@ -134,12 +125,12 @@ impl Passes<'_> {
             encoder.set_scissor(only);
         }
         if !has_opaque {
-            self.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
+            self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::model_key);
             self.added(encoder, false);
         }
-        self.draw(encoder, &sorted.transmissive, PipelineRequest::model_key);
+        self.draw(encoder, sorted, &sorted.transmissive, PipelineRequest::model_key);
         self.background(encoder);
-        self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
+        self.draw(encoder, sorted, &sorted.blended, PipelineRequest::model_key);
         self.added(encoder, true);
         self.wireframe(encoder);
         encoder.end_rendering();
@@ -154,11 +145,11 @@ impl Passes<'_> {
     }
 
     /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
-    fn opaque_scene(&self, encoder: &mut Encoder, opaque: &[PlacedDraw<'_>], opaque_scene: &Arc<Image>) {
+    fn opaque_scene(&self, encoder: &mut Encoder, sorted: &SortedDraws, opaque_scene: &Arc<Image>) {
         let targets = self.targets;
         encoder.transition(opaque_scene, Use::Undefined, Use::Sampled);
         encoder.begin_rendering(&Attachments { keeps_contents: true, ..self.hdr() });
-        self.draw(encoder, opaque, PipelineRequest::opaque_scene_key);
+        self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::opaque_scene_key);
         self.added(encoder, false);
         encoder.end_rendering();
         encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
@@ -183,9 +174,8 @@ impl Passes<'_> {
 
     /// Draws the wireframe of all triangles over the picture, if the settings say so.
     fn wireframe(&self, encoder: &mut Encoder) {
-        let (Some(pass), Some(placed)) = (&self.request().wireframe, self.placed) else { return };
-        let model = self.model_draws(pass, 1);
-        model.draw(encoder, placed.draws(), |material| self.request().wireframe_key(material));
+        let Some(pass) = &self.request().wireframe else { return };
+        self.model_draws(pass, 1).draw_all(encoder, false, |material| self.request().wireframe_key(material));
     }
 
     /// Draws the background where nothing covers it.
@@ -284,13 +274,35 @@ impl Passes<'_> {
     pub(super) fn draw(
         &self,
         encoder: &mut Encoder,
-        draws: &[PlacedDraw<'_>],
+        sorted: &SortedDraws,
+        runs: &[Run],
         key: fn(&PipelineRequest, MaterialVariant) -> Option<PipelineKey>,
     ) {
         let Some(pass) = self.request().model_pass() else { return };
-        let instances = instances(self.frame, pass);
-        let model = self.model_draws(pass, instances);
-        model.draw(encoder, draws.iter().copied(), |material| key(self.request(), material));
+        let model = self.model_draws(pass, instances(self.frame, pass));
+        let draws = Draws { runs, commands: &sorted.commands, buffer: sorted.buffer.as_ref() };
+        model.draw(encoder, &draws, |material| key(self.request(), material));
+    }
+
+    /// The draws of the scene that the camera may see, in the order that blending and depth require.
+    pub(super) fn sorted(&self) -> SortedDraws {
+        let Some(placed) = self.placed else { return SortedDraws::default() };
+        let (state, request) = (&self.frame.state, self.request());
+        // Bounds say nothing about vertices that the stages move.
+        let frustum = request.keeps_vertices.then(|| Frustum::new(state.camera.clip_from_world(), state.size));
+        let instances = request.model_pass().map_or(1, |pass| instances(self.frame, pass));
+        placed.sorted(state.camera.eye, frustum.as_ref(), instances, |variant| match variant {
+            v if v.alpha == ALPHA_BLEND => Layer::Blended,
+            v if request.is_transmissive(v) => Layer::Transmissive,
+            _ => Layer::Opaque,
+        })
+    }
+
+    /// Gives back what [`Passes::sorted`] gave.
+    pub(super) fn take_back(&self, sorted: SortedDraws) {
+        if let Some(placed) = self.placed {
+            placed.scene.take_back(sorted);
+        }
     }
 }
 
@@ -324,20 +336,4 @@ fn within(rect: Rect, area: Rect) -> Rect {
         height: rect.height.min(area.height.saturating_sub(rect.y)),
         ..rect
     }
-}
-
-/// The draws of a scene in the order that blending and depth require.
-pub(super) fn sort<'a>(placed: Option<&'a Arc<PlacedScene>>, state: &FrameState) -> Sorted<'a> {
-    let eye = state.camera.eye;
-    let mut sorted = Sorted::default();
-    for placed in placed.into_iter().flat_map(|placed| placed.front_to_back(eye)) {
-        match placed.draw.variant {
-            v if v.alpha == ALPHA_BLEND => sorted.blended.push(placed),
-            v if state.pipelines.is_transmissive(v) => sorted.transmissive.push(placed),
-            _ => sorted.opaque.push(placed),
-        }
-    }
-    sorted.blended.reverse();
-    sorted.transmissive.reverse();
-    sorted
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::capture::PixelReadback;
 use super::declared::{FrameImages, PassContext};
-use super::passes::{Passes, sort};
+use super::passes::Passes;
 use super::targets::ColorTarget;
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -144,7 +144,7 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
     let (frame, depth) = (passes.frame, &passes.targets.depth);
     all.iter().for_each(|image| encoder.transition(image, Use::Undefined, Use::Color));
     encoder.transition(depth, Use::Undefined, Use::Depth);
-    let sorted = sort(passes.placed, &frame.state);
+    let sorted = passes.sorted();
     let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
     let Some(first) = all.first() else { return };
     let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {
@@ -159,8 +159,8 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
         encoder.transition(depth, Use::Depth, Use::Depth);
     };
     begin(encoder, first, &further, Some([0.0; 4]));
-    passes.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
-    passes.draw(encoder, &sorted.transmissive, PipelineRequest::model_key);
+    passes.draw(encoder, &sorted, &sorted.opaque, PipelineRequest::model_key);
+    passes.draw(encoder, &sorted, &sorted.transmissive, PipelineRequest::model_key);
     go_on(encoder);
     for color in all {
         begin(encoder, color, &[], None);
@@ -169,7 +169,7 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
         go_on(encoder);
     }
     begin(encoder, first, &further, None);
-    passes.draw(encoder, &sorted.blended, PipelineRequest::model_key);
+    passes.draw(encoder, &sorted, &sorted.blended, PipelineRequest::model_key);
     go_on(encoder);
     for color in all {
         begin(encoder, color, &[], None);

@@ -68,7 +68,7 @@ fn meaning(spirv: &[u32]) -> (Reflection, Vec<u64>) {
 fn assert_same(linked: &[u32], whole: &[u32], what: &str) {
     assert_eq!(validate(linked), Ok(()), "{what}");
     let bounds = Bounds { rounds: 1 << 18, rounds_after: 256, report: None, mark: None };
-    let finished = finish(specialize(linked, &[]), linked, &bounds);
+    let finished = finish(specialize(linked, &[]), linked, &bounds, false);
     assert_eq!(validate(&finished.words), Ok(()), "{what}, finished");
     let ((reflection, hashes), (expected, expected_hashes)) = (meaning(linked), meaning(whole));
     assert_eq!(reflection.reached, expected.reached, "{what}: reached");

@@ -14,7 +14,7 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::hooks::Hooks;
 use crate::shader::spirv::reach::{Used, reached};
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::{Module, behavior_hash, optimize, specialize};
+use crate::shader::spirv::{Module, behavior_hash, can_index_draws, optimize, specialize};
 
 /// A compiled stage.
 #[derive(Debug)]
@@ -35,6 +35,8 @@ pub struct Stage {
     specialized: Mutex<Vec<Specialized>>,
     /// See [`Stage::live_pass_bindings`].
     live: OnceLock<BTreeSet<u32>>,
+    /// See [`Stage::can_index_draws`].
+    indexes_draws: OnceLock<bool>,
 }
 
 /// A stage's module with values for its constants.
@@ -100,6 +102,11 @@ impl Stage {
         })
     }
 
+    /// Whether the stage can find its draw in a buffer: [`can_index_draws`]. Computed once.
+    pub fn can_index_draws(&self) -> bool {
+        *self.indexes_draws.get_or_init(|| can_index_draws(&self.spirv))
+    }
+
     fn specialized(&self) -> MutexGuard<'_, Vec<Specialized>> {
         self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -124,6 +131,7 @@ impl Stage {
             dependencies,
             specialized: Mutex::default(),
             live: OnceLock::new(),
+            indexes_draws: OnceLock::new(),
         }
     }
 

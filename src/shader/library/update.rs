@@ -12,7 +12,7 @@ use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::expression::{self, Watching};
 use crate::shader::graph::{FULL_SCREEN, Graph};
-use crate::shader::source::TreePath;
+use crate::shader::source::{TreePath, embedded};
 
 /// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
@@ -104,6 +104,33 @@ impl ShaderSet {
         let stages = pass.into_iter().flat_map(|pass| pass.pre_rasterization.stages());
         let displaces = |kind| matches!(kind, StageKind::TessellationEvaluation | StageKind::Geometry);
         stages.filter_map(|path| self.stages.get(path)).any(|stage| stage.hooks.moves_vertices || displaces(stage.kind))
+    }
+}
+
+/// The folder of the author's own files in a tree.
+const OWN: &str = "user/";
+
+impl ShaderSet {
+    /// Whether the pre-rasterization stages of the fragment stage `fragment` leave the model's vertices where it has them: they are the
+    /// model's own vertex stage, which is as it was shipped, and its hook moves none.
+    pub fn keeps_vertices(&self, fragment: &str) -> bool {
+        let Some(model) = self.graph.pass(MODEL) else { return false };
+        let Some(pass) = self.graph.passes.iter().find(|pass| pass.desc.stage == fragment && pass.desc.draws_model())
+        else {
+            return false;
+        };
+        let vertex = pass.pre_rasterization.vertex.as_str();
+        let is_own =
+            vertex.strip_suffix(".vert").is_some_and(|name| model.desc.stage.strip_suffix(".frag") == Some(name));
+        let is_shipped = |path: &TreePath| {
+            // A file that could not be included has no text.
+            let text = self.texts.get(path).map(|text| text.as_bytes());
+            path.as_str().starts_with(OWN) || text.is_none_or(|text| embedded::read(None, path) == Some(text))
+        };
+        is_own
+            && pass.pre_rasterization.stages().eq([vertex])
+            && !self.moves_vertices(fragment)
+            && self.stages.get(vertex).is_some_and(|stage| stage.dependencies.iter().all(is_shipped))
     }
 }
 

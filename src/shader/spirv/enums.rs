@@ -8,6 +8,7 @@ pub mod decoration {
     pub const ARRAY_STRIDE: u32 = 6;
     pub const MATRIX_STRIDE: u32 = 7;
     pub const BUILT_IN: u32 = 11;
+    pub const FLAT: u32 = 14;
     pub const PATCH: u32 = 15;
     pub const VOLATILE: u32 = 21;
     pub const COHERENT: u32 = 23;
@@ -26,6 +27,8 @@ pub mod built_in {
     pub const SAMPLE_POSITION: u32 = 19;
     pub const SAMPLE_MASK: u32 = 20;
     pub const WORKGROUP_SIZE: u32 = 25;
+    pub const INSTANCE_INDEX: u32 = 43;
+    pub const BASE_INSTANCE: u32 = 4425;
 }
 
 /// Storage classes.
@@ -44,6 +47,7 @@ pub mod storage {
 
 /// Execution models.
 pub mod model {
+    pub const VERTEX: u32 = 0;
     pub const CONTROL: u32 = 1;
     pub const EVALUATION: u32 = 2;
     pub const GEOMETRY: u32 = 3;

@@ -4,6 +4,7 @@
 pub mod bindings;
 mod conditions;
 mod declared;
+mod draw_index;
 mod enums;
 mod evaluate;
 mod finish;
@@ -26,6 +27,7 @@ pub mod uses;
 mod validate;
 
 pub use bindings::rename_functions;
+pub use draw_index::can_index_draws;
 pub use finish::{Finished, finish};
 pub use hash::behavior_hash;
 pub use module::Module;

@@ -19,6 +19,11 @@ fn bench_scale_prints_the_growth_from_step_to_step() {
     assert_eq!(counts("primitives", "primitives"), [10, 100, 1_000, 10_000, 100_000]);
     assert_eq!(counts("materials", "materials"), [10, 100, 1_000, 10_000]);
     assert_eq!(counts("lights", "lights"), [1, 10, 100, 1_000]);
+    assert_eq!(counts("joints", "joints"), [10, 100, 1_000, 10_000]);
+    // The camera sees the whole grid. The other draws cover the frame.
+    let primitives = counts("primitives", "primitives");
+    let others: Vec<u64> = counts("primitives", "draws").iter().zip(&primitives).map(|(all, own)| all - own).collect();
+    assert!(others.iter().all(|count| *count == others[0]), "{others:?}");
     // The textures of the second step are larger than what the fault lets the device have.
     let textures = told["textures"].as_array().unwrap();
     let sizes: Vec<u64> = textures.iter().filter_map(|step| step["texture_mib"].as_u64()).collect();

@@ -101,6 +101,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let fragment = "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1); }";
     let fragment = module("two.frag", shaderc::ShaderKind::Fragment, fragment);
     let desc = PipelineDesc {
+        draws_by_index: false,
         pre_rasterization: &[(vk::ShaderStageFlags::VERTEX, &vertex)],
         fragment: &fragment,
         colors: &[vk::Format::R16G16B16A16_SFLOAT],

@@ -407,7 +407,7 @@ fn random_programs_compute_the_same_when_they_are_optimized() {
         let plain = compile(constant);
         let specialized = specialize(&compile(9), &[(0, constant as u32)]);
         let bounds = Bounds { rounds: 1 << 18, rounds_after: 256, report: None, mark: None };
-        let finished = finish(specialized, &plain, &bounds);
+        let finished = finish(specialized, &plain, &bounds, false);
         for words in [&plain, &finished.words] {
             validate(words).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{}", program(seed, constant)));
         }

@@ -43,10 +43,10 @@ fn assert_finished(stage: &Stage, words: Vec<u32>, what: &str) {
     let bounds = Bounds { rounds: 1 << 18, rounds_after: 256, report: Some((0, 20)), mark };
     if is_long() {
         assert_valid(&words, &what);
-        let finished = finish(words.clone(), &stage.spirv, &Bounds { report: None, ..bounds });
+        let finished = finish(words.clone(), &stage.spirv, &Bounds { report: None, ..bounds }, false);
         assert_valid(&finished.words, &format!("{what}, without a report"));
     }
-    let finished = finish(words, &stage.spirv, &bounds);
+    let finished = finish(words, &stage.spirv, &bounds, stage.can_index_draws());
     assert_valid(&finished.words, &format!("{what}, finished"));
 }
 
