@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::Settings;
+use super::{Settings, added};
 use super::entry::Entry;
 use super::part::Part as _;
 use super::setting::Setting;
@@ -25,9 +25,9 @@ pub fn catalog() -> &'static [Setting] {
 /// The setting at a path, or the one that has the number at this path.
 pub fn setting(path: &str) -> Option<&'static Setting> {
     let at = |path: &str| catalog().iter().find(|setting| setting.path == path);
-    at(path).or_else(|| {
+    at(path).or_else(|| added::setting(path)).or_else(|| {
         let (whole, index) = path.rsplit_once('.')?;
-        at(whole).filter(|setting| setting.takes == "3 numbers" && index.parse::<usize>().is_ok())
+        at(whole).or_else(|| added::setting(whole)).filter(|setting| setting.takes == "3 numbers" && index.parse::<usize>().is_ok())
     })
 }
 
