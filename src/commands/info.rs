@@ -2,8 +2,6 @@
 
 mod stages;
 
-use std::path::PathBuf;
-
 use serde_json::json;
 use specula::gpu::{AdapterInfo, GpuError, adapters};
 use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};

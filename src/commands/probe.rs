@@ -1,7 +1,5 @@
 //! `specula probe`: the raw values of one pixel in every debug mode, with camera and lights.
 
-use std::path::PathBuf;
-
 use serde_json::{Map, Value, json};
 use specula::frame::FrameState;
 use specula::headless::Headless;

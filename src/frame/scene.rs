@@ -14,11 +14,12 @@ use super::material_variant::shared_features;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR};
 use crate::scene::{
-    self, AlphaMode, Instance, Material, Model, Places, Playing, Pose, Sides, Topology, moved_materials, override_material,
-    replace_channels, replace_factors,
+    self, AlphaMode, Instance, Material, Model, Places, Playing, Pose, Sides, Topology, moved_materials,
+    override_material, replace_channels, replace_factors,
 };
 use crate::settings::{
-    AddedModel, AnimationSettings, MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings,
+    AddedModel, AnimationSettings, MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings,
+    Settings,
 };
 
 /// The settings that turn a model into a scene.

@@ -176,20 +176,22 @@ impl Together {
             })
         };
         let known: HashSet<String> = self.primitives.iter().map(|known| known.name.clone()).collect();
-        self.primitives.extend(model.primitives.iter().map(|primitive| Primitive {
-            // Settings hide a primitive by its name.
-            name: match known.contains(&primitive.name) {
-                true => format!("{name} {}", primitive.name),
-                false => primitive.name.clone(),
-            },
-            material: offsets.material(primitive.material),
-            default_material: offsets.material(primitive.default_material),
-            variant_materials: primitive
-                .variant_materials
-                .iter()
-                .map(|(of, material)| (variant(*of), offsets.material(*material)))
-                .collect(),
-            ..primitive.clone()
+        self.primitives.extend(model.primitives.iter().map(|primitive| {
+            Primitive {
+                // Settings hide a primitive by its name.
+                name: match known.contains(&primitive.name) {
+                    true => format!("{name} {}", primitive.name),
+                    false => primitive.name.clone(),
+                },
+                material: offsets.material(primitive.material),
+                default_material: offsets.material(primitive.default_material),
+                variant_materials: primitive
+                    .variant_materials
+                    .iter()
+                    .map(|(of, material)| (variant(*of), offsets.material(*material)))
+                    .collect(),
+                ..primitive.clone()
+            }
         }));
     }
 
@@ -234,10 +236,13 @@ impl Together {
         self.weights.extend(&model.pose.weights);
         self.motion.target_names.extend(model.motion.target_names.iter().cloned());
         let channel = |channel: &Channel| Channel { target: offsets.target(channel.target), ..channel.clone() };
-        self.motion.clips.extend(model.motion.clips.iter().map(|clip| Clip {
-            channels: clip.channels.iter().map(channel).collect(),
-            ..clip.clone()
-        }));
+        self.motion.clips.extend(
+            model
+                .motion
+                .clips
+                .iter()
+                .map(|clip| Clip { channels: clip.channels.iter().map(channel).collect(), ..clip.clone() }),
+        );
         self.motion.values.extend(
             model
                 .motion
@@ -325,7 +330,8 @@ fn follow_root(rig: &mut Rig, root: usize, model: &Model) {
         let weights = rig.nodes[root].weights.clone();
         let rest = super::motion::Transform::from_matrix(root_from_node);
         let index = rig.nodes[root].index;
-        let node = RigNode { index, parent: Some(root), rest, parent_from_node: root_from_node, world_from_node, weights };
+        let node =
+            RigNode { index, parent: Some(root), rest, parent_from_node: root_from_node, world_from_node, weights };
         rig.nodes.push(node);
         rig.nodes.len() - 1
     };

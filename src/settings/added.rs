@@ -17,7 +17,7 @@ pub const MOST_ADDED: usize = 63;
 
 settings! {
     /// A model beside the first. All stand in a row along +X.
-    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(default, deny_unknown_fields)]
     pub struct AddedModel {
         /// File, or the name of a built-in model.

@@ -146,12 +146,13 @@ pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>, adds: bool) ->
         }
     }
     let mut has_model = adds;
-    let open = |(kind, path): &(FileKind, &PathBuf)| {
+    let mut open = |(kind, path): &(FileKind, &PathBuf)| {
         let is_model = matches!(kind, FileKind::Model | FileKind::Folder);
-        let is_beside = is_model && std::mem::replace(&mut has_model, has_model || is_model);
+        let is_beside = is_model && has_model;
+        has_model |= is_model;
         OPEN.with(if is_beside { Open::Beside((*path).clone()) } else { Open::File((*path).clone()) })
     };
-    let mut commands: Vec<Command> = opened.iter().map(open).collect();
+    let mut commands: Vec<Command> = opened.iter().map(&mut open).collect();
     if let Some(first) = left.first() {
         let more = if left.len() > 1 { format!(" and {} more", left.len() - 1) } else { String::new() };
         commands.push(SAY.with(format!("Not opened: {first}{more}. Drop one file of a kind at a time")));

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use specula::capture::{Page, Sweep, Turn};
 
-use crate::commands::common::{Common, Models};
 use crate::commands::common::frames::Frames;
 use crate::commands::common::parse::size;
+use crate::commands::common::{Common, Models};
 
 /// Options of `render`.
 #[derive(clap::Args)]

@@ -216,8 +216,10 @@ fn take_files(headless: &mut Headless, args: &Args, watch: &mut Watch, changes: 
 
 /// Loads the model again. On failure the last good model stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
-    let loaded =
-        args.common.model(args.models.model.as_deref()).and_then(|model| headless.set_model(model).map_err(Failure::from));
+    let loaded = args
+        .common
+        .model(args.models.model.as_deref())
+        .and_then(|model| headless.set_model(model).map_err(Failure::from));
     match loaded {
         Ok(()) => {
             watch.follow(headless);

@@ -143,11 +143,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),
         at: state.window.and_then(|window| window.at),
         compare,
-        load_options: LoadOptions {
-            scene: work.scene,
-            added,
-            ..args.common.load_options()
-        },
+        load_options: LoadOptions { scene: work.scene, added, ..args.common.load_options() },
         validation: args.common.validate,
         device: args.common.device,
         control,

@@ -47,13 +47,7 @@ impl Extent {
     }
 
     /// About `most` vertices are deformed.
-    fn while_playing(
-        model: &Model,
-        playing: &[Playing],
-        held: &[(usize, f32)],
-        places: &Places,
-        most: usize,
-    ) -> Self {
+    fn while_playing(model: &Model, playing: &[Playing], held: &[(usize, f32)], places: &Places, most: usize) -> Self {
         let duration_s = |playing: &Playing| f64::from(model.motion.clips[playing.clip].duration_s);
         let longest_s = playing.iter().map(duration_s).fold(0.0, f64::max);
         let moments = (most / deformed_vertices(model).max(1)).clamp(LEAST_MOMENTS, MOST_MOMENTS);

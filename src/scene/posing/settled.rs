@@ -10,7 +10,8 @@ impl Model {
     /// The model in its own pose. Finds where it is then, and while each clip plays.
     #[must_use]
     pub fn settled(mut self) -> Self {
-        let is_deformed = self.instances.iter().any(|instance| instance.first_joint.or(instance.first_weight).is_some());
+        let is_deformed =
+            self.instances.iter().any(|instance| instance.first_joint.or(instance.first_weight).is_some());
         let extent = if is_deformed {
             Extent::at_rest(&self)
         } else {

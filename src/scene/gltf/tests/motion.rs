@@ -355,7 +355,10 @@ fn a_channel_that_cannot_be_read_costs_itself_alone() {
         animate(&mut builder, &[0.0, 1.0], &targets);
         change(&mut builder.json);
         let model = builder.model();
-        assert_eq!(model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.5 }], &Places::default()).instances[0].w_axis.x, 1.0);
+        assert_eq!(
+            model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.5 }], &Places::default()).instances[0].w_axis.x,
+            1.0
+        );
         model.warnings.join("\n")
     };
     for (change, words) in [
@@ -452,7 +455,11 @@ fn bounds_hold_for_clips_that_play_together() {
     let model = builder.model();
     let both = [0, 1].map(|clip| Playing { clip, weight: 1.0, time_s: 0.0 });
     assert_eq!(model.at(&both[..1], &[], &Places::default()).bounds.max.x, 5.0);
-    assert!((8.5..9.1).contains(&model.at(&both, &[], &Places::default()).bounds.max.x), "{:?}", model.at(&both, &[], &Places::default()).bounds);
+    assert!(
+        (8.5..9.1).contains(&model.at(&both, &[], &Places::default()).bounds.max.x),
+        "{:?}",
+        model.at(&both, &[], &Places::default()).bounds
+    );
     let half = [Playing { weight: 0.5, ..both[0] }];
     assert_eq!(model.at(&half, &[], &Places::default()).bounds.max.x, 3.0);
 }
