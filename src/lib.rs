@@ -40,6 +40,8 @@ mod disk_cache;
 pub mod events;
 pub mod file_kind;
 pub mod frame;
+#[cfg(any(test, fuzzing))]
+pub mod fuzz;
 pub mod gpu;
 pub mod headless;
 pub mod interface;

@@ -7,6 +7,7 @@ mod folder;
 mod passes;
 mod samples;
 mod scale;
+mod scale_textures;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -48,6 +49,9 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Thumbnails => thumbnails(&bench)?,
         What::Scale => scale::scale(&bench)?,
     };
+    if matches!(args.what, What::Scale) {
+        result["textures"] = json!(scale_textures::series(&bench)?);
+    }
     drop(progress);
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);

@@ -6,7 +6,8 @@ use serde_json::json;
 use specula::gpu::{AdapterInfo, GpuError, adapters};
 use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};
 use specula::message::escape;
-use specula::scene::{Clip, Material, Model, Primitive, Skin, TextureSource, Topology, slot_name, texture_sources};
+use specula::render::texel_forms;
+use specula::scene::{Clip, Material, Model, Primitive, Skin, Topology, slot_name, texture_sources};
 
 use super::common::{Common, Models};
 use super::{Failure, print_json};
@@ -31,7 +32,8 @@ pub struct Args {
 pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.take_files(&mut args.models)?;
     let devices = adapters();
-    let model = args.common.model(args.models.model.as_deref())?;
+    let mut model = args.common.model(args.models.model.as_deref())?;
+    settle(&mut model, args.common.device.as_deref());
     let source = args.common.source()?;
     let tree = source.location().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
     if args.json {
@@ -117,23 +119,21 @@ fn print_model(model: &Model) {
     for (number, image) in model.images.iter().enumerate() {
         let (name, uses) = (escape(&image.name), uses(model, number).join(", "));
         let space = if is_srgb(model, number) { "sRGB" } else { "linear" };
-        out!("    {:>5} x {:<5} {name}: {uses} ({space})", image.width, image.height);
+        out!("    {:>5} x {:<5} {name}: {uses} ({} {space})", image.width, image.height, image.form);
     }
 }
 
 /// Bytes on the device: of vertices and indices, and of textures with their mip levels.
 fn memory(model: &Model) -> [usize; 2] {
     let geometry = |primitive: &Primitive| size_of_val(&*primitive.vertices) + size_of_val(&*primitive.indices);
-    let texels = |source: &TextureSource| {
-        let (mut width, mut height) = source.image(model).map_or((1, 1), |image| (image.width, image.height));
-        let mut sum = width as usize * height as usize;
-        while width.max(height) > 1 {
-            (width, height) = ((width / 2).max(1), (height / 2).max(1));
-            sum += width as usize * height as usize;
-        }
-        sum
-    };
-    [model.primitives.iter().map(geometry).sum(), texture_sources(model).iter().map(|source| 4 * texels(source)).sum()]
+    let textures: u64 = texture_sources(model).into_iter().map(|source| source.bytes(model)).sum();
+    [model.primitives.iter().map(geometry).sum(), textures as usize]
+}
+
+/// Gives each image the form that it takes on the device. Without a device, that is the form which every device has.
+fn settle(model: &mut Model, device: Option<&str>) {
+    let forms = texel_forms(device).unwrap_or_default();
+    std::sync::Arc::make_mut(&mut model.images).iter_mut().for_each(|image| image.settle(&forms));
 }
 
 /// The texture slots of the materials that read an image, as `base color`.
@@ -185,6 +185,7 @@ fn summary(model: &Model) -> serde_json::Value {
         "materials": materials(model),
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "textures": (0..model.images.len()).map(|image| uses(model, image)).collect::<Vec<_>>(),
+        "forms": model.images.iter().map(|image| image.form.to_string()).collect::<Vec<_>>(),
         "srgb": (0..model.images.len()).map(|image| is_srgb(model, image)).collect::<Vec<_>>(),
         "uv_sets": uv_sets(model),
         "memory_bytes": memory(model).iter().sum::<usize>(),

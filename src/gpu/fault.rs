@@ -22,7 +22,8 @@
 //! - `closing-panic:1`, `closing-delay-ms:N`, `closing-limit-ms:N`: closing the window panics, takes so much longer, or may take so long.
 //! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
 //!
-//! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer.
+//! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer; and `plain-textures:1`: textures are RGBA8, or half
+//! floats, as on a device that samples no other forms.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -14,7 +14,7 @@ pub fn return_freed_memory() {
     }
 }
 
-/// Gives every block of at least 16 MiB pages of its own, so that freeing a decoded image returns its memory at once. glibc
+/// Gives every block of at least 8 MiB pages of its own, so that freeing a decoded image returns its memory at once. glibc
 /// starts with a lower limit, but raises it to the size of the largest freed block, up to 32 MiB. With this, the peak of
 /// `specula render` no longer depends on how threads interleave. Call it first in `main`. Does nothing with other C libraries.
 pub fn return_large_blocks() {
@@ -25,6 +25,6 @@ pub fn return_large_blocks() {
         }
         const M_MMAP_THRESHOLD: std::ffi::c_int = -3;
         // SAFETY: mallopt(3) with a valid parameter and value. It leaves allocated memory alone.
-        unsafe { mallopt(M_MMAP_THRESHOLD, 16 * 1024 * 1024) };
+        unsafe { mallopt(M_MMAP_THRESHOLD, 8 * 1024 * 1024) };
     }
 }

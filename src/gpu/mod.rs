@@ -29,7 +29,7 @@ pub use commands::image_use::Use;
 pub use commands::pass_timer::PassTime;
 pub use commands::slot::Submission;
 pub use commands::upload::upload_images;
-pub use device::adapter::{AdapterInfo, adapters};
+pub use device::adapter::{AdapterInfo, adapters, texture_formats};
 pub use device::gpu::{Gpu, GpuOptions, OptionalStages};
 pub use device::memory_use::{Heap, MemoryUse};
 pub use device::optional::MeshLimits;

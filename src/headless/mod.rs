@@ -283,6 +283,7 @@ impl Headless {
     pub fn set_model(&mut self, model: Model) -> Result<(), HeadlessError> {
         let start = Instant::now();
         let uploaded = GpuModel::upload(&self.gpu, &self.layouts, model)?;
+        return_freed_memory();
         self.session.set_model(uploaded.model());
         self.resources.set_model(&uploaded);
         self.upload_ms = start.elapsed().as_secs_f64() * 1e3;

@@ -16,3 +16,5 @@ pub(crate) use set::BoundPipelines;
 pub use set::{InPipeline, PipelineSet, StageReport};
 pub use statistics_change::{Figure, all_statistics, figures, grouped};
 pub use textures::PassTextures;
+#[cfg(any(test, fuzzing))]
+pub(crate) use textures::decode_table;

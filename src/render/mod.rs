@@ -21,7 +21,7 @@ pub use environment::bake::{BakeControl, BakeError};
 pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{PathTracing, PathTracingError, PathTracingKey, PathTracingRequest};
 pub use resources::{Missing, ProvideError, Resources};
-pub use scene::{GpuModel, UploadError};
+pub use scene::{GpuModel, UploadError, texel_forms};
 pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};
 pub use view::{
     Capture, NotFinitePixels, Output, PixelAt, PixelModes, RangeSample, Readback, Redraw, Thumbnails, View,

@@ -9,8 +9,10 @@ use serde_json::{Value, json};
 
 use super::Resources;
 use crate::frame::FrameState;
-use crate::gpu::{Buffer, Encoder, Frames, Gpu, GpuError, Memory, Use, vk};
-use crate::scene::{Model, TextureSource, Wrap, pick, slot_name};
+use crate::gpu::{Buffer, Encoder, Frames, Gpu, GpuError, Image, ImageDesc, Memory, Use, vk};
+use crate::scene::mips::encode_srgb;
+use crate::scene::{Model, TexelForm, TextureSource, Wrap, pick, slot_name};
+use crate::settings::linear_from_srgb;
 
 /// Where a pixel reads a texture.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,8 @@ pub struct TexelPlace {
     pub slot: usize,
     /// The texture on the device.
     pub source: TextureSource,
+    /// The form of its texels on the device.
+    pub form: TexelForm,
     /// Name of the image.
     pub name: String,
     /// Width and height of the image, pixels.
@@ -38,8 +42,10 @@ pub struct TexelPlace {
 pub struct Texel {
     /// The place.
     pub place: TexelPlace,
-    /// RGBA as stored, 0..255.
-    pub stored: [u8; 4],
+    /// RGBA in the encoding of the image: 0..255, 0..65535 of RGBA16.
+    pub stored: [u16; 4],
+    /// RGBA as the shader reads it: colors of sRGB images are linear.
+    pub linear: [f32; 4],
 }
 
 impl TexelPlace {
@@ -50,23 +56,44 @@ impl TexelPlace {
 }
 
 impl Texel {
-    /// RGBA as the shader reads it, 0..1: colors of sRGB images are linear.
-    pub fn linear(&self) -> [f32; 4] {
-        let [r, g, b, a] = self.stored.map(|byte| f32::from(byte) / 255.0);
-        let decode = |encoded: f32| match self.place.source.is_srgb() {
-            true if encoded <= 0.04045 => encoded / 12.92,
-            true => ((encoded + 0.055) / 1.055).powf(2.4),
-            false => encoded,
+    /// A texel of RGBA8.
+    pub fn of_bytes(place: TexelPlace, stored: [u8; 4]) -> Self {
+        let numbers = stored.map(|byte| f32::from(byte) / 255.0);
+        let [r, g, b] = [numbers[0], numbers[1], numbers[2]]
+            .map(|encoded| if place.source.is_srgb() { linear_from_srgb(encoded) } else { encoded });
+        Self { place, stored: stored.map(u16::from), linear: [r, g, b, numbers[3]] }
+    }
+
+    /// A texel of another form, which the device has decoded.
+    fn of_floats(place: TexelPlace, linear: [f32; 4]) -> Self {
+        let mut texel = Self { place, stored: [0; 4], linear };
+        let most = texel.most();
+        let encode = |channel: usize| match texel.place.source.is_srgb() && channel < 3 {
+            true => encode_srgb(linear[channel].max(0.0)),
+            false => linear[channel],
         };
-        [decode(r), decode(g), decode(b), a]
+        texel.stored = std::array::from_fn(|channel| (encode(channel).clamp(0.0, 1.0) * most).round() as u16);
+        texel
+    }
+
+    /// Its color with 8 bits a channel, in the encoding of the image.
+    pub fn color(&self) -> [u8; 3] {
+        let most = self.most();
+        std::array::from_fn(|channel| (f32::from(self.stored[channel]) / most * 255.0).round() as u8)
+    }
+
+    /// What 1 is in `stored`.
+    fn most(&self) -> f32 {
+        if self.place.form == TexelForm::Rgba16 { 65535.0 } else { 255.0 }
     }
 
     /// The texel in JSON.
     pub fn json(&self) -> Value {
-        let TexelPlace { name, size, uv_set, mesh_uv, uv, texel, source, .. } = &self.place;
+        let TexelPlace { name, form, size, uv_set, mesh_uv, uv, texel, source, .. } = &self.place;
         json!({
             "texture": self.place.slot_name(),
             "image": name,
+            "form": form.to_string(),
             "size": size,
             "uv_set": uv_set,
             "mesh_uv": mesh_uv,
@@ -74,15 +101,15 @@ impl Texel {
             "texel": texel,
             "stored": self.stored,
             "srgb": source.is_srgb(),
-            "linear": self.linear(),
+            "linear": self.linear,
         })
     }
 
     /// The texel on one line, without the slot.
     pub fn text(&self) -> String {
         let TexelPlace { name, size: [width, height], uv: [u, v], texel: [x, y], .. } = &self.place;
-        let stored = self.stored.map(|byte| format!("{byte:>3}")).join(" ");
-        let linear = self.linear().map(|number| format!("{number:.4}")).join(" ");
+        let stored = self.stored.map(|number| format!("{number:>3}")).join(" ");
+        let linear = self.linear.map(|number| format!("{number:.4}")).join(" ");
         format!("uv {u:.4} {v:.4}  texel {x} {y} of {width}x{height}  stored {stored}  linear {linear}  {name}")
     }
 }
@@ -112,9 +139,11 @@ pub fn texel_places(state: &FrameState, at: (u32, u32)) -> Vec<TexelPlace> {
         let uv = used.uv_from_mesh.transform_point2(mesh_uv);
         let uv = [wrapped(uv.x, texture.sampler.wrap_u), wrapped(uv.y, texture.sampler.wrap_v)];
         let size = [image.width, image.height];
+        let source = TextureSource::of(model, material, slot);
         Some(TexelPlace {
             slot,
-            source: TextureSource::of(model, material, slot),
+            source,
+            form: source.form(model),
             name: name_of(model, texture.image),
             size,
             uv_set: used.uv_set,
@@ -140,7 +169,7 @@ fn wrapped(coordinate: f32, wrap: Wrap) -> f32 {
     }
 }
 
-/// Recorded copies of texels.
+/// Recorded copies of texels: RGBA8 as it is, other forms as floats.
 pub struct TexelReadback(Vec<(TexelPlace, Arc<Buffer>)>);
 
 impl TexelReadback {
@@ -157,14 +186,28 @@ impl TexelReadback {
         let mut copies = Vec::new();
         for place in places {
             let Some(image) = resources.texture(&place.source) else { continue };
-            let buffer = Buffer::new(gpu, "texel", 4, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
+            let bytes = if place.form == TexelForm::Rgba8 { 4 } else { 16 };
+            let buffer = Buffer::new(gpu, "texel", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
             let [x, y] = place.texel;
-            if x < image.desc().width && y < image.desc().height {
-                encoder.transition(image, Use::Sampled, Use::CopyFrom);
-                encoder.copy_pixel(image, (x, y), &buffer);
-                encoder.transition(image, Use::CopyFrom, Use::Sampled);
-                copies.push((place, buffer));
+            if x >= image.desc().width || y >= image.desc().height {
+                continue;
             }
+            encoder.transition(image, Use::Sampled, Use::CopyFrom);
+            if place.form == TexelForm::Rgba8 {
+                encoder.copy_pixel(image, (x, y), &buffer);
+            } else {
+                // The view that every image has needs one that shaders use.
+                let usage = vk::ImageUsageFlags::SAMPLED
+                    | vk::ImageUsageFlags::TRANSFER_SRC
+                    | vk::ImageUsageFlags::TRANSFER_DST;
+                let one = Image::new(gpu, "texel", ImageDesc::new(1, 1, vk::Format::R32G32B32A32_SFLOAT, usage))?;
+                encoder.transition(&one, Use::Undefined, Use::CopyTo);
+                encoder.pick_texel(image, (x, y), &one);
+                encoder.transition(&one, Use::CopyTo, Use::CopyFrom);
+                encoder.copy_pixel(&one, (0, 0), &buffer);
+            }
+            encoder.transition(image, Use::CopyFrom, Use::Sampled);
+            copies.push((place, buffer));
         }
         if !copies.is_empty() {
             encoder.copies_done();
@@ -175,8 +218,14 @@ impl TexelReadback {
     /// The texels. SYNC: after the fence of the submission.
     pub fn finish(self) -> Vec<Texel> {
         let texel = |(place, buffer): (TexelPlace, Arc<Buffer>)| {
-            let stored = buffer.read().first_chunk().copied()?;
-            Some(Texel { place, stored })
+            let bytes = buffer.read();
+            match place.form {
+                TexelForm::Rgba8 => Some(Texel::of_bytes(place, *bytes.first_chunk()?)),
+                _ => {
+                    let channels: &[[u8; 4]; 4] = bytes.as_chunks().0.first_chunk()?;
+                    Some(Texel::of_floats(place, channels.map(f32::from_le_bytes)))
+                }
+            }
         };
         self.0.into_iter().filter_map(texel).collect()
     }

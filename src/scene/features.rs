@@ -9,6 +9,7 @@
 use glam::Affine2;
 
 use super::extensions::{EXTENSIONS, bit_if};
+use super::images::TexelForm;
 use super::model::{Material, Model, TextureUse, Topology};
 use crate::interface::{
     ATTRIBUTE_COLOR, ATTRIBUTE_NORMAL, ATTRIBUTE_TANGENT_FRAME, ATTRIBUTE_UV1, FEATURE_CONDUCTOR,
@@ -40,8 +41,8 @@ pub fn features(model: &Model, material: &Material, attributes: u32, topology: T
 }
 
 /// Whether the red channel of the metallic-roughness texture, which that texture does not use, can hold occlusion. Both
-/// textures must have the same coordinates and sampler, and the same image or two of equal size, which the upload
-/// merges.
+/// textures must have the same coordinates and sampler, and the same image or two of equal size and without compression, which the
+/// upload merges.
 pub fn packs_occlusion(model: &Model, material: &Material) -> bool {
     let slot = |texture: u32| material.textures[texture as usize];
     let (Some(roughness), Some(occlusion)) = (slot(TEXTURE_METALLIC_ROUGHNESS), slot(TEXTURE_OCCLUSION)) else {
@@ -53,7 +54,10 @@ pub fn packs_occlusion(model: &Model, material: &Material) -> bool {
     }
     let [a, b] = [roughness, occlusion].map(|used| model.textures[used.texture]);
     let size = |image: usize| (model.images[image].width, model.images[image].height);
+    // Channels of blocks cannot be merged.
+    let is_plain = |image: usize| model.images[image].form == TexelForm::Rgba8;
     (roughness.uv_set, roughness.uv_from_mesh) == (occlusion.uv_set, occlusion.uv_from_mesh)
         && a.sampler == b.sampler
         && size(a.image) == size(b.image)
+        && (a.image == b.image || (is_plain(a.image) && is_plain(b.image)))
 }

@@ -42,6 +42,29 @@ pub fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
     chain
 }
 
+/// Levels 1 and up of an image of four words a texel, in little endian, one after the other. `mean` gives a channel of a texel from those of
+/// up to 2x2 texels of the level above.
+pub fn below_words(words: &[u16], width: u32, height: u32, mean: impl Fn([u16; 4]) -> u16 + Sync) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut above = words.to_vec();
+    for level in 1..count(width, height) {
+        let ((from_w, from_h), (to_w, to_h)) = (size(width, height, level - 1), size(width, height, level));
+        let mut texels = vec![0; to_w as usize * to_h as usize * 4];
+        // An axis with a single texel keeps it.
+        let pair = |from: u32, at: usize| if from > 1 { [2 * at, 2 * at + 1] } else { [0, 0] };
+        texels.par_chunks_exact_mut(to_w as usize * 4).enumerate().for_each(|(y, row)| {
+            let rows = pair(from_h, y).map(|y| &above[y * from_w as usize * 4..]);
+            for (at, word) in row.iter_mut().enumerate() {
+                let columns = pair(from_w, at / 4).map(|x| 4 * x + at % 4);
+                *word = mean([rows[0][columns[0]], rows[0][columns[1]], rows[1][columns[0]], rows[1][columns[1]]]);
+            }
+        });
+        out.extend(texels.iter().flat_map(|word| word.to_le_bytes()));
+        above = texels;
+    }
+    out
+}
+
 /// Levels 1 and up of an RGBA image or volume of floats, one after the other. `size`: width, height and depth. Each texel is the
 /// mean of up to 2x2x2 texels of the level above.
 pub fn below_floats(texels: &[[f32; 4]], size: [u32; 3]) -> Vec<[f32; 4]> {

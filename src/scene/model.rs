@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 pub use super::bounds::Bounds;
+pub use super::images::Image;
 pub use super::material::*;
 use super::members::Member;
 use super::motion::{Deformation, Motion, Pose};
@@ -24,7 +25,7 @@ pub struct Model {
     pub materials: Arc<Vec<Material>>,
     /// Images paired with samplers.
     pub textures: Arc<Vec<Texture>>,
-    /// Decoded images.
+    /// Images, in the form of their files until the upload.
     pub images: Arc<Vec<Image>>,
     /// Names of the variants (KHR_materials_variants).
     pub variants: Arc<Vec<String>>,
@@ -198,17 +199,4 @@ pub struct Instance {
     pub first_joint: Option<u32>,
     /// Index of the weight of its first morph target in `Pose::weights`.
     pub first_weight: Option<u32>,
-}
-
-/// A decoded image: RGBA, 8 bits per channel, rows from the top. The color space depends on the use, so it is not converted.
-#[derive(Clone, Debug)]
-pub struct Image {
-    /// Name or URI, for messages.
-    pub name: String,
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// `width * height * 4` bytes. The upload frees them, so this is empty afterwards.
-    pub rgba8: Vec<u8>,
 }

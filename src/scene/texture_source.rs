@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::interface::{TEXTURE_METALLIC_ROUGHNESS, TEXTURE_OCCLUSION, TEXTURES, TextureContent};
-use crate::scene::{Image, Material, Model, packs_occlusion};
+use crate::scene::{Image, Material, Model, TexelForm, mips, packs_occlusion};
 
 /// A texture as the materials read it. Indices are into `Model::images`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -85,21 +85,61 @@ impl TextureSource {
         first.into_iter().chain(second)
     }
 
-    /// Its pixels: RGBA, rows from the top. Call this before the upload, which empties `Image::rgba8`.
+    /// The form of its texels on the device.
+    pub fn form(self, model: &Model) -> TexelForm {
+        self.image(model).map_or(TexelForm::Rgba8, |image| image.form)
+    }
+
+    /// Width and height in pixels.
+    pub fn size(self, model: &Model) -> (u32, u32) {
+        self.image(model).map_or((1, 1), |image| (image.width, image.height))
+    }
+
+    /// The number of mip levels on the device.
+    pub fn levels(self, model: &Model) -> u32 {
+        match self {
+            // The levels of the files would have to be merged too.
+            Self::Packed { .. } => {
+                let (width, height) = self.size(model);
+                mips::count(width, height)
+            }
+            _ => self.image(model).map_or(1, |image| image.levels),
+        }
+    }
+
+    /// Bytes of all levels on the device.
+    pub fn bytes(self, model: &Model) -> u64 {
+        let (width, height) = self.size(model);
+        match self {
+            Self::Image { image, .. } => model.images[image].bytes(),
+            _ => mips::bytes(width, height) as u64,
+        }
+    }
+
+    /// Writes all levels in the form on the device: [`TextureSource::bytes`] bytes. Call this before the upload frees the texels.
+    pub fn write(self, model: &Model, out: &mut [u8]) {
+        match self {
+            Self::Image { image, srgb } => model.images[image].write(srgb, out),
+            _ => {
+                let (width, height) = self.size(model);
+                Image::rgba8(String::new(), width, height, self.pixels(model).into_owned()).write(false, out);
+            }
+        }
+    }
+
+    /// Its pixels as RGBA with 8 bits a channel, rows from the top, of a texture that is RGBA8 on the device. Call this before the upload
+    /// frees the texels.
     pub fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
         match self {
             Self::White => Cow::Borrowed(&[255; 4]),
             Self::FlatNormal => Cow::Borrowed(&[128, 128, 255, 255]),
-            Self::Image { image, .. } => Cow::Borrowed(&model.images[image].rgba8),
+            Self::Image { image, .. } => model.images[image].pixels(),
             Self::Packed { metallic_roughness, occlusion } => {
-                let [below, red] = [metallic_roughness, occlusion].map(|image| model.images[image].rgba8.as_slice());
-                let mut merged = vec![0; below.len()];
-                merged.par_chunks_mut(4 * PIXELS_A_TASK).enumerate().for_each(|(task, merged)| {
-                    let at = task * 4 * PIXELS_A_TASK;
-                    merged.copy_from_slice(&below[at..at + merged.len()]);
-                    for (to, from) in merged.chunks_exact_mut(4).zip(red[at..].chunks_exact(4)) {
-                        to[0] = from[0];
-                    }
+                let red = model.images[occlusion].red();
+                let mut merged = model.images[metallic_roughness].pixels().into_owned();
+                let tasks = merged.par_chunks_mut(4 * PIXELS_A_TASK).zip(red.par_chunks(PIXELS_A_TASK));
+                tasks.for_each(|(merged, red)| {
+                    merged.chunks_exact_mut(4).zip(red).for_each(|(to, red)| to[0] = *red);
                 });
                 Cow::Owned(merged)
             }
@@ -128,7 +168,7 @@ mod tests {
     fn model(sizes: &[(u32, u32)]) -> Model {
         let image = |(index, &(width, height)): (usize, &(u32, u32))| {
             let rgba8 = (0..width * height * 4).map(|byte| (byte as usize * 7 + index * 101) as u8).collect();
-            Image { name: format!("image {index}"), width, height, rgba8 }
+            Image::rgba8(format!("image {index}"), width, height, rgba8)
         };
         let texture = |image| Texture { image, sampler: Sampler::default() };
         Model {
@@ -158,8 +198,8 @@ mod tests {
         let of = |slot: u32| TextureSource::of(&model, &material, slot as usize);
         assert_eq!([of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)], [packed; 2]);
         let pixels = packed.pixels(&model);
-        let images = [&model.images[0].rgba8, &model.images[1].rgba8].map(|image| image.chunks_exact(4));
-        let [roughness, occlusion] = images;
+        let images = [0, 1].map(|image| model.images[image].pixels());
+        let [roughness, occlusion] = images.each_ref().map(|image| image.chunks_exact(4));
         assert_eq!(pixels.len(), 411 * 333 * 4);
         for (merged, (roughness, occlusion)) in pixels.chunks_exact(4).zip(roughness.zip(occlusion)) {
             assert_eq!(merged, [occlusion[0], roughness[1], roughness[2], roughness[3]]);

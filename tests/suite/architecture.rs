@@ -19,7 +19,7 @@ const LAYERS: &[&[&str]] = &[
     &["frame", "picture_difference", "control", "file_kind", "recovery"],
     &["pipeline", "session"],
     &["render"],
-    &["headless", "measure", "picture"],
+    &["fuzz", "headless", "measure", "picture"],
     &["capture", "learn", "write_back"],
     &["events", "threads"],
     &["app"],

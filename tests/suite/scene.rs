@@ -6,4 +6,5 @@ mod deform;
 mod gpu;
 mod look;
 mod materials;
+mod textures;
 mod upload;

@@ -14,7 +14,7 @@ use crate::app::widgets::search;
 use crate::app::widgets::theme::{EDGE, QUIET, body_font, small_mono_font};
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
-use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
+use crate::scene::{Mip, Model, TextureSource, Wrap, slot_name};
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -85,11 +85,10 @@ fn show(ui: &mut Ui, context: &Context<'_>, own: &mut TextureState) -> Option<Te
         return None;
     };
     own.source = Some(source);
-    let (uses, image) = (&all[&source], source.image(model));
-    let (width, height) = image.map_or((1, 1), |image| (image.width, image.height));
+    let (uses, (width, height)) = (&all[&source], source.size(model));
     let names: Vec<(TextureSource, &str)> = all.keys().map(|other| (*other, name_of(*other, model))).collect();
     list(ui, own, source, &names);
-    controls(ui, own, mips::count(width, height));
+    controls(ui, own, source.levels(model));
     let about = about(model, source, uses, (width, height));
     let text_height = 4.0 * 14.0;
     let area = vec2(ui.available_width(), (ui.available_height() - text_height).max(80.0));
@@ -247,7 +246,8 @@ fn meshes(scene: &Scene, source: TextureSource, uses: &[(usize, usize)]) -> Vec<
 
 /// Size, format, color space, sampler and uses of a texture.
 fn about(model: &Model, source: TextureSource, uses: &[(usize, usize)], (width, height): (u32, u32)) -> String {
-    let levels = mips::count(width, height);
+    let (form, levels) = (source.form(model), source.levels(model));
+    let mib = source.bytes(model) as f64 / f64::from(1 << 20);
     let space = if source.is_srgb() { "sRGB" } else { "linear" };
     let packed = if matches!(source, TextureSource::Packed { .. }) { ", occlusion packed into red" } else { "" };
     let sampler = uses.first().and_then(|(material, slot)| {
@@ -273,5 +273,8 @@ fn about(model: &Model, source: TextureSource, uses: &[(usize, usize)], (width, 
         .iter()
         .map(|(material, slot)| format!("{} ({})", model.material_key(*material), slot_name(*slot)))
         .collect();
-    format!("{width} × {height}, {levels} levels, RGBA8 {space}{packed}\n{sampler}\n{}", users.join(", "))
+    format!(
+        "{width} × {height}, {levels} levels, {form} {space}, {mib:.1} MiB{packed}\n{sampler}\n{}",
+        users.join(", ")
+    )
 }

@@ -21,7 +21,7 @@ pub(super) enum What {
     Thumbnails,
     /// Time of a frame with hard shadows, ambient occlusion and bloom, and with 100 passes of one pixel, in turn with one without
     Passes,
-    /// CPU time of a frame of 10 to 100,000 primitives, and of 10 to 10,000 materials
+    /// CPU time of a frame of 10 to 100,000 primitives, and of 10 to 10,000 materials; upload time and memory of textures up to 4 GiB
     Scale,
 }
 
@@ -42,6 +42,9 @@ pub struct Args {
     /// Replay the edits of this file for reload, with and without compiling only edited functions
     #[arg(long, value_name = "FILE", hide = true)]
     pub(super) edits: Option<PathBuf>,
+    /// Largest total of the textures of scale, MiB; 0 leaves them out
+    #[arg(long, value_name = "MIB", default_value_t = 4096)]
+    pub(super) texture_mib: u64,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

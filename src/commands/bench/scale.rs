@@ -64,7 +64,7 @@ fn series(bench: &Bench<'_>, headless: &mut Headless, steps: &[(usize, usize)]) 
 }
 
 /// A cube of as many triangles, each a primitive. Its materials have different colors and equal pipelines.
-fn grid(primitives: usize, materials: usize) -> Result<Model, Failure> {
+pub(super) fn grid(primitives: usize, materials: usize) -> Result<Model, Failure> {
     let missing = || Failure::Input(format!("the built-in model {BASE} is missing"));
     let base = built_in(BASE).and_then(Result::ok).ok_or_else(missing)?;
     let first = base.primitives.first().ok_or_else(missing)?;

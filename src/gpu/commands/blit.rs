@@ -43,6 +43,24 @@ impl Encoder {
         self.blit_with((from, 0), (to, 0), 0, vk::Filter::NEAREST, false);
     }
 
+    /// Copies a texel of level 0 of an image in [`Use::CopyFrom`] to an image of one texel in [`Use::CopyTo`], which may have another
+    /// format: compressed texels are decoded, and sRGB-encoded ones become linear.
+    pub fn pick_texel(&mut self, from: &Arc<Image>, (x, y): (u32, u32), to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+        let offset = |x: u32, y: u32, z| vk::Offset3D { x: x as i32, y: y as i32, z };
+        let region = [vk::ImageBlit::default()
+            .src_subresource(layers)
+            .src_offsets([offset(x, y, 0), offset(x + 1, y + 1, 1)])
+            .dst_subresource(layers)
+            .dst_offsets([offset(0, 0, 0), offset(1, 1, 1)])];
+        let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        let filter = vk::Filter::NEAREST;
+        // SAFETY: this encoder records the command buffer; both images are kept, and the caller's texel lies within the image.
+        unsafe { self.gpu.device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, filter) };
+    }
+
     /// [`Encoder::pick`] with the rows in the opposite order.
     pub fn pick_flipped(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
         self.keep(from);

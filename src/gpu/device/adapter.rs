@@ -35,6 +35,30 @@ pub fn adapters() -> Result<Vec<AdapterInfo>, GpuError> {
     Ok(devices.into_iter().map(|physical| describe(&instance.raw, physical, false)).collect())
 }
 
+/// Which formats the device with `part` in its name, or the fastest kind, has for textures, without opening it.
+///
+/// # Errors
+/// As [`adapters`], or there is no such device.
+pub fn texture_formats(part: Option<&str>, formats: &[vk::Format]) -> Result<Vec<bool>, GpuError> {
+    let instance = Instance::new(false, None)?;
+    let (physical, _) = choose(&instance.raw, part, false)?;
+    Ok(formats.iter().map(|format| has_texture_format(&instance.raw, physical, *format)).collect())
+}
+
+/// Whether shaders sample and filter a format, and it can be copied and scaled.
+pub(in crate::gpu) fn has_texture_format(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    format: vk::Format,
+) -> bool {
+    use vk::FormatFeatureFlags as Has;
+    let needs =
+        Has::SAMPLED_IMAGE | Has::SAMPLED_IMAGE_FILTER_LINEAR | Has::BLIT_SRC | Has::TRANSFER_SRC | Has::TRANSFER_DST;
+    // SAFETY: `physical` comes from this live instance.
+    let properties = unsafe { instance.get_physical_device_format_properties(physical, format) };
+    properties.optimal_tiling_features.contains(needs)
+}
+
 /// Takes the fastest kind of device whose name contains `part`. `window` is whether it must show windows.
 pub(in crate::gpu) fn choose(
     instance: &ash::Instance,

@@ -7,12 +7,16 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use raw_window_handle::RawDisplayHandle;
 
-use super::adapter::{AdapterInfo, choose, graphics_family};
+use super::adapter::{AdapterInfo, choose, graphics_family, has_texture_format};
 use super::instance::Instance;
 use super::optional::{MeshLimits, Optional};
 use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
+
+/// Bytes of the blocks from which images and buffers get memory of the device, and memory that the host maps.
+const DEVICE_BLOCK: u64 = 256 << 20;
+const HOST_BLOCK: u64 = 8 << 20;
 
 /// How to open a device.
 #[derive(Default)]
@@ -96,7 +100,9 @@ impl Gpu {
             physical_device: physical,
             debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
             buffer_device_address: true,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+            // A larger resource has a block of its own, which is freed with it. On a software device all memory is the host's, and what
+            // staging buffers and textures leave behind in shared blocks would stay resident.
+            allocation_sizes: gpu_allocator::AllocationSizes::new(DEVICE_BLOCK, HOST_BLOCK),
         })
         .map_err(|error| GpuError::allocation(&error, "creating the memory allocator"))?;
         let pipeline_cache = PipelineCache::new(&device, &properties, options.pipelines)?;
@@ -157,6 +163,11 @@ impl Gpu {
         // SAFETY: the instance is live, and the device belongs to it.
         let properties = unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) };
         properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
+    }
+
+    /// Whether textures can have this format: shaders sample and filter it, and it can be copied and scaled.
+    pub fn has_texture_format(&self, format: vk::Format) -> bool {
+        has_texture_format(&self.instance.raw, self.physical, format)
     }
 
     /// Reports which optional stages the device supports.
@@ -284,6 +295,9 @@ fn create_device(
         fragment_stores_and_atomics: supported.fragment_stores_and_atomics,
         geometry_shader: vk::TRUE,
         tessellation_shader: supported.tessellation_shader,
+        texture_compression_bc: supported.texture_compression_bc,
+        texture_compression_etc2: supported.texture_compression_etc2,
+        texture_compression_astc_ldr: supported.texture_compression_astc_ldr,
         shader_tessellation_and_geometry_point_size: supported.shader_tessellation_and_geometry_point_size,
         ..Default::default()
     };

@@ -107,14 +107,23 @@ impl Buffer {
     /// Copies the content out; empty where the CPU cannot see it. For [`Memory::Readback`]. The caller must have waited for the fence of
     /// the submission that writes the buffer, or gets a mixture.
     pub fn read(&self) -> Vec<u8> {
+        self.read_part(0, self.size)
+    }
+
+    /// The part of [`Buffer::read`] from `offset`, of at most `length` bytes.
+    pub fn read_part(&self, offset: u64, length: u64) -> Vec<u8> {
         let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_ptr) else { return Vec::new() };
-        let mut content = Vec::with_capacity(self.size as usize);
+        let offset = offset.min(self.size);
+        let length = length.min(self.size - offset) as usize;
+        let mut content = Vec::with_capacity(length);
         let _access = self.access.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: the mapping and the vector have room for `size` bytes and do not overlap. The lock keeps other threads from the
-        // mapping. No reference to it exists, since the device may write it, and every byte that it writes is a valid one.
+        // SAFETY: the mapping has `length` bytes from `offset`, and the vector has room for them; they do not overlap. The lock keeps
+        // other threads from the mapping. No reference to it exists, since the device may write it, and every byte that it writes is
+        // a valid one.
         unsafe {
-            std::ptr::copy_nonoverlapping(mapped.as_ptr().cast::<u8>(), content.as_mut_ptr(), self.size as usize);
-            content.set_len(self.size as usize);
+            let from = mapped.as_ptr().cast::<u8>().add(offset as usize);
+            std::ptr::copy_nonoverlapping(from, content.as_mut_ptr(), length);
+            content.set_len(length);
         }
         content
     }

@@ -64,18 +64,58 @@ impl ImageDesc {
 
     /// Bytes of one level with all its layers and slices, tightly packed.
     pub fn level_bytes(&self, level: u32) -> u64 {
-        let side = |pixels: u32| u64::from((pixels >> level).max(1));
-        side(self.width) * side(self.height) * side(self.depth) * u64::from(self.layers) * texel_bytes(self.format)
+        let side = |pixels: u32| (pixels >> level).max(1);
+        let (width, height, bytes) = block(self.format);
+        let blocks = u64::from(side(self.width).div_ceil(width)) * u64::from(side(self.height).div_ceil(height));
+        blocks * u64::from(side(self.depth)) * u64::from(self.layers) * bytes
     }
 }
 
-/// Bytes of a texel, for the formats that are copied to and from buffers.
-fn texel_bytes(format: vk::Format) -> u64 {
+/// Width and height of a block in texels, and its bytes, for the formats that are copied to and from buffers. Without compression, a block
+/// is a texel.
+fn block(format: vk::Format) -> (u32, u32, u64) {
+    use vk::Format as F;
     match format {
-        vk::Format::R16G16B16A16_SFLOAT => 8,
-        vk::Format::R32G32B32A32_SFLOAT => 16,
-        _ => 4,
+        F::R16G16B16A16_SFLOAT | F::R16G16B16A16_UNORM => (1, 1, 8),
+        F::R32G32B32A32_SFLOAT => (1, 1, 16),
+        _ => match format.as_raw() {
+            raw if in_formats(raw, F::BC1_RGB_UNORM_BLOCK, F::BC1_RGBA_SRGB_BLOCK) => (4, 4, 8),
+            raw if in_formats(raw, F::BC4_UNORM_BLOCK, F::BC4_SNORM_BLOCK) => (4, 4, 8),
+            raw if in_formats(raw, F::BC2_UNORM_BLOCK, F::BC7_SRGB_BLOCK) => (4, 4, 16),
+            raw if in_formats(raw, F::ETC2_R8G8B8_UNORM_BLOCK, F::ETC2_R8G8B8A1_SRGB_BLOCK) => (4, 4, 8),
+            raw if in_formats(raw, F::ETC2_R8G8B8A8_UNORM_BLOCK, F::ETC2_R8G8B8A8_SRGB_BLOCK) => (4, 4, 16),
+            raw if in_formats(raw, F::ASTC_4X4_UNORM_BLOCK, F::ASTC_12X12_SRGB_BLOCK) => {
+                // Each size is there as UNORM and as SRGB.
+                let size = (raw - F::ASTC_4X4_UNORM_BLOCK.as_raw()) / 2;
+                let (width, height) = ASTC_BLOCKS[size as usize];
+                (width, height, 16)
+            }
+            _ => (1, 1, 4),
+        },
     }
+}
+
+/// The block sizes of ASTC, in the order of the formats.
+const ASTC_BLOCKS: [(u32, u32); 14] = [
+    (4, 4),
+    (5, 4),
+    (5, 5),
+    (6, 5),
+    (6, 6),
+    (8, 5),
+    (8, 6),
+    (8, 8),
+    (10, 5),
+    (10, 6),
+    (10, 8),
+    (10, 10),
+    (12, 10),
+    (12, 12),
+];
+
+/// Whether a format is one of those between two, which Vulkan numbers in order.
+fn in_formats(raw: i32, first: vk::Format, last: vk::Format) -> bool {
+    (first.as_raw()..=last.as_raw()).contains(&raw)
 }
 
 /// An image with its memory and a view of all levels. An image with `STORAGE` usage also has a view of each level. The memory

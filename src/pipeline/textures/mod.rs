@@ -26,6 +26,8 @@ use crate::shader::graph::{Texture, TextureFile, TextureKind};
 use crate::shader::{Diagnostic, Graph};
 use panorama::is_float;
 use shape::{Cut, Shape};
+#[cfg(any(test, fuzzing))]
+pub(crate) use table::decode as decode_table;
 
 /// A texture on the device, with what it was made from.
 struct Uploaded {

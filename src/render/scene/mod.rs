@@ -4,6 +4,7 @@ mod deformables;
 mod error;
 mod materials;
 mod placed;
+mod texel_formats;
 mod upload;
 
 use std::collections::HashMap;
@@ -19,6 +20,7 @@ pub(crate) use deformables::Deformables;
 pub use error::UploadError;
 use materials::{MaterialSets, Textures};
 pub(crate) use placed::{PlacedDraw, PlacedScene, Posed, normals_from};
+pub use texel_formats::texel_forms;
 use upload::{Range, Uploaded, upload};
 
 /// One draw call, wherever the pose of a frame puts it.

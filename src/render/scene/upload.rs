@@ -9,7 +9,8 @@ use crate::gpu::{Buffer, Gpu, Image, ImageDesc, Memory, Use, one_shot, vk};
 use crate::interface::{Displacement, Influence, Vertex};
 use crate::render::scene::UploadError;
 use crate::render::scene::materials::Textures;
-use crate::scene::{Model, TextureSource, mips, texture_sources};
+use crate::render::scene::texel_formats::{format_of, forms_of};
+use crate::scene::{Model, TextureSource, texture_sources};
 
 /// A model's data on the device.
 pub(super) struct Uploaded {
@@ -39,11 +40,8 @@ pub(super) struct Range {
 
 /// Size of the staging buffer in bytes. It is smaller if the model needs less, and larger if one image needs more.
 const STAGING_BYTES: u64 = 32 << 20;
-/// Alignment of image copies in the staging buffer, in bytes. Vulkan requires the texel size; 16 suits all devices.
+/// Alignment of image copies in the staging buffer, in bytes. Vulkan requires the size of a texel or block; 16 suits all devices.
 const ALIGNMENT: u64 = 16;
-/// Bytes that one task writes to the staging buffer. The first write to a page costs as much as the copy itself, so even
-/// a single image is split into tasks.
-const BYTES_A_TASK: usize = 1 << 20;
 
 /// Path tracing copies textures from the device, since the pixels have left the CPU.
 const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
@@ -52,12 +50,14 @@ const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
         | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
 );
 
-/// Uploads a model and waits until that is done. Then `rgba8` of each image is empty. Picking and framing read the rest of
+/// Uploads a model and waits until that is done. Each image takes the best form that the device samples. Then its texels are empty. Picking and framing read the rest of
 /// the model, so the rest stays.
 ///
 /// # Errors
 /// An image that exceeds the device's limit, or no memory left. Some pixels may be freed by then.
 pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, UploadError> {
+    let forms = forms_of(gpu);
+    Arc::make_mut(&mut model.images).iter_mut().for_each(|image| image.settle(&forms));
     let sources: Vec<TextureSource> = texture_sources(model).into_iter().collect();
     check_sizes(gpu, model, &sources)?;
     let staging = Staging::new(gpu, model, &sources)?;
@@ -205,10 +205,10 @@ impl<'a> Staging<'a> {
             let mut targets = Vec::new();
             for source in sources {
                 let (target, after) = rest.split_at_mut(staged_bytes(source, model) as usize);
-                targets.push((*source, target));
+                targets.push((*source, &mut target[..source.bytes(model) as usize]));
                 rest = after;
             }
-            targets.into_par_iter().for_each(|(source, target)| fill(target, source, model));
+            targets.into_par_iter().for_each(|(source, target)| source.write(model, target));
         });
         one_shot(self.gpu, |encoder| {
             for (_, image, offset) in &places {
@@ -224,43 +224,21 @@ impl<'a> Staging<'a> {
     }
 }
 
-/// Writes all levels of a texture in order.
-fn fill(target: &mut [u8], source: TextureSource, model: &Model) {
-    let (width, height) = size(&source, model);
-    let pixels = source.pixels(model);
-    let (first, rest) = target.split_at_mut(pixels.len());
-    copy(&pixels, first);
-    copy(&mips::below(&pixels, width, height, source.is_srgb()), rest);
-}
-
-/// Copies bytes to the beginning of `to`, on all cores.
-fn copy(from: &[u8], to: &mut [u8]) {
-    let tasks = from.par_chunks(BYTES_A_TASK).zip(to[..from.len()].par_chunks_mut(BYTES_A_TASK));
-    tasks.for_each(|(from, to)| to.copy_from_slice(from));
-}
-
 /// Frees the pixels of images that no remaining texture reads.
 fn free_unread(model: &mut Model, readers: &[u32]) {
     let unread = Arc::make_mut(&mut model.images).iter_mut().zip(readers).filter(|(_, readers)| **readers == 0);
-    unread.for_each(|(image, _)| image.rgba8 = Vec::new());
+    unread.for_each(|(image, _)| image.free());
 }
 
 /// Creates the image of a texture, without content.
 fn make_image(gpu: &Arc<Gpu>, source: &TextureSource, model: &Model) -> Result<Arc<Image>, UploadError> {
     let name = source.image(model).map_or("default", |image| &image.name);
-    let format = if source.is_srgb() { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
-    let (width, height) = size(source, model);
-    let mips = mips::count(width, height);
+    let format = format_of(source.form(model), source.is_srgb());
+    let ((width, height), mips) = (source.size(model), source.levels(model));
     Ok(Image::new(gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?)
 }
 
 /// Bytes that all levels of a texture take in the staging buffer.
 fn staged_bytes(source: &TextureSource, model: &Model) -> u64 {
-    let (width, height) = size(source, model);
-    (mips::bytes(width, height) as u64).next_multiple_of(ALIGNMENT)
-}
-
-/// Width and height in pixels.
-fn size(source: &TextureSource, model: &Model) -> (u32, u32) {
-    source.image(model).map_or((1, 1), |image| (image.width, image.height))
+    source.bytes(model).next_multiple_of(ALIGNMENT)
 }

@@ -29,6 +29,9 @@ impl Capture {
     }
 }
 
+/// Bytes of a frame that are read at a time: a multiple of all sizes of pixels.
+const PIECE: u64 = 1 << 20;
+
 /// Recorded copies of a frame.
 pub struct Readback {
     picture: Arc<Buffer>,
@@ -75,10 +78,16 @@ impl Readback {
         let (raw, half) = (self.raw.clone(), self.half);
         let (width, height, rgba8) = self.finish_display();
         let mut capture = Capture { width, height, rgba8, ..Capture::default() };
-        for pixel in texels(&raw.read(), half).map(PixelValue::decode) {
-            capture.raw.push(pixel.value);
-            capture.no_data.push(pixel.no_data);
-            capture.not_finite.push(pixel.not_finite);
+        let pixels = width as usize * height as usize;
+        (capture.raw, capture.no_data) = (Vec::with_capacity(pixels), Vec::with_capacity(pixels));
+        capture.not_finite = Vec::with_capacity(pixels);
+        // In pieces, since a second copy of a large picture would be most of the memory at this moment.
+        for offset in (0..raw.size()).step_by(PIECE as usize) {
+            for pixel in texels(&raw.read_part(offset, PIECE), half).map(PixelValue::decode) {
+                capture.raw.push(pixel.value);
+                capture.no_data.push(pixel.no_data);
+                capture.not_finite.push(pixel.not_finite);
+            }
         }
         capture
     }

@@ -14,12 +14,7 @@ fn textured(slots: &[(u32, [u8; 4])]) -> Model {
     let mut model = load(&glb::model(&glb::quad(1.0), &glb::gray()));
     for (index, &(slot, color)) in slots.iter().enumerate() {
         let rgba8 = color.repeat((SIDE * SIDE) as usize);
-        Arc::make_mut(&mut model.images).push(Image {
-            name: format!("image {index}"),
-            width: SIDE,
-            height: SIDE,
-            rgba8,
-        });
+        Arc::make_mut(&mut model.images).push(Image::rgba8(format!("image {index}"), SIDE, SIDE, rgba8));
         Arc::make_mut(&mut model.textures).push(Texture { image: index, sampler: Sampler::default() });
         let used = TextureUse { texture: index, uv_set: 0, uv_from_mesh: glam::Affine2::IDENTITY };
         Arc::make_mut(&mut model.materials)[1].textures[slot as usize] = Some(used);
@@ -59,6 +54,6 @@ fn a_model_larger_than_the_staging_buffer_arrives_whole_and_its_pixels_leave_the
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{mode}: {found:?}, not {expected:?}");
     }
     let model = headless.model();
-    assert!(model.images.iter().all(|image| image.rgba8.is_empty() && image.width == SIDE));
+    assert!(model.images.iter().all(|image| image.texels.is_empty() && image.width == SIDE));
     assert_eq!(model.primitives[1].vertices.len(), 4, "picking reads the vertices");
 }

@@ -49,7 +49,7 @@ fn row(ui: &mut Ui, texel: &Texel) -> Response {
         }
         let middle = rect.center().y;
         let swatch = Rect::from_center_size(pos2(rect.min.x + 0.5 * SWATCH + 1.0, middle), vec2(SWATCH, SWATCH));
-        let [r, g, b, _] = texel.stored;
+        let [r, g, b] = texel.color();
         painter.rect_filled(swatch, 2.0, Color32::from_rgb(r, g, b));
         painter.rect_stroke(swatch, 2.0, Stroke::new(1.0, Color32::from_gray(70)), StrokeKind::Inside);
         let color = ui.visuals().text_color();
@@ -76,16 +76,17 @@ fn about(ui: &mut Ui, texel: &Texel) {
         place.mesh_uv.map(|number| format!("{number:.4}")),
     ];
     ui.label(RichText::new(format!("{} · {}", place.slot_name(), place.name)).strong());
-    let linear = texel.linear().map(|number| format!("{number:.4}")).join(" ");
+    let linear = texel.linear.map(|number| format!("{number:.4}")).join(" ");
     let space = if place.source.is_srgb() { "sRGB" } else { "linear" };
     let lines = format!(
-        "texel   {x} {y} of {width} × {height}\nuv      {u} {v} after transform and wrap\nmesh uv {mesh_u} {mesh_v}, TEXCOORD_{}\n\
+        "texel   {x} {y} of {width} × {height}, {}\nuv      {u} {v} after transform and wrap\nmesh uv {mesh_u} {mesh_v}, TEXCOORD_{}\n\
          stored  {} {space}\nlinear  {linear}",
+        place.form,
         place.uv_set,
         stored(texel)
     );
     ui.label(RichText::new(lines).monospace());
-    ui.label("The nearest texel of level 0, as stored in the image. The shader filters texels and mip levels.");
+    ui.label("The nearest texel of level 0, in the encoding of the image. The shader filters texels and mip levels.");
     ui.label(RichText::new("Click to show the texture").small().color(ACCENT));
 }
 
@@ -102,7 +103,7 @@ mod tests {
     use crate::app::editor::Place;
     use crate::app::state::inspection::NotFiniteSearch;
     use crate::render::TexelPlace;
-    use crate::scene::TextureSource;
+    use crate::scene::{TexelForm, TextureSource};
     use crate::shader::not_finite::NotFinite;
     use crate::shader::{FirstNotFinite, Site};
 
@@ -112,6 +113,7 @@ mod tests {
         let place = TexelPlace {
             slot: 0,
             source,
+            form: TexelForm::Rgba8,
             name: "checker".into(),
             size: [2, 2],
             uv_set: 0,
@@ -119,7 +121,7 @@ mod tests {
             uv: [0.75, 0.25],
             texel: [1, 0],
         };
-        let texels = vec![Texel { place, stored: [255, 0, 128, 255] }];
+        let texels = vec![Texel::of_bytes(place, [255, 0, 128, 255])];
         let first = Site {
             file: "/home/me/shaders/brdf/ndf.glsl".into(),
             line: 20,

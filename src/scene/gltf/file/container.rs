@@ -25,6 +25,22 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
+/// Extensions that a model may use without loss, or with a known one: what Specula does instead.
+const IGNORED: &[(&str, &str)] = &[
+    ("AGI_articulations", "the model looks the same without it"),
+    ("EXT_lights_image_based", "the environment of Specula lights the model"),
+    ("EXT_mesh_features", "the model looks the same without it"),
+    ("EXT_structural_metadata", "the model looks the same without it"),
+    ("EXT_texture_avif", "the PNG, JPEG, WebP or KTX2 image of each texture is shown, if it has one"),
+    ("KHR_audio_emitter", "the model is silent"),
+    ("KHR_xmp", "the model looks the same without it"),
+    ("KHR_xmp_json_ld", "the model looks the same without it"),
+    ("MSFT_lod", "the finest level of detail is shown at every distance"),
+    ("MSFT_packing_normalRoughnessMetallic", "the textures of core glTF are shown"),
+    ("MSFT_packing_occlusionRoughnessMetallic", "the textures of core glTF are shown"),
+    ("MSFT_texture_dds", "the PNG, JPEG, WebP or KTX2 image of each texture is shown, if it has one"),
+];
+
 /// All extensions that a model may require.
 fn supported() -> BTreeSet<&'static str> {
     SUPPORTED.iter().copied().chain(compression::EXTENSIONS).chain(EXTENSIONS.iter().map(|e| e.name)).collect()
@@ -190,8 +206,11 @@ fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
             supported: Vec::from_iter(supported.iter().copied()).join(", "),
         });
     }
-    let ignored = |name| {
-        format!("The extension {name} is ignored: Specula does not support it, so the model may look different.")
+    let ignored = |name: String| match IGNORED.iter().find(|(known, _)| *known == name) {
+        Some((_, instead)) => format!("The extension {name} is ignored: {instead}."),
+        None => {
+            format!("The extension {name} is ignored: Specula does not support it, so the model may look different.")
+        }
     };
     Ok(missing(&root.extensions_used).into_iter().map(ignored).collect())
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::io::{Cursor, ErrorKind};
 
 use gltf::json;
-use image::{ImageFormat, ImageReader};
+use image::{DynamicImage, ImageFormat, ImageReader};
 use rayon::prelude::*;
 
 use super::textures::Origin;
@@ -15,6 +15,7 @@ use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::{Buffers, Files};
 use crate::scene::gltf::file::uri;
 use crate::scene::gltf::place::{out_of_range, place};
+use crate::scene::images::{TexelForm, Texels};
 use crate::scene::load_options::Canceled;
 use crate::scene::model::Image;
 
@@ -122,15 +123,15 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
         pixels.map_err(|reason| format!("{title} cannot be decoded ({})", shorten(&reason)))
     });
     match pixels {
-        Ok((width, height, rgba8)) => Decoded { image: Image { name, width, height, rgba8 }, failure: None },
+        Ok((width, height, texels)) => Decoded { image: Image::new(name, width, height, texels), failure: None },
         Err(failure) => Decoded { image: placeholder::checkerboard(name), failure: Some(failure) },
     }
 }
 
-/// Width, height and pixels, or the reason of a failure.
-fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
+/// Width, height and texels, or the reason of a failure.
+fn pixels(bytes: &[u8]) -> Result<(u32, u32, Texels), String> {
     if ktx2::is_ktx2(bytes) {
-        return ktx2::pixels(bytes, MAX_SIZE);
+        return ktx2::texels(bytes, MAX_SIZE);
     }
     let other = OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
     // Trust only the content: mimeType and file endings are often wrong or absent.
@@ -150,12 +151,27 @@ fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| error.to_string())?.into_rgba8();
-    let (width, height) = decoded.dimensions();
+    let decoded = reader.decode().map_err(|error| error.to_string())?;
+    let (width, height) = (decoded.width(), decoded.height());
     if width == 0 || height == 0 {
         return Err(format!("it has {width}x{height} pixels"));
     }
-    Ok((width, height, decoded.into_raw()))
+    let (form, bytes) = match decoded {
+        // A quarter less memory until the upload.
+        DynamicImage::ImageRgb8(image) => (TexelForm::Rgb8, image.into_raw()),
+        _ if decoded.color().bytes_per_pixel() == 2 * decoded.color().channel_count() => sixteen_bits(decoded),
+        _ => (TexelForm::Rgba8, decoded.into_rgba8().into_raw()),
+    };
+    Ok((width, height, Texels::Stored { form, levels: 1, bytes }))
+}
+
+/// The texels of an image with 16 bits a channel. One that was widened from 8 bits, so that both bytes of each channel are equal, has 8.
+fn sixteen_bits(image: DynamicImage) -> (TexelForm, Vec<u8>) {
+    let wide = image.into_rgba16().into_raw();
+    if wide.iter().all(|word| word % 257 == 0) {
+        return (TexelForm::Rgba8, wide.into_iter().map(|word| (word / 257) as u8).collect());
+    }
+    (TexelForm::Rgba16, wide.into_iter().flat_map(u16::to_le_bytes).collect())
 }
 
 /// Shortens a message to one line that fits into a sentence.

@@ -17,7 +17,7 @@ const MOST_NAMES: usize = 3;
 pub fn checkerboard(name: String) -> Image {
     let gray = |pixel: u32| GRAYS[((pixel % SIDE / SQUARE + pixel / SIDE / SQUARE) % 2) as usize];
     let rgba8 = (0..SIDE * SIDE).flat_map(|pixel| [gray(pixel), gray(pixel), gray(pixel), 255]).collect();
-    Image { name, width: SIDE, height: SIDE, rgba8 }
+    Image::rgba8(name, SIDE, SIDE, rgba8)
 }
 
 /// Removes failed images from the materials, except for base colors, which show the checkerboard. Returns a warning for each

@@ -153,6 +153,14 @@ fn versions_and_extensions() {
     let warnings = builder.model().warnings;
     let named = |word: &str| warnings.iter().filter(|warning| warning.contains(word)).count();
     assert_eq!((warnings.len(), named("EXT_y is ignored"), named("EXT_x")), (2, 1, 1), "{warnings:?}");
+    builder.json["extensionsUsed"] = json!(["MSFT_lod", "EXT_texture_webp", "MSFT_lod", "EXT_texture_avif"]);
+    assert_eq!(
+        *builder.model().warnings,
+        [
+            "The extension EXT_texture_avif is ignored: the PNG, JPEG, WebP or KTX2 image of each texture is shown, if it has one.",
+            "The extension MSFT_lod is ignored: the finest level of detail is shown at every distance.",
+        ]
+    );
 }
 
 #[test]

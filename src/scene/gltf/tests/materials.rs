@@ -8,6 +8,7 @@ use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use super::super::super::model::{AlphaMode, Mip, Wrap};
 use super::*;
 use crate::interface as contract;
+use crate::scene::{TexelForm, Texels};
 
 fn encode(format: ImageFormat, image: &DynamicImage) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
@@ -40,11 +41,28 @@ fn images_of_every_kind() {
         builder.image("baseColorTexture", &bytes);
         let model = builder.model();
         assert_eq!((model.images[0].width, model.images[0].height), (3, 2), "{name}");
-        for (found, expected) in model.images[0].rgba8[..3].iter().zip(color) {
-            assert!(found.abs_diff(expected) <= 4, "{name}: {:?}", &model.images[0].rgba8[..4]);
+        let pixels = model.images[0].pixels();
+        for (found, expected) in pixels[..3].iter().zip(color) {
+            assert!(found.abs_diff(expected) <= 4, "{name}: {:?}", &pixels[..4]);
         }
-        assert_eq!(model.images[0].rgba8[3], 255);
+        assert_eq!(pixels[3], 255);
     }
+}
+
+#[test]
+fn sixteen_bits_are_kept_unless_they_were_widened_from_eight() {
+    let form = |value: u16| {
+        let image = image::ImageBuffer::from_pixel(3, 2, image::Luma([value]));
+        let mut builder = Builder::square();
+        builder.image("normalTexture", &encode(ImageFormat::Png, &DynamicImage::ImageLuma16(image)));
+        let model = builder.model();
+        match &model.images[0].texels {
+            Texels::Stored { form, bytes, .. } => (*form, bytes[..8].to_vec()),
+            Texels::Basis(_) => unreachable!(),
+        }
+    };
+    assert_eq!(form(0x1234), (TexelForm::Rgba16, vec![0x34, 0x12, 0x34, 0x12, 0x34, 0x12, 0xff, 0xff]));
+    assert_eq!(form(0x1212), (TexelForm::Rgba8, vec![0x12, 0x12, 0x12, 255, 0x12, 0x12, 0x12, 255]));
 }
 
 #[test]
