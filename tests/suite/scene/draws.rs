@@ -117,7 +117,8 @@ fn vertices_that_a_hook_moves_into_the_frame_are_drawn() {
     let quad = load(&glb::model(&glb::quad(0.5), &glb::gray()));
     let mut session = looking(quad, "[3, 0, 3]", "[3, 0, 0]", &[]);
     let empty = session.render();
+    // Farther away as well, since the near plane lies before the model as it was loaded.
     let hook = "void user_vertex(inout Vertex vertex) {\n";
-    ready(&session.edit("user/vertex.glsl", hook, &format!("{hook}    vertex.position.x += 3.0;\n")));
+    ready(&session.edit("user/vertex.glsl", hook, &format!("{hook}    vertex.position += vec3(3.0, 0.0, -1.0);\n")));
     assert_differ(&empty, &session.render(), "the moved quad");
 }
