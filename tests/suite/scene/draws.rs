@@ -33,7 +33,7 @@ fn grid(side: usize) -> Vec<u8> {
     let (mut json, bin) = parts(&glb::scene(&meshes));
     let node = |index: usize| {
         let at = [index % side, index / side % side, index / side / side].map(|cell| cell as f64 - (side / 2) as f64);
-        let mirror = if index % 3 == 0 { -1.0 } else { 1.0 };
+        let mirror = if index.is_multiple_of(3) { -1.0 } else { 1.0 };
         let turn = (index as f64 * 0.1).sin_cos();
         json!({ "mesh": index * 5 % meshes.len(), "translation": at, "scale": [mirror, 0.7, 1.3], "rotation": [0.0, turn.0, 0.0, turn.1] })
     };
