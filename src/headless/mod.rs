@@ -4,12 +4,12 @@ mod draw;
 mod error;
 mod hints;
 mod inspect;
-mod not_finite;
 mod pixel;
 mod reload;
 mod sequence;
 mod stages;
 mod thumbnails;
+mod traced_pixel;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
 pub use draw::Step;
 pub use error::HeadlessError;
-pub use not_finite::{Search, first_not_finite};
+pub use traced_pixel::{Search, first_not_finite, trace_pixel};
 pub use sequence::Sequence;
 pub use thumbnails::Thumbnail;
 

@@ -1,0 +1,172 @@
+//! Draws a pixel with a stage that tells what it computes: the first statement that makes NaN or infinity, or all statements.
+
+use std::sync::Arc;
+
+use super::{Headless, HeadlessError};
+use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::gpu::{Buffer, Encoder, Frames, Gpu, GpuError, Memory, vk};
+use crate::render::{PixelModes, Resources};
+use crate::settings::Settings;
+use crate::shader::not_finite::searching_stage;
+use crate::shader::trace::{self, Trace};
+use crate::shader::{Compiler, FirstNotFinite, Mode, PixelValue, ShaderSet, Source};
+
+/// Where to search: a pixel of a frame.
+pub struct Search<'a> {
+    /// The frame. Its mode and target are ignored.
+    pub picture: FrameInputs<'a>,
+    /// The pixel, from the upper left corner.
+    pub at: (u32, u32),
+    /// The mode whose stage is searched.
+    pub mode: &'a Mode,
+    /// The tree, for the display names of files.
+    pub source: &'a Source,
+    /// Whether the result is no longer needed.
+    pub is_canceled: &'a dyn Fn() -> bool,
+}
+
+impl Search<'_> {
+    /// The state of the pixel with these shaders, in the mode alone.
+    fn state(&self, shaders: &Arc<ShaderSet>) -> FrameState {
+        let settings = Settings { mode: self.mode.slug.clone(), ..self.picture.settings.clone() };
+        let inputs = FrameInputs { settings: &settings, shaders, target: TargetFormat::full(1), ..self.picture };
+        FrameState::of_modes(&inputs, &[self.mode])
+    }
+
+    /// The fragment stage that draws the mode. `None` if a pass or random paths do.
+    fn stage(&self) -> Option<String> {
+        (!mode_sets([self.mode], 1).is_empty()).then(|| self.state(self.picture.shaders).pipelines.stage)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if (self.is_canceled)() { Err("canceled".to_owned()) } else { Ok(()) }
+    }
+
+    /// Draws the pixel with these shaders, which differ from the picture's in one stage at most. `more` records what follows the draw.
+    fn draw(
+        &self,
+        gpu: &Arc<Gpu>,
+        (resources, frames): (&mut Resources, &mut Frames),
+        shaders: &Arc<ShaderSet>,
+        more: impl FnOnce(&mut Encoder),
+    ) -> Result<PixelValue, String> {
+        self.check()?;
+        let set = resources.pipelines().filter(|set| Arc::ptr_eq(&set.shaders, self.picture.shaders)).cloned();
+        let set = set.ok_or("the shaders have changed")?;
+        let state = Arc::new(self.state(shaders));
+        let set = set.variant(shaders.clone(), &state.pipelines).map_err(|error| error.to_string())?;
+        self.check()?;
+        let bound = resources.bind_variant(&set, &state).map_err(|error| error.to_string())?;
+        let frame = bound.ok_or("the light of the picture is being baked")?;
+        let mut draw = || {
+            let mut pixel = PixelModes::new(gpu, resources.layouts(), 1)?;
+            let mut encoder = frames.begin()?;
+            pixel.draw(&mut encoder, 0, &frame, self.at)?;
+            more(&mut encoder);
+            frames.submit(encoder, Default::default())?;
+            // SYNC: the CPU reads the value.
+            frames.wait()?;
+            Ok::<_, GpuError>(pixel.values(0))
+        };
+        let values = draw().map_err(|error| error.to_string())?;
+        Ok(values.first().copied().unwrap_or_default())
+    }
+}
+
+/// Compiles the stage of a mode with a text that traces its values, draws the pixel with it, and returns the first statement that
+/// computes NaN or infinity. `None` if the stage computes neither there: a pass after the model does, an earlier stage, or a
+/// path-traced mode. `frames` and `resources` belong to the caller and have everything that the frame needs.
+///
+/// # Errors
+/// A message if the stage cannot be traced or drawn.
+pub fn first_not_finite(
+    gpu: &Arc<Gpu>,
+    compiler: &Compiler,
+    device: (&mut Resources, &mut Frames),
+    search: &Search<'_>,
+) -> Result<Option<FirstNotFinite>, String> {
+    let Some(stage) = search.stage() else { return Ok(None) };
+    let traced = searching_stage(search.picture.shaders, &stage, (compiler, search.source))?;
+    let value = search.draw(gpu, device, &traced.shaders, |_| ())?;
+    Ok(traced.found(&value))
+}
+
+/// Draws the pixel with a stage that logs all that it computes, and once more without the log, to compare the colors. Passes after the model
+/// are left out, and what lies behind transmissive surfaces is black. `frames` and `resources` belong to the caller and have everything that
+/// the frame needs.
+///
+/// # Errors
+/// A message if the stage cannot be traced or drawn, for example because a pass or random paths draw the mode.
+pub fn trace_pixel(
+    gpu: &Arc<Gpu>,
+    compiler: &Compiler,
+    (resources, frames): (&mut Resources, &mut Frames),
+    search: &Search<'_>,
+) -> Result<Trace, String> {
+    let stage = search.stage().ok_or_else(|| {
+        format!("{} is drawn by a pass or by random paths; the statements of modes that the model's own stages draw can be traced", search.mode.slug)
+    })?;
+    let buffer = |name: &str, usage, memory| {
+        Buffer::new(gpu, name, trace::log::SIZE, usage, memory).map_err(|error| error.to_string())
+    };
+    use vk::BufferUsageFlags as Usage;
+    let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
+    let log = buffer("trace", usage, Memory::Readback)?;
+    let empty: Vec<u8> = trace::log::empty(search.at_in_quad()).iter().flat_map(|word| word.to_le_bytes()).collect();
+    log.write(0, &empty);
+    let traced = trace::logging_stage(search.picture.shaders, &stage, (compiler, search.source), log.address())?;
+    let plain = search.draw(gpu, (resources, frames), search.picture.shaders, |_| ())?;
+    search.draw(gpu, (resources, frames), &traced.shaders, |encoder| {
+        encoder.keep(&log);
+        encoder.buffers_written();
+    })?;
+    let bytes = log.read();
+    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+    Ok(Trace::new(&traced, &words, &plain))
+}
+
+impl Search<'_> {
+    /// The pixel in the target of two by two pixels, where a stage sees it.
+    fn at_in_quad(&self) -> (u32, u32) {
+        (self.at.0 % 2, self.at.1 % 2)
+    }
+}
+
+impl Headless {
+    /// The first statement that computes NaN or infinity in a mode at a pixel: see [`first_not_finite`].
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn first_not_finite(&mut self, at: (u32, u32), mode: &Mode) -> Result<Option<FirstNotFinite>, HeadlessError> {
+        self.search(at, mode, first_not_finite)
+    }
+
+    /// What every statement computes that draws a mode at a pixel: see [`trace_pixel`].
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn trace(&mut self, at: (u32, u32), mode: &Mode) -> Result<Trace, HeadlessError> {
+        self.search(at, mode, trace_pixel)
+    }
+
+    fn search<R>(
+        &mut self,
+        at: (u32, u32),
+        mode: &Mode,
+        run: impl FnOnce(&Arc<Gpu>, &Compiler, (&mut Resources, &mut Frames), &Search<'_>) -> Result<R, String>,
+    ) -> Result<R, HeadlessError> {
+        self.finish_or_fail()?;
+        self.provide()?;
+        let (shaders, scene) = (self.shaders(), self.session.scene());
+        let library = self.reloader.library();
+        let search = Search {
+            picture: self.session.inputs(&shaders, scene.as_ref(), self.clock, self.size, TargetFormat::full(1)),
+            at,
+            mode,
+            source: library.source(),
+            is_canceled: &|| false,
+        };
+        let device = (&mut self.resources, &mut self.frames);
+        run(&self.gpu, library.compiler(), device, &search).map_err(HeadlessError::Settings)
+    }
+}
