@@ -153,7 +153,9 @@ fn shown<'a>(wanted: Option<&str>, lines: &'a [LineOfTrace]) -> Result<Vec<&'a L
         let mut files: Vec<&str> = lines.iter().map(|line| line.file.as_str()).collect();
         files.dedup();
         let list = files.join(", ");
-        return Err(Failure::Input(format!("no statement of {wanted} was reached at this pixel; these files have some: {list}")));
+        return Err(Failure::Input(format!(
+            "no statement of {wanted} was reached at this pixel; these files have some: {list}"
+        )));
     }
     Ok(shown)
 }

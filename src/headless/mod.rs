@@ -26,9 +26,9 @@ use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
 pub use draw::Step;
 pub use error::HeadlessError;
-pub use traced_pixel::{Search, first_not_finite, trace_pixel};
 pub use sequence::Sequence;
 pub use thumbnails::Thumbnail;
+pub use traced_pixel::{Search, first_not_finite, trace_pixel};
 
 /// A session, a device and one view.
 pub struct Headless {

@@ -35,7 +35,7 @@ impl Search<'_> {
 
     /// The fragment stage that draws the mode. `None` if a pass or random paths do.
     fn stage(&self) -> Option<String> {
-        (!mode_sets([self.mode], 1).is_empty()).then(|| self.state(self.picture.shaders).pipelines.stage)
+        (!mode_sets([self.mode], 1).is_empty()).then(|| self.state(self.picture.shaders).pipelines.stage.clone())
     }
 
     fn check(&self) -> Result<(), String> {
@@ -58,7 +58,7 @@ impl Search<'_> {
         self.check()?;
         let bound = resources.bind_variant(&set, &state).map_err(|error| error.to_string())?;
         let frame = bound.ok_or("the light of the picture is being baked")?;
-        let mut draw = || {
+        let draw = || {
             let mut pixel = PixelModes::new(gpu, resources.layouts(), 1)?;
             let mut encoder = frames.begin()?;
             pixel.draw(&mut encoder, 0, &frame, self.at)?;
@@ -121,7 +121,8 @@ pub fn trace_pixel(
         encoder.buffers_written();
     })?;
     let bytes = log.read();
-    let words: Vec<u32> = bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+    let words: Vec<u32> =
+        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
     Ok(Trace::new(&traced, &words, &plain))
 }
 

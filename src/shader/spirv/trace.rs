@@ -123,7 +123,8 @@ pub fn trace(words: &[u32], function: &str, told: Told) -> Option<Traced> {
     let mut functions = std::mem::take(&mut module.functions);
     let (places, tellings) = (Vec::new(), Vec::new());
     let of = &mut module;
-    let mut tracer = Tracer { module: of, names, members, function: id, void, uint, vectors, zero, one, places, tellings, told };
+    let mut tracer =
+        Tracer { module: of, names, members, function: id, void, uint, vectors, zero, one, places, tellings, told };
     for function in &mut functions {
         let line = function.head.iter().copied().find(|i| i.op == Op::Line);
         function.head.retain(|i| !is_line(*i));
@@ -201,8 +202,12 @@ impl Tracer<'_> {
             if self.told == Told::All {
                 // A merge instruction and the branch behind it stay together.
                 let is_merge = matches!(i.op, Op::SelectionMerge | Op::LoopMerge);
-                let follows_merge = out.last().is_some_and(|i: &Instruction| matches!(i.op, Op::SelectionMerge | Op::LoopMerge));
-                let told = body[at..].iter().copied().find(|i| !is_line(*i) && !matches!(i.op, Op::SelectionMerge | Op::LoopMerge));
+                let follows_merge =
+                    out.last().is_some_and(|i: &Instruction| matches!(i.op, Op::SelectionMerge | Op::LoopMerge));
+                let told = body[at..]
+                    .iter()
+                    .copied()
+                    .find(|i| !is_line(*i) && !matches!(i.op, Op::SelectionMerge | Op::LoopMerge));
                 match told {
                     Some(next) if is_merge => self.tell_all(&mut out, next, line),
                     _ if follows_merge => {}
@@ -242,7 +247,9 @@ impl Tracer<'_> {
         };
         let file = line.and_then(|line| file_of(self.module, &self.module[line]));
         // The end of a function without a value has no line.
-        let Some((file, line)) = file.or_else(|| (purpose == Purpose::Leave).then(|| (String::new(), 0))) else { return };
+        let Some((file, line)) = file.or_else(|| (purpose == Purpose::Leave).then(|| (String::new(), 0))) else {
+            return;
+        };
         self.tell_at(out, Place { file, line, purpose }, value);
     }
 
@@ -250,7 +257,8 @@ impl Tracer<'_> {
     fn enter(&mut self, function: &mut Function, line: Option<Instruction>) {
         let name = self.names.get(&function.id).map(|name| name.split('(').next().unwrap_or_default().to_owned());
         let file = line.and_then(|line| file_of(self.module, &self.module[line]));
-        let ((Some(name), Some((file, line))), Some(Block { body, .. })) = ((name, file), function.blocks.first_mut()) else {
+        let ((Some(name), Some((file, line))), Some(Block { body, .. })) = ((name, file), function.blocks.first_mut())
+        else {
             return;
         };
         let mut out = Vec::new();
@@ -398,12 +406,17 @@ impl Tracer<'_> {
         let parts: Vec<Id> = match self.module.get_type(kind) {
             _ if !self.has_told(kind) => return,
             Some(Type::Vector { count, of }) => {
-                return self.kind(of).into_iter().for_each(|kind| self.call(out, kind, Some(value), count, path.clone()));
+                return self
+                    .kind(of)
+                    .into_iter()
+                    .for_each(|kind| self.call(out, kind, Some(value), count, path.clone()));
             }
             Some(Type::Matrix { column: of, count }) => vec![of; count as usize],
             Some(Type::Array { of, length }) => vec![of; self.module.number(length).unwrap_or(0) as usize],
             Some(Type::Struct { members }) => members.to_vec(),
-            _ => return self.kind(kind).into_iter().for_each(|kind| self.call(out, kind, Some(value), 1, path.clone())),
+            _ => {
+                return self.kind(kind).into_iter().for_each(|kind| self.call(out, kind, Some(value), 1, path.clone()));
+            }
         };
         for (place, part) in (0..).zip(parts) {
             if self.has_told(part) {

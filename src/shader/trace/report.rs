@@ -101,7 +101,9 @@ impl Trace {
             return "it is hidden or blended over".to_owned();
         }
         let steps = color.iter().zip(self.picture).map(|(traced, shown)| traced.abs_diff(shown)).max().unwrap_or(0);
-        format!("{steps} ulp from the picture: another surface is blended with it, or the driver computes it in another order")
+        format!(
+            "{steps} ulp from the picture: another surface is blended with it, or the driver computes it in another order"
+        )
     }
 }
 
@@ -213,7 +215,8 @@ impl Assertion {
     /// # Errors
     /// A message with the form that was expected.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = || format!("'{text}' is no assertion: expected FILE:LINE NAME > NUMBER, as 'brdf/ndf.glsl:24 spread > 0'");
+        let expected =
+            || format!("'{text}' is no assertion: expected FILE:LINE NAME > NUMBER, as 'brdf/ndf.glsl:24 spread > 0'");
         let words: Vec<&str> = text.split_whitespace().collect();
         let [place, name, comparison, limit] = words.as_slice() else { return Err(expected()) };
         let (file, line) = place.rsplit_once(':').ok_or_else(expected)?;
@@ -255,7 +258,10 @@ impl Assertion {
         if values.is_empty() {
             let known: Vec<String> = here().flat_map(|line| &line.done).map(Done::text).collect();
             let known = if known.is_empty() { "nothing".to_owned() } else { known.join("   ") };
-            return Err(format!("{}: no value of `{}` was computed at this pixel; the line has {known}", self.text, self.name));
+            return Err(format!(
+                "{}: no value of `{}` was computed at this pixel; the line has {known}",
+                self.text, self.name
+            ));
         }
         let fails = |value: &TracedValue| match component {
             Some(at) => value.numbers().nth(at).is_none_or(|number| !self.comparison.holds(number, self.limit)),
@@ -317,7 +323,9 @@ mod tests {
         ])
         .lines(0);
         let check = |text: &str| Assertion::parse(text).unwrap().check(&lines);
-        for text in ["a.glsl:3 n >= 0", "a.glsl:3 n.y > 0.5", "a.glsl:3 n.x == 0", "a.glsl:4 d < 1", "a.glsl:5 return != 0"] {
+        for text in
+            ["a.glsl:3 n >= 0", "a.glsl:3 n.y > 0.5", "a.glsl:3 n.x == 0", "a.glsl:4 d < 1", "a.glsl:5 return != 0"]
+        {
             assert_eq!(check(text), Ok(()));
         }
         for (text, words) in [

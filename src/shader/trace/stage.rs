@@ -95,7 +95,8 @@ fn listening(text: &str, listener: &Listener) -> Result<String, &'static str> {
     let main = main_of(&code(text)).ok_or("has no main()")?;
     let color = color_of(text).ok_or("has no `out vec4` color")?;
     let (before, after) = (&text[..main.start], &text[main.end..]);
-    let before = match (listener.extension, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?))) {
+    let before = match (listener.extension, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?)))
+    {
         ("", _) | (_, None) => before.to_owned(),
         (extension, Some(end)) => {
             let next = before[..=end].lines().count() + 1;

@@ -81,7 +81,11 @@ impl TracedValue {
             NumberKind::Uint => json!(bits),
             NumberKind::Bool => json!(bits != 0),
         };
-        if self.count == 1 { one(self.bits[0]) } else { self.bits[..self.count].iter().map(|bits| one(*bits)).collect() }
+        if self.count == 1 {
+            one(self.bits[0])
+        } else {
+            self.bits[..self.count].iter().map(|bits| one(*bits)).collect()
+        }
     }
 }
 
