@@ -1,5 +1,6 @@
 //! All settings of the user in one serde struct. The window, `--set`, look files and the tests all use it.
 
+mod added;
 mod alike;
 mod animation;
 mod assign;
@@ -26,6 +27,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use added::{AddedModel, MOST_ADDED};
 pub use animation::AnimationSettings;
 pub use assign::unknown_setting;
 pub use camera::CameraSettings;
@@ -67,6 +69,9 @@ settings! {
         scene: SceneSettings;
         /// Where the model stands.
         model: ModelSettings;
+        /// Models beside the first: `added.0.file`, and where each stands, as `added.0.place.scale`.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        added: Vec<AddedModel>;
         /// Animations of the model.
         animation: AnimationSettings;
         /// Environment.

@@ -10,6 +10,8 @@ use crate::threads::NoDialog;
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
 const EXTENSIONS: [&str; 12] =
     ["gltf", "glb", "zip", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
+/// Extensions of models.
+const MODELS: [&str; 3] = ["gltf", "glb", "zip"];
 /// Extensions of pictures.
 const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
 /// Nobody cancels a dialog in less time than this. The portal reports a cancel and its own absence in the same way.
@@ -25,6 +27,10 @@ pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, NoDialog> {
         Dialog::File => {
             let files = rfd::FileDialog::new().set_title("Open a model, environment or shader");
             files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_file()
+        }
+        Dialog::Beside => {
+            let files = rfd::FileDialog::new().set_title("Add a model");
+            files.add_filter("Models", &MODELS).add_filter("All files", &["*"]).pick_file()
         }
         Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
         Dialog::Picture => {

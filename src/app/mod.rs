@@ -245,7 +245,8 @@ impl ApplicationHandler<Message> for App {
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         let Some(open) = self.open.as_mut().filter(|open| !open.dropped.is_empty()) else { return };
-        let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped));
+        let adds = open.drawing.interface.mouse.modifiers.shift_key();
+        let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped), adds);
         dropped.into_iter().for_each(|command| command::execute(&mut open.state, &mut open.engine, command));
         open.drawing.interface.outdate();
         open.window.request_redraw();

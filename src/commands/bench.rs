@@ -31,7 +31,7 @@ const THUMBNAIL: [u32; 2] = [96, 72];
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_files(&mut args.model)?;
+    args.common.take_files(&mut args.models)?;
     let gpu = args.common.gpu_without_pipelines()?;
     let compiler = compiler()?;
     compiler.warm();

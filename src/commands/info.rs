@@ -2,23 +2,21 @@
 
 mod stages;
 
-use std::path::PathBuf;
-
 use serde_json::json;
 use specula::gpu::{AdapterInfo, GpuError, adapters};
 use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};
 use specula::message::escape;
 use specula::scene::{Clip, Material, Model, Primitive, Skin, TextureSource, Topology, slot_name, texture_sources};
 
-use super::common::Common;
+use super::common::{Common, Models};
 use super::{Failure, print_json};
 use stages::Stages;
 
 /// Options of `info`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
+    #[command(flatten)]
+    models: Models,
     /// Also list the stages of the picture: words of SPIR-V, compile times, and the driver's registers, instructions and spills
     #[arg(long)]
     stages: bool,
@@ -30,9 +28,10 @@ pub struct Args {
 }
 
 /// Runs the command. It works without Vulkan too, and then prints why there is no device.
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(mut args: Args) -> Result<(), Failure> {
+    args.common.take_files(&mut args.models)?;
     let devices = adapters();
-    let model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model(args.models.model.as_deref())?;
     let source = args.common.source()?;
     let tree = source.location().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
     if args.json {

@@ -136,7 +136,7 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Render(args)) => render::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
         Some(Command::Check(args)) => check::run(&args),
-        Some(Command::Info(args)) => info::run(&args),
+        Some(Command::Info(args)) => info::run(args),
         Some(Command::New(args)) => new::run(&args),
         Some(Command::Learn(args)) => learn::run(args, start),
         Some(Command::Bench(args)) => bench::run(args, start),

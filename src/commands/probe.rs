@@ -1,7 +1,5 @@
 //! `specula probe`: the raw values of one pixel in every debug mode, with camera and lights.
 
-use std::path::PathBuf;
-
 use serde_json::{Map, Value, json};
 use specula::frame::FrameState;
 use specula::headless::Headless;
@@ -14,7 +12,7 @@ use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::frames::Frames;
 use super::common::parse::pixel;
-use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
+use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json, tell_left_out};
 
@@ -35,8 +33,8 @@ use super::{Failure, print_json, tell_left_out};
     (KHR_lights_punctual)."
 )]
 pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
+    #[command(flatten)]
+    models: Models,
     /// Pixel to read, counted from the upper left corner
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
@@ -54,7 +52,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args) -> Result<(), Failure> {
-    args.common.take_files(&mut args.model)?;
+    args.common.take_files(&mut args.models)?;
     let mut slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
     let (width, height) = args.common.size();
@@ -76,7 +74,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     slugs.iter().for_each(|slug| warn_unmeasured(slug, &settings));
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;
-    let model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model(args.models.model.as_deref())?;
     args.common.fit(&model, &mut settings)?;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");

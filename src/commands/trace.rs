@@ -1,14 +1,12 @@
 //! `specula trace`: what every statement computes at a pixel.
 
-use std::path::PathBuf;
-
 use serde_json::json;
 use specula::headless::Headless;
 use specula::shader::trace::{Assertion, LineOfTrace, Trace};
 
 use super::common::frames::Frames;
 use super::common::parse::pixel;
-use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
+use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json};
 
@@ -25,8 +23,8 @@ use super::{Failure, print_json};
     a component, as n.x. NAME can be `return` or `condition`."
 )]
 pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
+    #[command(flatten)]
+    models: Models,
     /// Pixel, counted from the upper left corner
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
@@ -50,7 +48,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args) -> Result<(), Failure> {
-    args.common.take_files(&mut args.model)?;
+    args.common.take_files(&mut args.models)?;
     let (x, y) = args.at;
     let (width, height) = args.common.size();
     if x >= width || y >= height {
@@ -69,7 +67,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     warn_unmeasured(&settings.mode, &settings);
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;
-    let model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model(args.models.model.as_deref())?;
     args.common.fit(&model, &mut settings)?;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");

@@ -14,11 +14,12 @@ use super::material_variant::shared_features;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR};
 use crate::scene::{
-    self, AlphaMode, Instance, Material, Model, Playing, Pose, Sides, Topology, moved_materials, override_material,
-    replace_channels, replace_factors,
+    self, AlphaMode, Instance, Material, Model, Places, Playing, Pose, Sides, Topology, moved_materials,
+    override_material, replace_channels, replace_factors,
 };
 use crate::settings::{
-    AnimationSettings, MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings,
+    AddedModel, AnimationSettings, MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings,
+    Settings,
 };
 
 /// The settings that turn a model into a scene.
@@ -30,6 +31,7 @@ struct Look {
     materials: BTreeMap<String, MaterialValues>,
     parts: SceneSettings,
     place: ModelSettings,
+    added: Vec<AddedModel>,
 }
 
 impl Look {
@@ -42,13 +44,18 @@ impl Look {
             materials: settings.materials.clone(),
             parts: settings.scene.clone(),
             place: settings.model,
+            added: settings.added.clone(),
         }
     }
 
+    fn places(&self, model: &Model) -> Places {
+        model.places(&self.place, &self.added)
+    }
+
     fn is_of(&self, model: &Model, settings: &Settings) -> bool {
-        let Settings { material, materials, scene, model: place, variant, .. } = settings;
+        let Settings { material, materials, scene, model: place, added, variant, .. } = settings;
         let replaces = material.enabled || !material.channels.is_empty();
-        (&self.materials, &self.parts, &self.place) == (materials, scene, place)
+        (&self.materials, &self.parts, &self.place, &self.added) == (materials, scene, place, added)
             && self.material == replaces.then_some(*material)
             && self.variant == model.variant(variant).unwrap_or(None)
     }
@@ -119,13 +126,13 @@ impl Scene {
         if *self.playing == *playing && *self.held == *held {
             return Self { is_animated, is_playing, ..self.clone() };
         }
-        let place = self.look.place.transform();
+        let places = self.look.places(&self.loaded);
         let are_same = |(a, b): (&Playing, &Playing)| (a.clip, a.weight) == (b.clip, b.weight);
         let is_same_mix = *self.held == *held
             && self.playing.len() == playing.len()
             && self.playing.iter().zip(&playing).all(are_same);
-        let extent = if is_same_mix { self.model.whole_extent() } else { self.loaded.extent(&playing, &held, place) };
-        let model = Arc::new(self.loaded.posed(&self.loaded.pose_with(&playing, &held, place).into(), &extent));
+        let extent = if is_same_mix { self.model.whole_extent() } else { self.loaded.extent(&playing, &held, &places) };
+        let model = Arc::new(self.loaded.posed(&self.loaded.pose_with(&playing, &held, &places).into(), &extent));
         let has_same_materials = model.pose.has_same_materials(&self.model.pose);
         let (playing, held) = (playing.into(), held.into());
         let scene = Self { model, playing, held, is_animated, is_playing, ..self.clone() };
@@ -147,10 +154,11 @@ impl Scene {
         let look = Look::new(loaded, settings);
         let playing = loaded.playing(&settings.animation, time_s);
         let held = loaded.held_weights(&settings.animation);
-        let model = match (look.place.transform(), playing.as_slice(), held.as_slice()) {
-            (None, [], []) => loaded.clone(),
-            (Some(place), [], []) => Arc::new(loaded.placed(place)),
-            (place, playing, held) => Arc::new(loaded.at(playing, held, place)),
+        let places = look.places(loaded);
+        let model = match (&places, playing.as_slice(), held.as_slice()) {
+            (places, [], []) if *places == Places::default() => loaded.clone(),
+            (Places { whole: Some(place), .. }, [], []) => Arc::new(loaded.placed(*place)),
+            (places, playing, held) => Arc::new(loaded.at(playing, held, places)),
         };
         let scene = Self {
             is_animated: loaded.is_animated(&settings.animation, &playing),

@@ -49,6 +49,8 @@ struct Files {
     shaders: Option<PathBuf>,
     environment: Option<PathBuf>,
     measured: Option<PathBuf>,
+    /// The models beside the first; an empty path for one that is built in.
+    added: Vec<PathBuf>,
     /// The folder for which the picture was written, where the files are found if the picture alone was moved.
     folder: Option<PathBuf>,
 }
@@ -65,6 +67,7 @@ impl Files {
             shaders: work.tree.as_deref().and_then(place),
             environment: place(Path::new(&work.settings.environment.name)),
             measured: place(Path::new(&work.settings.measured)),
+            added: work.settings.added.iter().map(|model| place(Path::new(&model.file)).unwrap_or_default()).collect(),
             folder: in_full(folder).ok(),
         }
     }
@@ -83,6 +86,8 @@ impl Files {
         };
         put(&mut settings.environment.name, self.environment);
         put(&mut settings.measured, self.measured);
+        let files = self.added.into_iter().map(|path| Some(path).filter(|path| !path.as_os_str().is_empty()));
+        settings.added.iter_mut().zip(files).for_each(|(model, path)| put(&mut model.file, path));
         Look { settings, model: self.model.map(found), scene: self.scene, shaders: self.shaders.map(found) }
     }
 }

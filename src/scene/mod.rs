@@ -17,6 +17,7 @@ mod lights;
 mod load_options;
 mod material;
 mod measured;
+mod members;
 pub mod mips;
 mod model;
 mod motion;
@@ -29,6 +30,7 @@ mod placed;
 mod posing;
 mod replace;
 mod texture_source;
+mod together;
 mod visibility;
 
 use std::path::{Path, PathBuf};
@@ -44,6 +46,7 @@ pub use gltf::{find_model, triangles};
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
 pub use load_options::{Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
+pub use members::{Member, Places};
 pub use model::*;
 pub use motion::{Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Skin, Target};
 pub use pack::pack_material;
@@ -53,7 +56,8 @@ pub use posing::{held_entry, moved_materials};
 pub use replace::{material_factors, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};
 
-/// Loads a file, or else the built-in model of that name. Without a path, loads the first built-in model.
+/// Loads a file, or else the built-in model of that name. Without a path, loads the first built-in model. Those that `options` add stand
+/// beside it.
 ///
 /// # Errors
 /// As [`load`].
@@ -66,6 +70,22 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
 /// # Errors
 /// As [`load`], or [`Problem::Canceled`].
 pub fn open_unless(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
+    let first = open_one(path, options, canceled)?;
+    if options.added.is_empty() {
+        return Ok(first);
+    }
+    let own = LoadOptions { scene: None, ..options.clone() };
+    let mut models = vec![(String::new(), first)];
+    for file in &options.added {
+        let loaded = open_one(Some(Path::new(file)), &own, canceled);
+        let tried = || models.iter().flat_map(|(_, model)| model.files.iter().cloned());
+        let model = loaded.map_err(|error| LoadError { files: tried().chain(error.files).collect(), ..error })?;
+        models.push((file.clone(), model));
+    }
+    Ok(together::side_by_side(models))
+}
+
+fn open_one(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
     let name = path.map_or(Some(BUILT_IN[0]), |path| if path.exists() { None } else { path.to_str() });
     match (name.and_then(built_in), path) {
         (Some(model), _) => model,

@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 
 pub use super::bounds::Bounds;
 pub use super::material::*;
+use super::members::Member;
 use super::motion::{Deformation, Motion, Pose};
 pub use super::objects::*;
 pub use crate::interface::Vertex;
@@ -35,6 +36,8 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Cameras, placed in the world.
     pub cameras: Vec<Camera>,
+    /// The models that are shown together; empty for a single one.
+    pub members: Arc<Vec<Member>>,
     /// How the model can move.
     pub motion: Arc<Motion>,
     /// Where everything is: the instances, lights and cameras above, and the joints and morph weights of deformed instances.

@@ -58,7 +58,7 @@ impl Model {
     /// The model in its own pose moved by `transform`, which preserves angles, with its lights and cameras. It shares the geometry.
     #[must_use]
     pub fn placed(&self, transform: Mat4) -> Self {
-        let mut model = self.at(&[], &[], Some(transform));
+        let mut model = self.at(&[], &[], &Some(transform).into());
         if model.pose.joints.is_empty() && model.pose.weights.is_empty() {
             model.bounds = model.instance_bounds();
         }

@@ -52,6 +52,7 @@ impl Settings {
             materials,
             scene,
             model,
+            added,
             environment,
             measured,
             expression,
@@ -60,7 +61,7 @@ impl Settings {
             passes,
             shader,
         } = self;
-        let of_model = (variant, material, materials, scene, model);
+        let of_model = (variant, material, materials, scene, model, added);
         (of_model, environment, measured, expression, view, bookmarks, passes, shader)
     }
 }

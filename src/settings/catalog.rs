@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::Settings;
 use super::entry::Entry;
 use super::part::Part as _;
 use super::setting::Setting;
+use super::{Settings, added};
 use crate::message;
 
 /// All settings: those at the top, then group by group in the order of their declaration.
@@ -25,9 +25,11 @@ pub fn catalog() -> &'static [Setting] {
 /// The setting at a path, or the one that has the number at this path.
 pub fn setting(path: &str) -> Option<&'static Setting> {
     let at = |path: &str| catalog().iter().find(|setting| setting.path == path);
-    at(path).or_else(|| {
+    at(path).or_else(|| added::setting(path)).or_else(|| {
         let (whole, index) = path.rsplit_once('.')?;
-        at(whole).filter(|setting| setting.takes == "3 numbers" && index.parse::<usize>().is_ok())
+        at(whole)
+            .or_else(|| added::setting(whole))
+            .filter(|setting| setting.takes == "3 numbers" && index.parse::<usize>().is_ok())
     })
 }
 

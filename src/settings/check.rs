@@ -1,7 +1,7 @@
 //! Checks of all settings.
 
 use super::catalog::catalog;
-use super::{Settings, factors};
+use super::{Settings, added, factors};
 
 impl Settings {
     /// Checks that every value is valid.
@@ -13,6 +13,7 @@ impl Settings {
             self.value(&setting.path).map_or(Ok(()), |value| setting.entry.check(&setting.path, &value))?;
         }
         factors::check(&self.materials)?;
+        added::check(&self.added)?;
         let camera = &self.camera;
         for (name, vector) in [("camera.eye", camera.eye), ("camera.target", camera.target), ("camera.up", camera.up)] {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {

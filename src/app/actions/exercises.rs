@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compare::write_files;
-use crate::app::actions::files::{edit, find_tree, load_model};
+use crate::app::actions::files::{edit, find_tree, load_models};
 use crate::app::editor::Place;
 use crate::app::engine::Engine;
 use crate::app::state::State;
@@ -84,8 +84,9 @@ pub(in crate::app) fn on_prepared(
     find_tree(state, engine, &folder);
     let model = PathBuf::from(&exercise.model);
     let is_default = exercise.model == crate::scene::BUILT_IN[0] && state.model.requested.is_none();
-    if state.model.requested.as_ref() != Some(&model) && !is_default {
-        load_model(state, engine, Some(model));
+    let is_alone = state.load_options.added.is_empty();
+    if !is_alone || (state.model.requested.as_ref() != Some(&model) && !is_default) {
+        load_models(state, engine, Some(model), Vec::new());
     }
 }
 

@@ -6,7 +6,7 @@ use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
 use crate::app::source_line::stop;
 use crate::app::state::State;
-use crate::settings::Settings;
+use crate::settings::{AddedModel, Settings};
 use crate::shader::{Change, Source};
 use crate::threads::Message;
 use std::path::Path;
@@ -14,10 +14,39 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Loads a model. The current model stays until the new one is ready.
+/// Loads a model, with the models beside it. What is on screen stays until all are ready.
 pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: Option<PathBuf>) {
-    engine.threads.loader.load(path.clone(), state.load_options);
+    engine.threads.loader.load(path.clone(), state.load_options.clone());
     begin_loading(state, path);
+}
+
+/// Loads a model with these beside it. If it can be loaded, the settings have these from then on.
+pub(in crate::app) fn load_models(
+    state: &mut State,
+    engine: &mut Engine,
+    first: Option<PathBuf>,
+    added: Vec<AddedModel>,
+) {
+    state.load_options.added = added.iter().map(|model| model.file.clone()).collect();
+    state.model.added = Some(added);
+    load_model(state, engine, first);
+}
+
+/// The first of the models that are shown, or that are being loaded, and those beside it.
+pub(in crate::app) fn wanted_models(state: &State) -> (Option<PathBuf>, Vec<AddedModel>) {
+    let path = if state.model.loading { &state.model.requested } else { &state.model.path };
+    let added = state.model.added.as_ref().unwrap_or(&state.session.settings.added);
+    (path.clone(), added.clone())
+}
+
+/// Loads the models that the settings have beside the first, if others were asked for: an undo, a look or a session has changed them.
+pub(in crate::app) fn follow_added(state: &mut State, engine: &mut Engine) {
+    let wanted = state.session.settings.added.iter().map(|model| &model.file);
+    if state.model.added.is_none() && !wanted.eq(&state.load_options.added) {
+        state.load_options.added = state.session.settings.added_files();
+        let (first, _) = wanted_models(state);
+        load_model(state, engine, first);
+    }
 }
 
 /// Notes that the model of `path` is being loaded, and watches the file while it is read.

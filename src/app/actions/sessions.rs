@@ -45,7 +45,9 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
         None => now.model.clone(),
     };
     let scene = if look.model.is_some() { look.scene } else { now.scene };
-    let loads = scene != now.scene || is_other(model.as_deref(), now.model.as_deref());
+    let loads = scene != now.scene
+        || look.settings.added_files() != now.settings.added_files()
+        || is_other(model.as_deref(), now.model.as_deref());
     let tree = look.shaders.or(now.tree);
     go_to(state, engine, SessionState { settings: Arc::new(look.settings), model: model.clone(), scene, tree });
     loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
@@ -58,8 +60,11 @@ fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model,
         find_tree(state, engine, &full_path(&tree));
     }
     state.session.settings = Arc::unwrap_or_clone(settings);
-    if scene != now.scene || is_other(model.as_deref(), now.model.as_deref()) {
+    let added = state.session.settings.added_files();
+    if scene != now.scene || added != now.settings.added_files() || is_other(model.as_deref(), now.model.as_deref()) {
         state.load_options.scene = scene;
+        state.load_options.added = added;
+        state.model.added = None;
         state.model.keeps_camera = true;
         load_model(state, engine, model);
     }

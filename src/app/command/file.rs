@@ -8,7 +8,7 @@ use super::fields::{Fields, needs};
 use super::program::SAY;
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
-use crate::app::actions::files::{begin_reading, edit, find_tree, load_model};
+use crate::app::actions::files::{begin_reading, edit, find_tree, load_models, wanted_models};
 use crate::app::actions::sessions::restore_session;
 use crate::app::dialog;
 use crate::app::editor::Place;
@@ -20,6 +20,7 @@ use crate::file_kind::{self, FileKind};
 use crate::message::did_you_mean;
 use crate::picture::read_checked_look;
 use crate::scene::{BUILT_IN, Problem, find_model};
+use crate::settings::{AddedModel, MOST_ADDED};
 use crate::shader::Source;
 use crate::threads::Message;
 
@@ -29,6 +30,8 @@ pub(in crate::app) enum Open {
     /// By the kind of the file.
     File(PathBuf),
     Model(PathBuf),
+    /// A model that is shown beside those on screen.
+    Beside(PathBuf),
     Environment(PathBuf),
     Tree(PathBuf),
     Look(PathBuf),
@@ -36,10 +39,20 @@ pub(in crate::app) enum Open {
 }
 
 pub(in crate::app) static OPEN: Spec<Open> = Spec::new("open", open).parsed(
-    r#""file" | "model" | "environment" | "tree" | "look" | "measured": "path or name""#,
-    "Opens a file or folder. Done when its final picture is on screen",
+    r#""file" | "model" | "beside" | "environment" | "tree" | "look" | "measured": "path or name""#,
+    "Opens a file or folder; `beside` shows a model beside those on screen. Done when its final picture is on screen",
     parse,
 );
+
+/// Shows one of the models beside the first no longer, by its number from 0.
+pub(in crate::app) static REMOVE_MODEL: Spec<usize> = Spec::new("remove-model", |state, engine, number| {
+    let (first, mut added) = wanted_models(state);
+    if number >= added.len() {
+        return Err(format!("no model {number} is shown beside the first; there are {}", added.len()));
+    }
+    added.remove(number);
+    Ok(show_models(state, engine, first, added))
+});
 
 pub(in crate::app) static SHOW_GALLERY: Spec<()> =
     Spec::plain("gallery", |state, _, ()| state.workspace.request(PanelRequest::ShowGallery))
@@ -62,6 +75,11 @@ pub(in crate::app) static CHOOSE: Spec<Dialog> = Spec::new("choose", choose)
     .arguments(|_| Dialog::File)
     .label("Open a file", "model environment shader measured BRDF")
     .shortcuts(Group::Program, &[Shortcut::key('o').ctrl()], "open a model, an environment or a shader");
+
+/// Shows a model that the user chooses beside those on screen.
+pub(in crate::app) static CHOOSE_BESIDE: Spec<()> =
+    Spec::fallible("choose-beside", |state, engine, ()| choose(state, engine, Dialog::Beside))
+        .label("Add a model beside this one", "open several second compare side by side");
 
 pub(in crate::app) static CHOOSE_TREE: Spec<()> =
     Spec::fallible("choose-tree", |state, engine, ()| choose(state, engine, Dialog::Tree))
@@ -95,12 +113,14 @@ pub(in crate::app) static OPEN_PATH: Spec<()> =
 pub(in crate::app) static EDIT: Spec<Place> =
     Spec::new("edit", |_, engine, place: Place| edit(engine, &place).map(|()| Until::DONE));
 
-/// The commands for files and folders that were dropped together. While pictures are compared, another picture takes part.
-pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>) -> Vec<Command> {
+/// The commands for files and folders that were dropped together. The first model is opened, and the others stand beside it; all do if the drop
+/// `adds`. While pictures are compared, another picture takes part.
+pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>, adds: bool) -> Vec<Command> {
     if let [path] = paths.as_slice() {
-        return vec![match state.compare.takes(path) {
-            true => COMPARE.with(CompareFields::file(path.clone())),
-            false => OPEN.with(Open::File(path.clone())),
+        return vec![match FileKind::of(path) {
+            FileKind::Model | FileKind::Folder if adds => OPEN.with(Open::Beside(path.clone())),
+            _ if state.compare.takes(path) => COMPARE.with(CompareFields::file(path.clone())),
+            _ => OPEN.with(Open::File(path.clone())),
         }];
     }
     let kinds: Vec<FileKind> = paths.iter().map(|path| FileKind::of(path)).collect();
@@ -119,12 +139,20 @@ pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>) -> Vec<Command
             FileKind::Folder => FileKind::Model,
             other => other,
         };
-        match kind != FileKind::Other && opened.iter().all(|(other, _)| place(*other) != place(kind)) {
+        let is_first = opened.iter().all(|(other, _)| place(*other) != place(kind));
+        match kind != FileKind::Other && (is_first || place(kind) == FileKind::Model) {
             true => opened.push((kind, path)),
             false => left.push(path.file_name().unwrap_or_default().to_string_lossy().into_owned()),
         }
     }
-    let mut commands: Vec<Command> = opened.iter().map(|(_, path)| OPEN.with(Open::File((*path).clone()))).collect();
+    let mut has_model = adds;
+    let mut open = |(kind, path): &(FileKind, &PathBuf)| {
+        let is_model = matches!(kind, FileKind::Model | FileKind::Folder);
+        let is_beside = is_model && has_model;
+        has_model |= is_model;
+        OPEN.with(if is_beside { Open::Beside((*path).clone()) } else { Open::File((*path).clone()) })
+    };
+    let mut commands: Vec<Command> = opened.iter().map(&mut open).collect();
     if let Some(first) = left.first() {
         let more = if left.len() > 1 { format!(" and {} more", left.len() - 1) } else { String::new() };
         commands.push(SAY.with(format!("Not opened: {first}{more}. Drop one file of a kind at a time")));
@@ -137,6 +165,7 @@ pub(in crate::app) fn chosen(dialog: Option<Dialog>, path: PathBuf) -> Command {
     match dialog {
         Some(Dialog::Picture) => COMPARE.with(CompareFields::file(path)),
         Some(Dialog::SecondTree) => COMPARE.with(CompareFields::tree(path)),
+        Some(Dialog::Beside) => OPEN.with(Open::Beside(path)),
         Some(Dialog::New) => NEW_TREE.with(Some(path)),
         _ => OPEN.with(Open::File(path)),
     }
@@ -156,8 +185,16 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
     Ok(match what {
         Open::File(path) => return open(state, engine, by_kind(path)?),
         Open::Model(path) => {
-            load_model(state, engine, Some(path.clone()));
+            load_models(state, engine, Some(path.clone()), Vec::new());
             Until::Model(path)
+        }
+        Open::Beside(path) => {
+            let (first, mut added) = wanted_models(state);
+            if added.len() == MOST_ADDED {
+                return Err(format!("{} models are shown already, and no more can be", MOST_ADDED + 1));
+            }
+            added.push(AddedModel::new(&path.display().to_string()));
+            return Ok(show_models(state, engine, first, added));
         }
         Open::Environment(path) => {
             let before = state.session.shared_settings();
@@ -183,6 +220,13 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::SHOWN
         }
     })
+}
+
+/// Shows these models beside the first.
+fn show_models(state: &mut State, engine: &mut Engine, first: Option<PathBuf>, added: Vec<AddedModel>) -> Until {
+    let first = first.unwrap_or_else(|| BUILT_IN[0].into());
+    load_models(state, engine, Some(first.clone()), added);
+    Until::Model(first)
 }
 
 /// How to open a file or folder.
@@ -216,9 +260,10 @@ fn by_kind(path: PathBuf) -> Result<Open, String> {
 type Kind = fn(PathBuf) -> Open;
 
 /// The field that names each kind.
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 7] = [
     ("file", Open::File),
     ("model", Open::Model),
+    ("beside", Open::Beside),
     ("environment", Open::Environment),
     ("tree", Open::Tree),
     ("look", Open::Look),
@@ -236,7 +281,7 @@ fn parse(about: &About, fields: Fields) -> Result<Open, String> {
     })?;
     let is_known = |path: &Path| BUILT_IN.iter().any(|name| Path::new(name) == path) || path.exists();
     match kind.1(PathBuf::from(path)) {
-        Open::Model(path) if !is_known(&path) => {
+        Open::Model(path) | Open::Beside(path) if !is_known(&path) => {
             let hint = did_you_mean(&path.to_string_lossy(), BUILT_IN);
             Err(format!("{}: there is no such file, and no built-in model of this name.{hint}", path.display()))
         }
@@ -252,7 +297,7 @@ mod tests {
     /// The commands for files that are dropped together.
     fn drop_all(names: &[&str]) -> Vec<Command> {
         let state = State::new(Settings::of_window(), Source::embedded());
-        dropped(&state, names.iter().map(PathBuf::from).collect())
+        dropped(&state, names.iter().map(PathBuf::from).collect(), false)
     }
 
     fn open(name: &str) -> Command {
@@ -264,9 +309,20 @@ mod tests {
         let helmet = ["FlightHelmet.bin", "a.png", "FlightHelmet.gltf", "b.jpg", "notes.txt"];
         assert_eq!(drop_all(&helmet), [open("FlightHelmet.gltf")]);
         assert_eq!(drop_all(&["a.glb", "sky.hdr", "look.toml"])[..2], [open("a.glb"), open("sky.hdr")]);
-        let told = SAY.with("Not opened: b.glb and 1 more. Drop one file of a kind at a time".to_owned());
-        assert_eq!(drop_all(&["a.glb", "b.glb", "c.glb"]), [open("a.glb"), told]);
+        let told = SAY.with("Not opened: b.hdr and 1 more. Drop one file of a kind at a time".to_owned());
+        assert_eq!(drop_all(&["a.hdr", "b.hdr", "c.hdr"]), [open("a.hdr"), told]);
         assert_eq!(drop_all(&["a.bin"]), [open("a.bin")]);
+    }
+
+    #[test]
+    fn models_that_are_dropped_together_stand_side_by_side() {
+        let beside = |name: &str| OPEN.with(Open::Beside(name.into()));
+        assert_eq!(drop_all(&["a.glb", "a.bin", "b.glb", "c.zip"]), [open("a.glb"), beside("b.glb"), beside("c.zip")]);
+        let state = State::new(Settings::of_window(), Source::embedded());
+        let added = |names: &[&str]| dropped(&state, names.iter().map(PathBuf::from).collect(), true);
+        assert_eq!(added(&["a.glb"]), [beside("a.glb")]);
+        assert_eq!(added(&["a.glb", "sky.hdr", "b.glb"]), [beside("a.glb"), open("sky.hdr"), beside("b.glb")]);
+        assert_eq!(added(&["sky.hdr"]), [open("sky.hdr")]);
     }
 
     #[test]

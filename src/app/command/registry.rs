@@ -31,6 +31,8 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &layout::PANELS,
     &file::REFUSE_SESSION,
     &file::CHOOSE,
+    &file::CHOOSE_BESIDE,
+    &file::REMOVE_MODEL,
     &file::CHOOSE_TREE,
     &file::NEW_TREE,
     &file::EDIT,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::app::actions::edits::watch_expression;
 use crate::app::actions::exercises::check_exercise;
+use crate::app::actions::files::follow_added;
 use crate::app::engine::Engine;
 use crate::app::engine::last_complete::{LastComplete, target};
 use crate::app::frames::progress::is_settled;
@@ -48,6 +49,7 @@ fn frame_of_settings(
     size: (u32, u32),
     mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
 ) -> Result<Option<BoundFrame>, GpuError> {
+    follow_added(state, engine);
     let is_animated = state.is_animated();
     let clock = match is_animated && state.picture.rests() {
         true => state.playback.stay(),

@@ -21,12 +21,25 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
         return;
     }
     state.model.loading = false;
+    let added = state.model.added.take();
     match loaded.result {
         Ok(uploaded) => {
             // The pictures of older versions would keep the old model on the device.
             engine.generations.drop_pictures();
             engine.forget_second_picture();
             let (model, is_other) = (uploaded.model(), loaded.path != state.model.path);
+            if let Some(mut added) = added {
+                let before = &state.session.settings.added;
+                // They may have been moved while the new one was loading.
+                if added.len() > before.len() {
+                    added.iter_mut().zip(before).for_each(|(model, before)| model.place = before.place);
+                }
+                let is_added = added != *before;
+                state.session.settings.added = added;
+                if is_added && !is_other && !state.model.keeps_camera {
+                    state.frame_model();
+                }
+            }
             for warning in model.warnings.iter() {
                 message::warn(format_args!("{}: {warning}", model.name));
             }
@@ -66,6 +79,10 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
         }
         Err((message, tried)) => {
             state.model.keeps_camera = false;
+            if added.is_some() {
+                // Those that are on screen.
+                state.load_options.added = state.session.settings.added_files();
+            }
             // Watch the model on screen as well as the files that must be repaired.
             let on_screen = state.session.model().map(|model| model.files.clone()).unwrap_or_default();
             state.model.files = on_screen.iter().cloned().chain(tried).collect();

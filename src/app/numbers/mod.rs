@@ -155,7 +155,12 @@ impl Number {
 
     /// The setting as `--set` takes it.
     pub(super) fn option_value(&self, settings: &Settings) -> String {
-        settings.value(&self.path()).map(|value| value.to_string()).unwrap_or_default()
+        let default = match (&self.setting.default, self.axis) {
+            (Value::Numbers(numbers), Some(axis)) => Value::Number(numbers[axis]),
+            (default, _) => default.clone(),
+        };
+        // New settings have no added models.
+        settings.value(&self.path()).unwrap_or(default).to_string()
     }
 
     /// Unit, decimals and range.

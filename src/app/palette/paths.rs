@@ -77,6 +77,7 @@ fn is_for(dialog: Option<Dialog>, file: &Listed) -> bool {
     file.kind.is_folder()
         || match dialog {
             None | Some(Dialog::File) => file.kind != FileKind::Other,
+            Some(Dialog::Beside) => file.kind == FileKind::Model,
             Some(Dialog::Tree | Dialog::SecondTree) => file.kind == FileKind::Shader,
             Some(Dialog::Picture) => PICTURES.contains(&&*extension),
             Some(Dialog::New) => false,
@@ -90,6 +91,7 @@ fn is_for_folder(dialog: Option<Dialog>, files: &[Listed]) -> bool {
         None | Some(Dialog::File) => {
             has("interface.glsl") || files.iter().filter(|file| file.kind == FileKind::Model).count() == 1
         }
+        Some(Dialog::Beside) => files.iter().filter(|file| file.kind == FileKind::Model).count() == 1,
         Some(Dialog::Tree | Dialog::SecondTree) => has("interface.glsl"),
         Some(Dialog::New) => true,
         Some(Dialog::Picture) => false,

@@ -4,6 +4,7 @@
 pub(super) mod all;
 mod animation;
 mod baking;
+mod beside;
 mod camera;
 mod capture;
 mod clock;

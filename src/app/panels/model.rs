@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Checkbox, RichText, Ui};
 
-use super::animation;
+use super::{animation, beside};
 use crate::app::command::file::{OPEN, Open};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
@@ -16,7 +16,7 @@ use crate::app::widgets::rows::{self, Row, choose, group, heading, special};
 use crate::app::widgets::theme::{QUIET, WARNING};
 use crate::app::widgets::{check_box, plural};
 use crate::scene::{BUILT_IN, Model};
-use crate::settings::{MaterialChannel, ModelSettings, Settings, setting};
+use crate::settings::{MaterialChannel, Settings, setting};
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -31,7 +31,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let model = context.model();
     show(ui, settings, &model, &context.state.model, recent, list);
     list.extend(animation::show(ui, settings, &model, &context.state.playback));
-    place(ui, settings);
+    beside::places(ui, settings, &model);
     override_material(ui, settings);
     statistics(ui, &model, &context.state.model);
     warnings(ui, &model);
@@ -46,6 +46,7 @@ fn show(
     commands: &mut Vec<Command>,
 ) {
     list(ui, model, status, recent, commands);
+    beside::list(ui, model, recent, commands);
     if !model.variants.is_empty() {
         let name = |variant: &str| if variant.is_empty() { "default materials" } else { variant }.to_owned();
         special(ui, settings, "variant", |ui, settings| {
@@ -64,8 +65,7 @@ fn warnings(ui: &mut Ui, model: &Model) {
     for warning in model.warnings.iter() {
         ui.label(RichText::new(warning).small().color(WARNING));
     }
-    let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";
-    ui.label(RichText::new(hint).small().color(QUIET));
+    beside::hint(ui);
 }
 
 /// The list of models.
@@ -124,16 +124,6 @@ fn channel(ui: &mut Ui, settings: &mut Settings, path: &str) -> bool {
         });
     });
     true
-}
-
-/// Where the model stands.
-fn place(ui: &mut Ui, settings: &mut Settings) {
-    let is_moved = settings.model != ModelSettings::default();
-    heading(ui, "Transform");
-    group(ui, settings, "model", |_, _, _| false);
-    if is_moved && ui.small_button("Reset").on_hover_text("Return to the transform in the file").clicked() {
-        settings.model = ModelSettings::default();
-    }
 }
 
 fn statistics(ui: &mut Ui, model: &Model, status: &ModelStatus) {

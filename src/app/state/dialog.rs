@@ -5,6 +5,8 @@
 pub(in crate::app) enum Dialog {
     /// A model, an environment, a measured BRDF, or a single shader.
     File,
+    /// A model to show beside those on screen.
+    Beside,
     /// A folder with a shader tree.
     Tree,
     /// A folder to write the shaders to.

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::settings::AddedModel;
+
 /// Files and state of the model on screen and of a model that is loading.
 #[derive(Default)]
 pub(in crate::app) struct ModelStatus {
@@ -13,6 +15,8 @@ pub(in crate::app) struct ModelStatus {
     /// The watched files: those of the model on screen, and after a failed load also those that it tried.
     pub(in crate::app) files: Arc<[PathBuf]>,
     pub(in crate::app) loading: bool,
+    /// The models beside the one that is being loaded, which the settings get with it. `None`: those of the settings.
+    pub(in crate::app) added: Option<Vec<AddedModel>>,
     pub(in crate::app) load_ms: f64,
     /// Whether the warnings of the model are shown over the picture.
     pub(in crate::app) shows_warnings: bool,

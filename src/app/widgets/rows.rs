@@ -207,7 +207,8 @@ pub(in crate::app) fn special(
     control: impl FnOnce(&mut Ui, &mut Settings) -> Response,
 ) {
     let Some(setting) = crate::settings::setting(path).filter(|_| !skips(ui)) else { return };
-    let (value, initial) = (settings.value(path).unwrap_or(Value::Unset), INITIAL.value(path).unwrap_or(Value::Unset));
+    let (value, initial) =
+        (settings.value(path).unwrap_or(Value::Unset), INITIAL.value(path).unwrap_or_else(|| setting.default.clone()));
     let row = Row {
         name: setting.entry.label,
         doc: setting.entry.doc(),

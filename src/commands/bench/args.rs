@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use crate::commands::common::Common;
+use crate::commands::common::{Common, Models};
 
 /// The process to measure.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -31,8 +31,8 @@ pub struct Args {
     /// The measurement
     #[arg(value_enum)]
     pub(super) what: What,
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    pub(super) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) models: Models,
     /// Number of samples, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) samples: u32,

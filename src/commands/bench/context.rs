@@ -24,7 +24,7 @@ pub(super) struct Bench<'a> {
 
 impl Bench<'_> {
     pub(super) fn model(&self) -> Result<Model, Failure> {
-        self.args.common.model_silently(self.args.model.as_deref())
+        self.args.common.model_silently(self.args.models.model.as_deref())
     }
 
     pub(super) fn renderer(&self, source: Source, settings: Settings, model: Model) -> Result<Headless, Failure> {

@@ -13,6 +13,22 @@ use super::names::check_model_path;
 use super::{Common, warn_once};
 use crate::commands::Failure;
 
+/// The models to show.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct Models {
+    /// glTF model: .gltf, .glb, a .zip or folder with one, or the name of a built-in one [default: shader-ball]
+    pub model: Option<PathBuf>,
+    /// More models, which stand beside the first
+    #[arg(value_name = "MODEL")]
+    added: Vec<PathBuf>,
+}
+
+impl From<Option<PathBuf>> for Models {
+    fn from(model: Option<PathBuf>) -> Self {
+        Self { model, added: Vec::new() }
+    }
+}
+
 impl Common {
     /// Leaves out of the settings what the look says about parts that the model lacks, with a warning for each kind.
     ///
@@ -26,12 +42,16 @@ impl Common {
         Ok(())
     }
 
-    /// Treats a shader file in the model's position as the shader tree, and a folder as the model in it. Options that the
+    /// Takes the models beside the first into the settings. Treats a shader file in the model's position as the shader tree, and a folder as the model in it. Options that the
     /// command line does not give come from the look.
     ///
     /// # Errors
     /// The folder has no model or several, the look cannot be read, or a file that it names is gone.
-    pub fn take_files(&mut self, model: &mut Option<PathBuf>) -> Result<(), Failure> {
+    pub fn take_files(&mut self, Models { model, added }: &mut Models) -> Result<(), Failure> {
+        for path in std::mem::take(added) {
+            check_model_path(Some(&path))?;
+            self.added.push(path.display().to_string());
+        }
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
             self.shaders = model.take();
         }
@@ -41,6 +61,10 @@ impl Common {
         }
         let Some(path) = self.look.as_deref() else { return Ok(()) };
         let look = read_look(path)?;
+        if model.is_some() || !self.added.is_empty() {
+            // Those of the look stood beside its own model.
+            self.replaces_added = true;
+        }
         let gone = |what: &str, file: &Path, option: &str| {
             let (path, file) = (path.display(), file.display());
             Err(Failure::Input(format!("{path}: its {what} {file} is not there; name it with {option}")))
@@ -90,6 +114,8 @@ impl Common {
 
     /// How models are loaded.
     pub fn load_options(&self) -> LoadOptions {
-        LoadOptions { allow_outside: self.allow_outside, scene: self.scene }
+        let settings = self.settings_silently(Settings::default());
+        let added = settings.map(|settings| settings.added_files()).unwrap_or_default();
+        LoadOptions { allow_outside: self.allow_outside, scene: self.scene, added }
     }
 }

@@ -15,11 +15,12 @@ use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::pipeline::DiskPipelines;
-use specula::settings::{LightSource, Settings, Tonemap};
+use specula::settings::{AddedModel, LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
 use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
 
 use super::{Failure, limits};
+pub use files::Models;
 use look::read_look;
 use names::check_environment;
 use parse::{ev, fovy, size, vector};
@@ -99,6 +100,12 @@ pub struct Common {
     /// Allow a model to read files outside its own folder
     #[arg(long)]
     allow_outside: bool,
+    /// Models beside the first.
+    #[arg(skip)]
+    added: Vec<String>,
+    /// Whether these replace the models that a look adds.
+    #[arg(skip)]
+    replaces_added: bool,
     /// Turn on the Vulkan validation layers; any message fails the command
     #[arg(long)]
     pub validate: bool,
@@ -160,6 +167,10 @@ impl Common {
             None => first,
         };
         let mut settings = look.clone();
+        if self.replaces_added {
+            settings.added.clear();
+        }
+        settings.added.extend(self.added.iter().map(|file| AddedModel::new(file)));
         let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
         let camera = &mut settings.camera;
         if self.frame_model {

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use specula::capture::{Page, Sweep, Turn};
 
-use crate::commands::common::Common;
 use crate::commands::common::frames::Frames;
 use crate::commands::common::parse::size;
+use crate::commands::common::{Common, Models};
 
 /// Options of `render`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    pub(super) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) models: Models,
     /// File to write, .png or .exr (raw values); with --frames also .mp4, .webp or .gif, which hold all frames. With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     pub(super) out: PathBuf,

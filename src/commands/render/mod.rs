@@ -30,7 +30,7 @@ use watch::{Changes, Watch};
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_files(&mut args.model)?;
+    args.common.take_files(&mut args.models)?;
     let mut settings = args.common.settings()?;
     let modes = Modes::of(&mut settings.mode);
     if matches!(modes, Modes::Named(_)) && many::is_asked(&args) {
@@ -53,7 +53,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
     let read = |settings: &mut Settings| {
-        let model = args.common.model(args.model.as_deref())?;
+        let model = args.common.model(args.models.model.as_deref())?;
         args.common.fit(&model, settings)?;
         Ok::<_, Failure>(model)
     };
@@ -216,8 +216,10 @@ fn take_files(headless: &mut Headless, args: &Args, watch: &mut Watch, changes: 
 
 /// Loads the model again. On failure the last good model stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
-    let loaded =
-        args.common.model(args.model.as_deref()).and_then(|model| headless.set_model(model).map_err(Failure::from));
+    let loaded = args
+        .common
+        .model(args.models.model.as_deref())
+        .and_then(|model| headless.set_model(model).map_err(Failure::from));
     match loaded {
         Ok(()) => {
             watch.follow(headless);
@@ -348,7 +350,7 @@ fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Fail
 fn write_picture(headless: &mut Headless, args: &Args, capture: &Capture, out: &Path) -> Result<(), Failure> {
     let work = SessionState {
         settings: headless.session().shared_settings(),
-        model: args.model.clone(),
+        model: args.models.model.clone(),
         scene: args.common.load_options().scene,
         tree: args.common.source()?.location().map(Path::to_owned),
     };

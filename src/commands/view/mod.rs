@@ -17,7 +17,7 @@ use specula::shader::Source;
 
 use super::Failure;
 use super::common::names::check_model_path;
-use super::common::{Common, compiler};
+use super::common::{Common, Models, compiler};
 use super::limits;
 
 /// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
@@ -26,8 +26,8 @@ const LARGEST_WINDOW: u32 = 16384;
 /// Options of `view`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
-    model: Option<PathBuf>,
+    #[command(flatten)]
+    models: Models,
     /// Take commands on a local socket: a file that only you can open. A name without a slash lies in $XDG_RUNTIME_DIR/specula
     #[arg(long, value_name = "NAME|PATH")]
     socket: Option<PathBuf>,
@@ -44,18 +44,18 @@ pub struct Args {
 impl Args {
     /// The options of another command that opens the window.
     pub fn of(model: Option<PathBuf>, common: Common) -> Self {
-        Self { model, socket: None, compare: None, compare_tree: None, common }
+        Self { models: model.into(), socket: None, compare: None, compare_tree: None, common }
     }
 
     /// The model as given on the command line.
     pub fn model(&self) -> Option<&Path> {
-        self.model.as_deref()
+        self.models.model.as_deref()
     }
 }
 
 /// Runs the command: the window if this is the child, else the child.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
-    args.common.take_files(&mut args.model)?;
+    args.common.take_files(&mut args.models)?;
     match supervisor::session() {
         Some(folder) => window(args, start, Some(folder)),
         None => supervisor::run(reads_commands(&args), || window(args, start, None)),
@@ -94,7 +94,7 @@ fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
 fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Failure> {
     limits::check()?;
     let control = control(&args, folder.is_some())?;
-    check_model_path(args.model.as_deref())?;
+    check_model_path(args.models.model.as_deref())?;
     let (width, height) = args.common.size();
     if width.max(height) > LARGEST_WINDOW {
         let message =
@@ -104,7 +104,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let source = args.common.source()?;
     let given = SessionState {
         settings: Arc::new(args.common.settings_of_window()?),
-        model: args.model,
+        model: args.models.model,
         scene: args.common.load_options().scene,
         tree: source.location().map(Path::to_owned),
     };
@@ -131,6 +131,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let source = state.source(source, good.clone());
     // The size of the last window, unless one was given.
     let last = if args.common.size.is_none() { app::last_size() } else { None };
+    let added = work.settings.added_files();
     let options = AppOptions {
         source,
         compiler: compiler()?,
@@ -142,7 +143,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),
         at: state.window.and_then(|window| window.at),
         compare,
-        load_options: LoadOptions { scene: work.scene, ..args.common.load_options() },
+        load_options: LoadOptions { scene: work.scene, added, ..args.common.load_options() },
         validation: args.common.validate,
         device: args.common.device,
         control,

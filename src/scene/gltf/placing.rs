@@ -10,8 +10,8 @@ use super::nodes::PlacedMesh;
 use super::place::LARGEST_COORDINATE;
 use crate::scene::error::Problem;
 use crate::scene::model::{Camera, Instance, Light, Model};
-use crate::scene::motion::{Extent, Motion, Placement, Pose, Rig};
-use crate::scene::outline::{outline, used_vertices};
+use crate::scene::motion::{Motion, Placement, Pose, Rig};
+use crate::scene::outline::used_vertices;
 
 /// A model that is farther from the origin than this many times its radius is moved there: single floats would then tear it by more
 /// than a tenth of a pixel.
@@ -69,7 +69,11 @@ pub fn place(
     let moved = |position: DVec3| (position - shift).as_vec3();
     model.lights = lights.into_iter().map(|(light, at)| Light { position: moved(at), ..light }).collect();
     model.cameras = cameras.into_iter().map(|(camera, at)| Camera { eye: moved(at), ..camera }).collect();
-    settle(model);
+    if model.motion.clips.is_empty() && model.motion.rig.skins.is_empty() && model.motion.target_names.is_empty() {
+        // It never moves.
+        Arc::make_mut(&mut model.motion).rig = Rig::default();
+    }
+    *model = std::mem::take(model).settled();
     Ok(())
 }
 
@@ -113,22 +117,4 @@ fn center(model: &Model, world: &[DMat4], warnings: &mut Vec<String>) -> Result<
     }
     // A vector of single floats, so that vertices far from their mesh's origin are moved without rounding, too.
     Ok(if is_far { center.as_vec3().as_dvec3() } else { DVec3::ZERO })
-}
-
-/// Brings the model into the file's own pose, and finds where it is then and while each clip plays.
-fn settle(model: &mut Model) {
-    let is_deformed = model.instances.iter().any(|instance| instance.first_joint.or(instance.first_weight).is_some());
-    let extent = if is_deformed {
-        Extent::at_rest(model)
-    } else {
-        Extent { bounds: model.instance_bounds(), outline: outline(model).into() }
-    };
-    let extents: Vec<Extent> = (0..model.motion.clips.len()).map(|clip| Extent::of_clip(model, clip)).collect();
-    let motion = Arc::make_mut(&mut model.motion);
-    motion.clips.iter_mut().zip(extents).for_each(|(clip, extent)| clip.extent = extent);
-    if motion.clips.is_empty() && motion.rig.skins.is_empty() && motion.target_names.is_empty() {
-        // It never moves.
-        motion.rig = Rig::default();
-    }
-    *model = model.posed(&model.rest_pose().into(), &extent);
 }

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::scene::members::Places;
 use crate::scene::model::{Bounds, Model, Primitive};
 use crate::scene::motion::{Extent, Playing, Pose};
 use crate::scene::outline::{MOST_INSTANCES, hull, used_vertices};
@@ -35,16 +36,18 @@ impl Extent {
     /// The extent of a model while a clip plays.
     pub fn of_clip(model: &Model, clip: usize) -> Self {
         let most = MOST_VERTICES / model.motion.clips.len();
-        Self::while_playing(model, &[Playing { clip, weight: 1.0, time_s: 0.0 }], &[], most)
+        let playing = [Playing { clip, weight: 1.0, time_s: 0.0 }];
+        Self::while_playing(model, &playing, &[], &Places::default(), most)
     }
 
-    /// The extent of a model, as it was loaded, while these clips play together, whatever their time is now, and these weights are held.
-    pub fn of_mix(model: &Model, playing: &[Playing], held: &[(usize, f32)]) -> Self {
-        Self::while_playing(model, playing, held, MOST_VERTICES_AT_ONCE)
+    /// The extent of a model, as it was loaded, while these clips play together, whatever their time is now, these weights are held, and the
+    /// settings put it there.
+    pub fn of_mix(model: &Model, playing: &[Playing], held: &[(usize, f32)], places: &Places) -> Self {
+        Self::while_playing(model, playing, held, places, MOST_VERTICES_AT_ONCE)
     }
 
     /// About `most` vertices are deformed.
-    fn while_playing(model: &Model, playing: &[Playing], held: &[(usize, f32)], most: usize) -> Self {
+    fn while_playing(model: &Model, playing: &[Playing], held: &[(usize, f32)], places: &Places, most: usize) -> Self {
         let duration_s = |playing: &Playing| f64::from(model.motion.clips[playing.clip].duration_s);
         let longest_s = playing.iter().map(duration_s).fold(0.0, f64::max);
         let moments = (most / deformed_vertices(model).max(1)).clamp(LEAST_MOMENTS, MOST_MOMENTS);
@@ -56,7 +59,7 @@ impl Extent {
                 let is_repeated = passed_s > duration_s && duration_s > 0.0;
                 Playing { time_s: if is_repeated { passed_s.rem_euclid(duration_s) } else { passed_s }, ..*playing }
             };
-            model.pose_with(&playing.iter().map(at).collect::<Vec<_>>(), held, None)
+            model.pose_with(&playing.iter().map(at).collect::<Vec<_>>(), held, places)
         };
         let poses: Vec<Pose> = (0..moments).into_par_iter().map(pose).collect();
         Self::during(model, &points(model, most / moments), &poses)

@@ -2,8 +2,10 @@
 
 mod extents;
 mod held;
+mod places;
 mod playing;
 mod pose;
+mod settled;
 mod values;
 mod vertices;
 

@@ -16,7 +16,7 @@ impl Model {
     pub fn playing(&self, settings: &AnimationSettings, clock_s: f32) -> Vec<Playing> {
         let clips = &self.motion.clips;
         let chosen: Vec<(usize, f32)> = match settings.clips.as_slice() {
-            [] => clips.first().map(|_| (0, 1.0)).into_iter().collect(),
+            [] => self.first_clips().map(|clip| (clip, 1.0)).collect(),
             names => names.iter().flat_map(|name| self.chosen(name).unwrap_or_default()).collect(),
         };
         let passed_s = f64::from(settings.time) + f64::from(settings.speed) * f64::from(clock_s);
@@ -29,6 +29,13 @@ impl Model {
             Playing { clip, weight, time_s }
         };
         chosen.into_iter().map(playing).collect()
+    }
+
+    /// The first clip, of each model if several are shown together.
+    fn first_clips(&self) -> impl Iterator<Item = usize> {
+        let single = self.members.is_empty() && !self.motion.clips.is_empty();
+        let of_members = self.members.iter().filter_map(|member| member.clips.clone().next());
+        single.then_some(0).into_iter().chain(of_members)
     }
 
     /// Whether the pose that these clips give depends on the clock.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Mat4};
 
 use super::values::{move_camera, move_light};
+use crate::scene::members::Places;
 use crate::scene::model::{Camera, Instance, Light, Model};
 use crate::scene::motion::{Channel, Extent, Playing, Pose, Rig, Skin, Target, Transform, Values, slerp};
 
@@ -47,18 +48,18 @@ impl Nodes {
 impl Model {
     /// The pose of the file, without animations.
     pub fn rest_pose(&self) -> Pose {
-        self.pose_at(&[], None)
+        self.pose_at(&[], &Places::default())
     }
 
     /// The pose of this model, which is as it was loaded, while clips play. Of two clips that move the same, the later one replaces the
-    /// earlier one by its weight. `place`: where the settings put the model.
-    pub fn pose_at(&self, playing: &[Playing], place: Option<Mat4>) -> Pose {
-        self.pose_with(playing, &[], place)
+    /// earlier one by its weight. `places`: where the settings put the model.
+    pub fn pose_at(&self, playing: &[Playing], places: &Places) -> Pose {
+        self.pose_with(playing, &[], places)
     }
 
     /// The same with weights of morph targets that replace those of file and clips ([`Model::held_weights`]).
-    pub fn pose_with(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Pose {
-        let rig = &self.motion.rig;
+    pub fn pose_with(&self, playing: &[Playing], held: &[(usize, f32)], places: &Places) -> Pose {
+        let (rig, place) = (&self.motion.rig, places.whole);
         let mut moved = Moved {
             nodes: vec![None; rig.nodes.len()],
             weights: self.pose.weights.clone(),
@@ -68,6 +69,7 @@ impl Model {
             let channels = self.motion.clips.get(*clip).into_iter().flat_map(|clip| &clip.channels);
             channels.for_each(|channel| moved.apply(channel, f64::from(*weight), *time_s, rig));
         }
+        places.roots.iter().for_each(|(root, transform)| moved.nodes[*root] = Some(*transform));
         let Moved { nodes, mut weights, values } = moved;
         held.iter().for_each(|(index, weight)| weights[*index] = *weight);
         let nodes = Nodes::new(rig, &nodes);
@@ -136,18 +138,19 @@ impl Model {
 
     /// This model, as it was loaded, while clips play and weights are held.
     #[must_use]
-    pub fn at(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Self {
-        self.posed(&self.pose_with(playing, held, place).into(), &self.extent(playing, held, place))
+    pub fn at(&self, playing: &[Playing], held: &[(usize, f32)], places: &Places) -> Self {
+        self.posed(&self.pose_with(playing, held, places).into(), &self.extent(playing, held, places))
     }
 
     /// Where this model, as it was loaded, is while these clips play and these weights are held.
-    pub fn extent(&self, playing: &[Playing], held: &[(usize, f32)], place: Option<Mat4>) -> Extent {
+    pub fn extent(&self, playing: &[Playing], held: &[(usize, f32)], places: &Places) -> Extent {
         let extent = match (playing, held) {
+            _ if !places.roots.is_empty() => return Extent::of_mix(self, playing, held, places),
             ([], []) => self.whole_extent(),
             ([Playing { clip, weight: 1.0, .. }], []) => self.motion.clips[*clip].extent.clone(),
-            _ => Extent::of_mix(self, playing, held),
+            _ => Extent::of_mix(self, playing, held, &Places::default()),
         };
-        place.map_or(extent.clone(), |place| extent.placed(place))
+        places.whole.map_or(extent.clone(), |place| extent.placed(place))
     }
 
     /// Where this model is while the clips play that play now.

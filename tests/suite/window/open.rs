@@ -55,6 +55,38 @@ fn a_model_is_dropped_with_its_files_and_a_damaged_one_changes_no_setting() {
     viewer.quit();
 }
 
+#[test]
+fn a_model_is_added_beside_and_an_undo_takes_it_away() {
+    let tree = Tree::new();
+    let (model, bad) = (tree.beside("second.glb"), tree.beside("bad.glb"));
+    std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    std::fs::write(&bad, "").unwrap();
+    let mut viewer = Viewer::driven(tree, &["sphere-grid"]);
+    viewer.ready_and_baked();
+    let added = |viewer: &mut Viewer| viewer.running.done(json!({"command": "get"}))["added"].clone();
+    let first = viewer.screenshot();
+    viewer.running.done(json!({"command": "open", "beside": model}));
+    assert_eq!(added(&mut viewer)[0]["file"].as_str(), model.to_str());
+    let both = viewer.screenshot();
+    assert!(both != first, "no model beside the first");
+    let refused = viewer.running.refused(json!({"command": "open", "beside": bad}));
+    assert!(refused.contains("bad.glb: is empty"), "{refused}");
+    assert_eq!(added(&mut viewer).as_array().map(Vec::len), Some(1));
+    viewer.key("ctrl+z");
+    viewer.until("the first model alone", |shot| *shot == first);
+    assert!(added(&mut viewer).is_null());
+    viewer.key("ctrl+shift+z");
+    viewer.until("both models", |shot| *shot == both);
+    // Several files that are dropped together.
+    let (display, window) = (viewer.display.name().to_owned(), viewer.window());
+    drop_files(&display, window, (300, 200), &[&model, &model]);
+    viewer.until("two other models", |shot| *shot != both && *shot != first);
+    let settings = viewer.running.done(json!({"command": "get"}));
+    assert_eq!(settings["added"].as_array().map(Vec::len), Some(1), "{settings}");
+    viewer.running.end_input();
+    viewer.quit();
+}
+
 /// Ends a window, and returns its folder.
 fn end(mut viewer: Viewer) -> Tree {
     viewer.key("ctrl+q");

@@ -9,7 +9,7 @@ use crate::app::command::camera::LOOK_THROUGH;
 use crate::app::command::layout::OPEN_PANEL;
 use crate::app::command::scene::{HIDE, ISOLATE, SELECT};
 use crate::app::commands::Commands;
-use crate::app::panels::lights;
+use crate::app::panels::{beside, lights};
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::{LightId, Selected, common_material, name_or};
@@ -33,7 +33,9 @@ pub(super) fn show(
         Selected::Nothing => {}
         Selected::Node(node) => {
             let Some(of) = model.nodes.get(node) else { return };
-            title(ui, "Node", &name_or(&of.name, || format!("#{}", of.index)));
+            let member = model.members.iter().position(|member| member.node == node);
+            title(ui, if member.is_some() { "Model" } else { "Node" }, &name_or(&of.name, || format!("#{}", of.index)));
+            member.into_iter().for_each(|number| beside::place(ui, &mut commands.settings, number));
             parts(ui, (state, scene), selected, kept, commands);
         }
         Selected::Instance(index) => {

@@ -12,6 +12,7 @@ mod motion;
 mod nodes;
 mod opened;
 mod placeholders;
+mod together;
 
 use serde_json::{Value, json};
 

@@ -4,6 +4,7 @@ use glam::{DMat4, DQuat, DVec3, Mat4, Vec3};
 
 use super::*;
 use crate::frame::Scene;
+use crate::scene::Places;
 use crate::scene::motion::Playing;
 use crate::settings::Settings;
 
@@ -62,7 +63,7 @@ fn positions(model: &Model, instance: usize) -> Vec<DVec3> {
 
 /// The model while its first clip plays.
 fn at(model: &Model, time_s: f64) -> Model {
-    model.at(&[Playing { clip: 0, weight: 1.0, time_s }], &[], None)
+    model.at(&[Playing { clip: 0, weight: 1.0, time_s }], &[], &Places::default())
 }
 
 /// Adds an animation with a channel for each target, all with these times.
@@ -77,6 +78,15 @@ fn animate(builder: &mut Builder, times: &[f32], channels: &[(Value, &str, &str,
         animation["channels"].as_array_mut().unwrap().push(json!({ "sampler": number, "target": target }));
     }
     builder.push("animations", animation);
+}
+
+/// A skinned model with one clip, in which a joint turns.
+pub(super) fn swinging() -> Model {
+    let mut builder = skinned();
+    let turns: [f32; 8] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0];
+    let target = json!({ "node": 2, "path": "rotation" });
+    animate(&mut builder, &[0.0, 1.0], &[(target, "LINEAR", "VEC4", &turns)]);
+    builder.model()
 }
 
 #[test]
@@ -248,9 +258,9 @@ fn clips_move_nodes_joints_and_weights() {
         near(&positions(&at(&model, time_s), 0), &skinned_positions(rotation), 1e-5);
     }
     // Half of the weight is half of the way from the file's own pose.
-    let half = model.pose_at(&[Playing { clip: 0, weight: 0.5, time_s: 0.0 }], None);
+    let half = model.pose_at(&[Playing { clip: 0, weight: 0.5, time_s: 0.0 }], &Places::default());
     let angle = 2.0 * 0.6_f64.asin() * 0.5;
-    let posed = model.posed(&half.into(), &model.extent(&[], &[], None));
+    let posed = model.posed(&half.into(), &model.extent(&[], &[], &Places::default()));
     near(&positions(&posed, 0), &skinned_positions(DQuat::from_rotation_z(angle)), 1e-5);
     // The camera stands still, since the bounds hold for the whole clip.
     assert_eq!(at(&model, 0.7).bounds, at(&model, 1.9).bounds);
@@ -312,7 +322,7 @@ fn curves_follow_the_specification() {
             + b0 * length_s * (t3 - 2.0 * t2 + t)
             + v1 * (3.0 * t2 - 2.0 * t3)
             + a1 * length_s * (t3 - t2);
-        let pose = model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s }], None);
+        let pose = model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s }], &Places::default());
         let place = |instance: usize| pose.instances[instance].w_axis.truncate().as_dvec3();
         near(&[place(0), place(1)], &[expected, curved], 1e-6);
         let scale = [0, 1, 2].map(|axis| f64::from(pose.instances[2].col(axis)[axis]));
@@ -328,7 +338,7 @@ fn curves_follow_the_specification() {
         "samplers": [{ "input": input, "output": output }],
         "channels": [{ "sampler": 0, "target": { "node": 0, "path": "rotation" } }],
     }]);
-    let pose = builder.model().pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.25 }], None);
+    let pose = builder.model().pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.25 }], &Places::default());
     let x = pose.instances[0].x_axis.truncate().as_dvec3();
     let angle = std::f64::consts::FRAC_PI_4;
     near(&[x], &[DVec3::new(angle.cos(), angle.sin(), 0.0)], 1e-6);
@@ -345,7 +355,10 @@ fn a_channel_that_cannot_be_read_costs_itself_alone() {
         animate(&mut builder, &[0.0, 1.0], &targets);
         change(&mut builder.json);
         let model = builder.model();
-        assert_eq!(model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.5 }], None).instances[0].w_axis.x, 1.0);
+        assert_eq!(
+            model.pose_at(&[Playing { clip: 0, weight: 1.0, time_s: 0.5 }], &Places::default()).instances[0].w_axis.x,
+            1.0
+        );
         model.warnings.join("\n")
     };
     for (change, words) in [
@@ -441,8 +454,12 @@ fn bounds_hold_for_clips_that_play_together() {
     animate(&mut builder, &[0.0, 2.0], &[(json!({ "node": 1, "path": "translation" }), "LINEAR", "VEC3", &values)]);
     let model = builder.model();
     let both = [0, 1].map(|clip| Playing { clip, weight: 1.0, time_s: 0.0 });
-    assert_eq!(model.at(&both[..1], &[], None).bounds.max.x, 5.0);
-    assert!((8.5..9.1).contains(&model.at(&both, &[], None).bounds.max.x), "{:?}", model.at(&both, &[], None).bounds);
+    assert_eq!(model.at(&both[..1], &[], &Places::default()).bounds.max.x, 5.0);
+    assert!(
+        (8.5..9.1).contains(&model.at(&both, &[], &Places::default()).bounds.max.x),
+        "{:?}",
+        model.at(&both, &[], &Places::default()).bounds
+    );
     let half = [Playing { weight: 0.5, ..both[0] }];
-    assert_eq!(model.at(&half, &[], None).bounds.max.x, 3.0);
+    assert_eq!(model.at(&half, &[], &Places::default()).bounds.max.x, 3.0);
 }
