@@ -28,10 +28,10 @@ pub struct Args {
     /// Pixel, counted from the upper left corner
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
-    /// Fragment of the pixel, from 0 in the order of drawing [default: the one that is seen]
+    /// Fragment of the pixel, from 0 for the nearest [default: the one that is seen]
     #[arg(long, value_name = "N")]
     fragment: Option<usize>,
-    /// Show the lines of this file alone, or of one line of it
+    /// Trace the statements of this file alone, or show one line of it; a single file takes a fraction of the time
     #[arg(long, value_name = "FILE[:LINE]")]
     line: Option<String>,
     /// Check values, as 'brdf/ndf.glsl:24 spread > 0'; may be repeated
@@ -79,7 +79,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mode = shaders.modes.iter().find(|mode| mode.slug == slug).cloned();
     let mode = mode.ok_or_else(|| Failure::Usage(format!("the shaders have no mode {slug}")))?;
     progress.say("tracing the pixel");
-    let trace = headless.trace(args.at, &mode)?;
+    let trace = headless.trace(args.at, &mode, &|file| is_wanted(&args, file))?;
     drop(progress);
     let fragment = chosen(&trace, args.fragment)?;
     let lines = fragment.map(|fragment| trace.lines(fragment)).unwrap_or_default();
@@ -101,6 +101,19 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         true => Ok(()),
         false => Err(Failure::Input(failed.join("\n"))),
     }
+}
+
+/// Whether the statements of a file are traced: all are, unless `--line` or assertions name some.
+fn is_wanted(args: &Args, file: &str) -> bool {
+    let named = args.line.iter().map(|line| parts(line).0).chain(args.assert.iter().map(Assertion::file));
+    let mut named = named.peekable();
+    named.peek().is_none() || named.any(|of| of == file)
+}
+
+/// The file and the line of `FILE[:LINE]`.
+fn parts(text: &str) -> (&str, Option<u32>) {
+    let numbered = text.rsplit_once(':').and_then(|(file, line)| Some((file, Some(line.parse::<u32>().ok()?))));
+    numbered.unwrap_or((text, None))
 }
 
 /// The fragment whose statements are shown; `None` where nothing was drawn.
@@ -143,8 +156,7 @@ fn print(args: &Args, trace: &Trace, (fragment, lines): (Option<usize>, &[LineOf
 /// The lines of the file that `wanted` names, or one of them.
 fn shown<'a>(wanted: Option<&str>, lines: &'a [LineOfTrace]) -> Result<Vec<&'a LineOfTrace>, Failure> {
     let Some(wanted) = wanted else { return Ok(lines.iter().collect()) };
-    let numbered = wanted.rsplit_once(':').and_then(|(file, line)| Some((file, Some(line.parse::<u32>().ok()?))));
-    let (file, number) = numbered.unwrap_or((wanted, None));
+    let (file, number) = parts(wanted);
     let is_shown = |line: &&LineOfTrace| line.file == file && number.is_none_or(|number| line.line == number);
     let shown: Vec<&LineOfTrace> = lines.iter().filter(is_shown).collect();
     if shown.is_empty() {

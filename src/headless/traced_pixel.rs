@@ -7,8 +7,8 @@ use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
 use crate::gpu::{Buffer, Encoder, Frames, Gpu, GpuError, Memory, vk};
 use crate::render::{PixelModes, Resources};
 use crate::settings::Settings;
-use crate::shader::not_finite::searching_stage;
-use crate::shader::trace::{self, Trace};
+use crate::shader::not_finite;
+use crate::shader::trace::{ListeningStage, LoggingStage, Trace, log};
 use crate::shader::{Compiler, FirstNotFinite, Mode, PixelValue, ShaderSet, Source};
 
 /// Where to search: a pixel of a frame.
@@ -86,14 +86,16 @@ pub fn first_not_finite(
     search: &Search<'_>,
 ) -> Result<Option<FirstNotFinite>, String> {
     let Some(stage) = search.stage() else { return Ok(None) };
-    let traced = searching_stage(search.picture.shaders, &stage, (compiler, search.source))?;
+    let listener = not_finite::listener();
+    let stage = ListeningStage::new(search.picture.shaders, &stage, (compiler, search.source), &listener)?;
+    let traced = stage.traced(&listener, None, Some)?;
     let value = search.draw(gpu, device, &traced.shaders, |_| ())?;
     Ok(traced.found(&value))
 }
 
-/// Draws the pixel with a stage that logs all that it computes, and once more without the log, to compare the colors. Passes after the model
-/// are left out, and what lies behind transmissive surfaces is black. `frames` and `resources` belong to the caller and have everything that
-/// the frame needs.
+/// Draws the pixel with a stage that logs what its statements do, once for each of its files that are `wanted`, and once without the log, to
+/// compare the colors. Passes after the model are left out, and what lies behind transmissive surfaces is black. `frames` and `resources`
+/// belong to the caller and have everything that the frame needs.
 ///
 /// # Errors
 /// A message if the stage cannot be traced or drawn, for example because a pass or random paths draw the mode.
@@ -102,28 +104,40 @@ pub fn trace_pixel(
     compiler: &Compiler,
     (resources, frames): (&mut Resources, &mut Frames),
     search: &Search<'_>,
+    wanted: &dyn Fn(&str) -> bool,
 ) -> Result<Trace, String> {
     let stage = search.stage().ok_or_else(|| {
-        format!("{} is drawn by a pass or by random paths; the statements of modes that the model's own stages draw can be traced", search.mode.slug)
+        let mode = &search.mode.slug;
+        format!(
+            "{mode} is drawn by a pass or by random paths; only the statements of the model's own stages can be traced"
+        )
     })?;
-    let buffer = |name: &str, usage, memory| {
-        Buffer::new(gpu, name, trace::log::SIZE, usage, memory).map_err(|error| error.to_string())
-    };
     use vk::BufferUsageFlags as Usage;
     let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
-    let log = buffer("trace", usage, Memory::Readback)?;
-    let empty: Vec<u8> = trace::log::empty(search.at_in_quad()).iter().flat_map(|word| word.to_le_bytes()).collect();
-    log.write(0, &empty);
-    let traced = trace::logging_stage(search.picture.shaders, &stage, (compiler, search.source), log.address())?;
+    let buffer = Buffer::new(gpu, "trace", log::SIZE, usage, Memory::Readback).map_err(|error| error.to_string())?;
+    let stage = LoggingStage::new(search.picture.shaders, &stage, (compiler, search.source), buffer.address())?;
+    let files = stage.files()?;
     let plain = search.draw(gpu, (resources, frames), search.picture.shaders, |_| ())?;
-    search.draw(gpu, (resources, frames), &traced.shaders, |encoder| {
-        encoder.keep(&log);
-        encoder.buffers_written();
-    })?;
-    let bytes = log.read();
-    let words: Vec<u32> =
-        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
-    Ok(Trace::new(&traced, &words, &plain))
+    let empty: Vec<u8> = log::empty(search.at_in_quad()).iter().flat_map(|word| word.to_le_bytes()).collect();
+    let mut trace: Option<Trace> = None;
+    for file in files.iter().filter(|file| wanted(file)) {
+        buffer.fill(0, buffer.size() as usize, |bytes| bytes.fill(0));
+        buffer.write(0, &empty);
+        let traced = stage.of(file)?;
+        search.draw(gpu, (resources, frames), &traced.shaders, |encoder| {
+            encoder.keep(&buffer);
+            encoder.buffers_written();
+        })?;
+        let bytes = buffer.read();
+        let word = |word: &[u8]| u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        let words: Vec<u32> = bytes.chunks_exact(4).map(word).collect();
+        let of_file = Trace::new(&traced, &words, &plain);
+        match &mut trace {
+            Some(trace) => trace.add(of_file)?,
+            None => trace = Some(of_file),
+        }
+    }
+    trace.ok_or_else(|| format!("no statement of these files is in the stage; it has {}", files.join(", ")))
 }
 
 impl Search<'_> {
@@ -142,12 +156,17 @@ impl Headless {
         self.search(at, mode, first_not_finite)
     }
 
-    /// What every statement computes that draws a mode at a pixel: see [`trace_pixel`].
+    /// What the statements of the `wanted` files compute that draw a mode at a pixel: see [`trace_pixel`].
     ///
     /// # Errors
     /// As [`Headless::render`].
-    pub fn trace(&mut self, at: (u32, u32), mode: &Mode) -> Result<Trace, HeadlessError> {
-        self.search(at, mode, trace_pixel)
+    pub fn trace(
+        &mut self,
+        at: (u32, u32),
+        mode: &Mode,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Result<Trace, HeadlessError> {
+        self.search(at, mode, |gpu, compiler, device, search| trace_pixel(gpu, compiler, device, search, wanted))
     }
 
     fn search<R>(

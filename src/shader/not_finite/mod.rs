@@ -13,9 +13,9 @@ mod report;
 
 use serde::Serialize;
 
+use super::PixelValue;
 use super::spirv::trace::Told;
 use super::trace::{Listener, Site, TracedStage};
-use super::{Compiler, PixelValue, ShaderSet, Source};
 pub use report::{ELSEWHERE, NotFinite};
 
 /// The text that is appended to the stage.
@@ -49,19 +49,11 @@ impl FirstNotFinite {
     }
 }
 
-/// Compiles the fragment stage `stage` of `shaders` so that it writes its first place with NaN or infinity as its color.
-///
-/// # Errors
-/// A message why the stage cannot be traced.
-pub fn searching_stage<'a>(
-    shaders: &ShaderSet,
-    stage: &str,
-    tools: (&Compiler, &'a Source),
-) -> Result<TracedStage<'a>, String> {
+/// What a stage is told so that it writes its first place with NaN or infinity as its color.
+pub fn listener() -> Listener {
     let end = "void main() { specula_main(); SPECULA_COLOR = specula_traced(); }\n";
     let text = TEXT.replace("SPECULA_MARK", &MARK.to_string()) + end;
-    let listener = Listener { text, extension: "", function: FUNCTION, told: Told::Floats };
-    TracedStage::new(shaders, stage, tools, &listener, Some)
+    Listener { text, extension: "", function: FUNCTION, told: Told::Floats }
 }
 
 impl TracedStage<'_> {

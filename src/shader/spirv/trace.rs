@@ -104,9 +104,11 @@ pub struct Traced {
 
 /// Instruments a module with line information. `function` is the name of `void function(const in uint telling, const in uvec4 bits)`,
 /// which gets a value of up to four numbers, filled up by zeros, and the number of its telling from 1. Functions whose names begin
-/// with that name tell nothing, and neither does the entry point if all is told. `None` if the module has no such function.
-pub fn trace(words: &[u32], function: &str, told: Told) -> Option<Traced> {
+/// with that name tell nothing, and neither does the entry point if all is told. `only`: the file whose places alone tell, with the calls that
+/// lead there. `None` if the module has no such function.
+pub fn trace(words: &[u32], function: &str, told: Told, only: Option<&str>) -> Option<Traced> {
     let mut module = Module::parse(words)?;
+    let callers = only.map(|file| callers(&module, file));
     let id = module.named(&format!("{function}(")).next()?;
     let names = module.debug.iter().filter(|i| i.op == Op::Name).map(|i| &module[*i]);
     let names: HashMap<Id, String> = names.map(|words| (words[1], text(&words[2..]))).collect();
@@ -123,19 +125,34 @@ pub fn trace(words: &[u32], function: &str, told: Told) -> Option<Traced> {
     let mut functions = std::mem::take(&mut module.functions);
     let (places, tellings) = (Vec::new(), Vec::new());
     let of = &mut module;
-    let mut tracer =
-        Tracer { module: of, names, members, function: id, void, uint, vectors, zero, one, places, tellings, told };
+    let mut tracer = Tracer {
+        module: of,
+        names,
+        members,
+        function: id,
+        void,
+        uint,
+        vectors,
+        zero,
+        one,
+        places,
+        tellings,
+        told,
+        only,
+        leads: true,
+    };
     for function in &mut functions {
         let line = function.head.iter().copied().find(|i| i.op == Op::Line);
         function.head.retain(|i| !is_line(*i));
         let is_own = own.contains(&function.id);
+        tracer.leads = callers.as_ref().is_none_or(|callers| callers.contains(&function.id));
         for block in &mut function.blocks {
             match is_own {
                 true => block.body.retain(|i| !is_line(*i)),
                 false => block.body = tracer.block(&block.body),
             }
         }
-        if told == Told::All && !is_own {
+        if told == Told::All && !is_own && tracer.leads {
             tracer.enter(function, line);
         }
     }
@@ -145,6 +162,23 @@ pub fn trace(words: &[u32], function: &str, told: Told) -> Option<Traced> {
     module.globals.retain(|i| !is_line(*i));
     module.debug.retain(|i| matches!(i.op, Op::Name | Op::MemberName));
     Some(Traced { words: module.write(), places, tellings })
+}
+
+/// The functions with places of a file, and all that lead to them by calls.
+fn callers(module: &Module, file: &str) -> HashSet<Id> {
+    let has_line = |i: Instruction| i.op == Op::Line && file_of(module, &module[i]).is_some_and(|(of, _)| of == file);
+    let with_places = module.functions.iter().filter(|function| function.instructions().any(has_line));
+    let mut found: HashSet<Id> = with_places.map(|function| function.id).collect();
+    loop {
+        let calls = |function: &&Function| {
+            !found.contains(&function.id) && function.calls(module).any(|id| found.contains(&id))
+        };
+        let more: Vec<Id> = module.functions.iter().filter(calls).map(|function| function.id).collect();
+        if more.is_empty() {
+            return found;
+        }
+        found.extend(more);
+    }
 }
 
 /// The module with other values of constants: each that has the first number gets the second.
@@ -188,6 +222,9 @@ struct Tracer<'a> {
     places: Vec<Place>,
     tellings: Vec<Telling>,
     told: Told,
+    only: Option<&'a str>,
+    /// Whether the function at hand leads to places that tell.
+    leads: bool,
 }
 
 impl Tracer<'_> {
@@ -253,6 +290,11 @@ impl Tracer<'_> {
         self.tell_at(out, Place { file, line, purpose }, value);
     }
 
+    /// Whether the places of a file tell.
+    fn is_wanted(&self, file: &str) -> bool {
+        self.only.is_none_or(|only| only == file)
+    }
+
     /// Tells at the start of a function that it begins, and its arguments.
     fn enter(&mut self, function: &mut Function, line: Option<Instruction>) {
         let name = self.names.get(&function.id).map(|name| name.split('(').next().unwrap_or_default().to_owned());
@@ -264,9 +306,10 @@ impl Tracer<'_> {
         let mut out = Vec::new();
         let place = |purpose| Place { file: file.clone(), line, purpose };
         self.tell_at(&mut out, place(Purpose::Enter(name)), None);
+        let is_wanted = self.is_wanted(&file);
         let parameters: Vec<Id> =
             function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| self.module[*i][2]).collect();
-        for parameter in parameters {
+        for parameter in parameters.into_iter().filter(|_| is_wanted) {
             let name = self.names.get(&parameter).cloned().unwrap_or_default();
             let value = match self.module.pointer(self.module.type_of(parameter)) {
                 Some((_, to)) if self.has_told(to) => self.module.emit(&mut out, Op::Load, to, &[parameter]),
@@ -473,7 +516,7 @@ mod tests {
         let first = text.lines().position(|line| line.starts_with(body.lines().next().unwrap())).unwrap() as u32;
         let source = Source::memory([("m.frag", text.as_str())]);
         let words = Compiler::new().unwrap().compile_with_lines(&Snapshot::new(&source), &"m.frag".into()).unwrap();
-        let Traced { words, places, .. } = trace(&words, "told", Told::Floats).unwrap();
+        let Traced { words, places, .. } = trace(&words, "told", Told::Floats, None).unwrap();
         assert_eq!(validate(&words), Ok(()), "{body}");
         assert_eq!(validate(&specialize(&words, &[(7, 1)])), Ok(()), "{body}");
         let own = places.iter().filter(|place| place.line < first + 1 + body.lines().count() as u32);
@@ -526,7 +569,7 @@ mod tests {
     fn a_module_without_the_function_is_not_traced() {
         let source = Source::memory([("m.frag", "#version 460\nvoid main() {}\n")]);
         let words = Compiler::new().unwrap().compile_with_lines(&Snapshot::new(&source), &"m.frag".into()).unwrap();
-        assert!([Told::Floats, Told::All].iter().all(|told| trace(&words, "told", *told).is_none()));
-        assert!(trace(&[1, 2], "told", Told::All).is_none());
+        assert!([Told::Floats, Told::All].iter().all(|told| trace(&words, "told", *told, None).is_none()));
+        assert!(trace(&[1, 2], "told", Told::All, None).is_none());
     }
 }

@@ -23,27 +23,55 @@ use super::spirv::trace::Purpose;
 use super::{Compiler, PixelValue, ShaderSet, Source};
 use calls::Calls;
 pub use report::{Assertion, LineOfTrace};
-pub use stage::{Listener, TracedStage};
+pub use stage::{Listener, ListeningStage, TracedStage};
 pub use statement::Site;
 pub use value::TracedValue;
 
-/// Compiles the fragment stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
-///
-/// # Errors
-/// A message why the stage cannot be traced.
-pub fn logging_stage<'a>(
-    shaders: &ShaderSet,
-    stage: &str,
-    tools: (&Compiler, &'a Source),
+/// A stage whose log is written to a buffer. Drivers put functions in place of their calls, so a module in which every statement calls the log
+/// would take minutes to compile: each of its files is traced for itself.
+pub struct LoggingStage<'a> {
+    stage: ListeningStage<'a>,
+    listener: Listener,
     address: u64,
-) -> Result<TracedStage<'a>, String> {
-    TracedStage::new(shaders, stage, tools, &log::listener(), |words| log::with_address(&words, address))
+}
+
+impl<'a> LoggingStage<'a> {
+    /// Compiles the fragment stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn new(
+        shaders: &'a ShaderSet,
+        stage: &str,
+        tools: (&Compiler, &'a Source),
+        address: u64,
+    ) -> Result<Self, String> {
+        let listener = log::listener();
+        let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
+        Ok(Self { stage, listener, address })
+    }
+
+    /// The files with statements that can be traced.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn files(&self) -> Result<Vec<String>, String> {
+        Ok(self.stage.traced(&self.listener, None, Some)?.files())
+    }
+
+    /// The stage with a log of what the statements of a file do.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn of(&self, file: &str) -> Result<TracedStage<'_>, String> {
+        self.stage.traced(&self.listener, Some(file), |words| log::with_address(&words, self.address))
+    }
 }
 
 /// What happened at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The fragments, in the order in which they were drawn.
+    /// The fragments, the nearest first.
     pub fragments: Vec<Fragment>,
     /// Fragments that were left out.
     pub left_out: u32,
@@ -113,6 +141,9 @@ impl Trace {
             Fragment { depth: logged.depth, color, events, left_out: logged.left_out }
         };
         let fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
+        let mut fragments = fragments;
+        // A device may draw them in any order.
+        fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth));
         let mut code = BTreeMap::new();
         for Event { file, line, .. } in fragments.iter().flat_map(|fragment| &fragment.events) {
             code.entry((file.clone(), *line)).or_insert_with(|| stage.line(file, *line));
@@ -127,6 +158,23 @@ impl Trace {
         let is_seen = |(_, fragment): &(usize, &Fragment)| fragment.color == Some(self.picture);
         let nearest = || kept().max_by(|(_, a), (_, b)| a.depth.total_cmp(&b.depth));
         kept().filter(is_seen).last().or_else(nearest).map(|(index, _)| index)
+    }
+
+    /// Adds what the statements of another file did. The fragments of both are in the order of their depth.
+    ///
+    /// # Errors
+    /// A message: the second draw had other fragments.
+    pub fn add(&mut self, other: Self) -> Result<(), String> {
+        let same = |(a, b): (&Fragment, &Fragment)| (a.depth.to_bits(), a.color) == (b.depth.to_bits(), b.color);
+        if self.fragments.len() != other.fragments.len() || !self.fragments.iter().zip(&other.fragments).all(same) {
+            return Err("the pixel changes from one draw to the next, so it cannot be traced".to_owned());
+        }
+        for (fragment, more) in self.fragments.iter_mut().zip(other.fragments) {
+            fragment.events.extend(more.events);
+            fragment.left_out += more.left_out;
+        }
+        self.code.extend(other.code);
+        Ok(())
     }
 
     /// Whether a fragment ends with the color of the picture, bit by bit.

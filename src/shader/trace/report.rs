@@ -236,6 +236,11 @@ impl Assertion {
         })
     }
 
+    /// The file that it is about.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
     /// Checks the values of all times that are in the lines. NaN fulfills nothing but `!=`.
     ///
     /// # Errors

@@ -24,27 +24,24 @@ pub struct Listener {
     pub told: Told,
 }
 
-/// The stage and its set.
-pub struct TracedStage<'a> {
-    /// The set.
-    pub shaders: Arc<ShaderSet>,
+/// A fragment stage that has compiled with a text that listens.
+pub struct ListeningStage<'a> {
+    shaders: &'a ShaderSet,
     stage: Arc<Stage>,
     snapshot: Snapshot<'a>,
-    traced: Traced,
+    words: Vec<u32>,
 }
 
-impl<'a> TracedStage<'a> {
-    /// Compiles the fragment stage `stage` of `shaders` once more and instruments its module. `source` gives files their names.
-    /// `finish` may change the words of the module.
+impl<'a> ListeningStage<'a> {
+    /// Compiles the fragment stage `stage` of `shaders` once more. `source` gives files their names.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
     pub fn new(
-        shaders: &ShaderSet,
+        shaders: &'a ShaderSet,
         stage: &str,
         (compiler, source): (&Compiler, &'a Source),
         listener: &Listener,
-        finish: impl FnOnce(Vec<u32>) -> Option<Vec<u32>>,
     ) -> Result<Self, String> {
         let path = TreePath::from(stage);
         let before = shaders.stages.get(stage).filter(|before| before.kind == StageKind::Fragment);
@@ -55,19 +52,52 @@ impl<'a> TracedStage<'a> {
         let text = listening(&text, listener).map_err(|lack| format!("{stage} {lack}"))?;
         let over = snapshot.over(BTreeMap::from([(path.clone(), Ok(text.into()))]));
         let words = compiler.compile_with_lines(&over, &path);
-        let mut traced = words
-            .and_then(|words| trace(&words, listener.function, listener.told))
-            .ok_or_else(|| format!("the values of {stage} cannot be traced"))?;
-        let words = finish(std::mem::take(&mut traced.words));
-        let words = words.ok_or_else(|| format!("the values of {stage} cannot be traced"))?;
-        let mut shaders = shaders.clone();
-        shaders.stages.insert(stage.to_owned(), Arc::new(before.with_module(words)));
-        Ok(Self { shaders: Arc::new(shaders), stage: before.clone(), snapshot, traced })
+        let words = words.ok_or_else(|| format!("{stage} does not compile with the text that traces its values"))?;
+        Ok(Self { shaders, stage: before.clone(), snapshot, words })
     }
 
+    /// Its module, instrumented. `only`: the file whose places alone tell.
+    ///
+    /// # Errors
+    /// A message why it cannot be traced.
+    pub fn traced(
+        &self,
+        listener: &Listener,
+        only: Option<&str>,
+        finish: impl FnOnce(Vec<u32>) -> Option<Vec<u32>>,
+    ) -> Result<TracedStage<'_>, String> {
+        let lacks = || format!("the values of {} cannot be traced", self.stage.path);
+        let mut traced = trace(&self.words, listener.function, listener.told, only).ok_or_else(lacks)?;
+        let words = finish(std::mem::take(&mut traced.words)).ok_or_else(lacks)?;
+        let mut shaders = self.shaders.clone();
+        shaders.stages.insert(self.stage.path.to_string(), Arc::new(self.stage.with_module(words)));
+        Ok(TracedStage { shaders: Arc::new(shaders), of: self, traced })
+    }
+}
+
+/// An instrumented stage and its set.
+pub struct TracedStage<'a> {
+    /// The set.
+    pub shaders: Arc<ShaderSet>,
+    of: &'a ListeningStage<'a>,
+    traced: Traced,
+}
+
+impl TracedStage<'_> {
     /// The telling with a number that the module has given, from 1.
     pub fn telling(&self, number: u32) -> Option<&Telling> {
         self.traced.tellings.get((number as usize).checked_sub(1)?)
+    }
+
+    /// The files with places that tell, in the order of the module.
+    pub(super) fn files(&self) -> Vec<String> {
+        let mut files: Vec<String> = Vec::new();
+        for place in self.traced.places.iter().filter(|place| place.line > 0) {
+            if !files.contains(&place.file) {
+                files.push(place.file.clone());
+            }
+        }
+        files
     }
 
     /// The place of a telling.
@@ -77,7 +107,7 @@ impl<'a> TracedStage<'a> {
 
     /// A line of a file of the tree, without the space around it; empty if there is none.
     pub(super) fn line(&self, file: &str, line: u32) -> String {
-        let text = self.snapshot.read(&TreePath::from(file)).unwrap_or_default();
+        let text = self.of.snapshot.read(&TreePath::from(file)).unwrap_or_default();
         let at = (line as usize).checked_sub(1);
         at.and_then(|at| text.lines().nth(at)).unwrap_or_default().trim().to_owned()
     }
@@ -85,7 +115,7 @@ impl<'a> TracedStage<'a> {
     /// The statement of a telling, by its number.
     pub fn site_of(&self, number: u32) -> Option<Site> {
         let place = self.place(self.telling(number)?);
-        let Self { stage, snapshot, .. } = self;
+        let ListeningStage { stage, snapshot, .. } = self.of;
         Some(statement::site(place, Texts { snapshot, stage: &stage.path, dependencies: &stage.dependencies }))
     }
 }

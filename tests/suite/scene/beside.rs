@@ -60,7 +60,7 @@ fn each_model_stands_beside_the_one_before_and_is_moved_by_itself() {
     let after = colors(folder);
     assert!(after[0] == red && after[1].0 == 0, "{after:?}");
     let info = run(folder, &["info", "red.glb", "green.glb", "red.glb", "--json"]).json();
-    assert_eq!(info["model"]["name"], "red + green + red", "{info}");
+    assert_eq!(info["model"]["model"], "red + green + red", "{info}");
 }
 
 #[test]

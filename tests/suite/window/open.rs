@@ -62,7 +62,7 @@ fn a_model_is_added_beside_and_an_undo_takes_it_away() {
     std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
     std::fs::write(&bad, "").unwrap();
     let mut viewer = Viewer::driven(tree, &["sphere-grid"]);
-    viewer.ready_and_baked();
+    viewer.running.event("ready");
     let added = |viewer: &mut Viewer| viewer.running.done(json!({"command": "get"}))["added"].clone();
     let first = viewer.screenshot();
     viewer.running.done(json!({"command": "open", "beside": model}));
