@@ -284,10 +284,15 @@ impl Tracer<'_> {
         };
         let file = line.and_then(|line| file_of(self.module, &self.module[line]));
         // The end of a function without a value has no line.
-        let Some((file, line)) = file.or_else(|| (purpose == Purpose::Leave).then(|| (String::new(), 0))) else {
-            return;
-        };
-        self.tell_at(out, Place { file, line, purpose }, value);
+        let ends = matches!(i.op, Op::Return | Op::ReturnValue);
+        match file.filter(|(file, _)| self.is_wanted(file)) {
+            Some((file, line)) => self.tell_at(out, Place { file, line, purpose }, value),
+            // The calls that lead elsewhere are told, too.
+            None if ends && self.leads => {
+                self.tell_at(out, Place { file: String::new(), line: 0, purpose: Purpose::Leave }, None);
+            }
+            None => {}
+        }
     }
 
     /// Whether the places of a file tell.
