@@ -21,7 +21,7 @@ pub struct Member {
     pub root: usize,
     /// Where the origin of its file is without the settings, meters.
     pub origin: DVec3,
-    /// Taken from all positions of its file: [`Rig::shift`](super::motion::Rig::shift).
+    /// Taken from all positions of its file: see `Rig::shift`.
     pub shift: DVec3,
     /// Its clips.
     pub clips: Range<usize>,

@@ -23,7 +23,7 @@ const ALIGNED: u32 = 2;
 const DRAW_PARAMETERS: u32 = 4427;
 
 /// Whether a module, and with it each of its specializations, can be rewritten: it is a vertex or a fragment stage that reads members
-/// of its push constants alone, and uses neither [`LOCATION`] nor `gl_BaseInstance`.
+/// of its push constants alone, and uses neither `LOCATION` nor `gl_BaseInstance`.
 pub fn can_index_draws(words: &[u32]) -> bool {
     let Some(module) = Module::parse(words) else { return false };
     let Some(model) = module.model().filter(|of| matches!(*of, model::VERTEX | model::FRAGMENT)) else { return false };

@@ -151,9 +151,9 @@ fn random_paths_draw_many_lights_without_bias() {
             kind: LightKind::Point,
             position: Vec3::new(4.0 * at.x - 2.0, 0.2 + 0.4 * at.z, 4.0 * at.y - 2.0),
             direction: Vec3::NEG_Y,
-            intensity: Vec3::splat(if index % 25 == 0 { 1.0 } else { 0.05 }),
+            intensity: Vec3::splat(if index.is_multiple_of(25) { 1.0 } else { 0.05 }),
             // Every point has some 40 lights without a range, and as many with one.
-            range: (index % 25 != 0).then_some(0.7),
+            range: (!index.is_multiple_of(25)).then_some(0.7),
         }
     };
     model.lights = (0..1000).map(light).collect();
