@@ -80,7 +80,7 @@ fn models_stand_in_a_row_with_all_that_is_theirs() {
     }
     assert_eq!(all.lights.len(), models.iter().map(|model| model.lights.len()).sum::<usize>());
     assert_eq!(all.bounds.max.x, end);
-    // What settings call the parts of the first model still is theirs.
+    // The parts of the first model keep their names in settings.
     let keys = all.node_keys();
     assert_eq!(keys[1..=models[0].nodes.len()], models[0].node_keys());
     let hidden =
