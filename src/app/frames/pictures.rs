@@ -18,7 +18,8 @@ pub(super) fn take_screenshot(
     screen: &mut Screen,
     frame: &BoundFrame,
 ) -> Result<(), GpuError> {
-    if !state.screenshot || screen.lacks_limits(frame) {
+    let is_empty = frame.state.scene.is_none() && (state.model.loading || state.session.model().is_some());
+    if !state.screenshot || is_empty || screen.lacks_limits(frame) {
         return Ok(());
     }
     state.screenshot = false;
