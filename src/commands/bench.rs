@@ -7,8 +7,6 @@ mod folder;
 mod passes;
 mod samples;
 mod scale;
-mod scale_lights;
-mod scale_textures;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -51,7 +49,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Scale => scale::scale(&bench)?,
     };
     if matches!(args.what, What::Scale) {
-        result["textures"] = json!(scale_textures::series(&bench)?);
+        result["textures"] = json!(scale::textures::series(&bench)?);
     }
     drop(progress);
     result["device"] = json!(gpu.info().name);

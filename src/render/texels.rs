@@ -82,7 +82,7 @@ impl Texel {
         std::array::from_fn(|channel| (f32::from(self.stored[channel]) / most * 255.0).round() as u8)
     }
 
-    /// What 1 is in `stored`.
+    /// The value of 1 in `stored`.
     fn most(&self) -> f32 {
         if self.place.form == TexelForm::Rgba16 { 65535.0 } else { 255.0 }
     }

@@ -75,7 +75,7 @@ impl LightGrid {
                 cells[axis] += 1;
             }
         }
-        // What rounding may move a point by, in cells.
+        // Rounding may move a point by this, in cells.
         let slack = 1e-3 + 4e-7 * min.abs().max(max.abs()).max_element() * per_m.max_element();
         let mut reaches: Vec<Reach> = Vec::new();
         for (light, sphere) in spheres.iter().enumerate() {

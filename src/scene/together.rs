@@ -44,7 +44,7 @@ struct Together {
     row: Option<(f32, f32)>,
 }
 
-/// What is added to the indices of a model.
+/// The offsets of the indices of a model.
 struct Offsets {
     /// To all but 0, glTF's default material, which all models share.
     materials: usize,

@@ -1,20 +1,21 @@
 //! `bench scale`: how the time of a frame grows with the number of primitives, of materials, of joints and of lights.
 
 mod joints;
+mod lights;
+mod steps;
+pub(super) mod textures;
 
 use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
-use specula::cpu_clock::CpuClock;
 use specula::headless::Headless;
 use specula::interface::Vertex;
 use specula::scene::{Instance, Material, Model, Primitive, Topology, built_in};
 
 use super::context::Bench;
-use super::samples::{round, summary};
-use super::scale_lights::lights;
 use crate::commands::Failure;
+use steps::{Growth, Times, frames, turned};
 
 /// Numbers of primitives, with [`MATERIALS`] materials.
 const PRIMITIVES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
@@ -33,36 +34,25 @@ pub(super) fn scale(bench: &Bench<'_>) -> Result<Value, Failure> {
         "size": [bench.args.common.size().0, bench.args.common.size().1],
         "primitives": series(bench, &mut headless, &of_primitives)?,
         "materials": series(bench, &mut headless, &of_materials)?,
-        "lights": lights(bench, &mut headless)?,
+        "lights": lights::lights(bench, &mut headless)?,
         "joints": joints::joints(bench, &mut headless)?,
     }))
 }
 
 /// Times frames of each number of primitives and materials. `growth` is the factor by which the CPU time grows from the step before.
 fn series(bench: &Bench<'_>, headless: &mut Headless, steps: &[(usize, usize)]) -> Result<Vec<Value>, Failure> {
-    let (mut found, mut before) = (Vec::new(), None);
+    let (mut found, mut growth) = (Vec::new(), Growth::default());
     for (index, (primitives, materials)) in steps.iter().enumerate() {
         bench.progress.begin("step", (index, steps.len()), &format!("{primitives} primitives, {materials} materials"));
         headless.set_model(grid(*primitives, *materials)?)?;
-        headless.draw()?;
-        let (mut cpu, mut device) = (Vec::new(), Vec::new());
-        for _ in 0..bench.args.samples {
-            headless.settings_mut().camera.azimuth += 0.001;
-            let clock = CpuClock::start();
-            headless.draw()?;
-            cpu.extend(clock.map(CpuClock::ms));
-            device.extend(headless.device_ms());
-        }
-        let cpu = summary(cpu);
-        let now = cpu["min"].as_f64();
-        let growth = now.zip(before).map(|(now, before): (f64, f64)| round(now / before));
-        before = now;
+        let Times { cpu, device } = frames(bench, headless, turned)?;
+        let growth = growth.to(cpu["min"].as_f64());
         found.push(json!({
             "primitives": primitives,
             "materials": materials,
             "draws": headless.draw_counts().draws,
             "cpu_ms": cpu,
-            "device_ms": summary(device),
+            "device_ms": device,
             "growth": growth,
         }));
     }

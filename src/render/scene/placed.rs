@@ -152,7 +152,7 @@ impl PlacedScene {
         self.before.is_some()
     }
 
-    /// What the stages of a draw read.
+    /// The content of `draw` in the stages of a draw.
     pub(crate) fn push(&self, draw: u32) -> &Draw {
         &self.pushes[draw as usize]
     }

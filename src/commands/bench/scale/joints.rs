@@ -1,13 +1,12 @@
 //! `bench scale`: how the time of a frame grows with the number of joints that move a mesh.
 
 use serde_json::{Value, json};
-use specula::cpu_clock::CpuClock;
 use specula::headless::Headless;
 use specula::scene::{Model, load_bytes};
 
+use super::steps::{Growth, Times, frames};
 use crate::commands::Failure;
 use crate::commands::bench::context::Bench;
-use crate::commands::bench::samples::{round, summary};
 
 /// Numbers of joints.
 const JOINTS: [usize; 4] = [10, 100, 1_000, 10_000];
@@ -18,23 +17,13 @@ const U32: u32 = 5125;
 
 /// Times the frames of an animation that moves each joint of a skin.
 pub(super) fn joints(bench: &Bench<'_>, headless: &mut Headless) -> Result<Vec<Value>, Failure> {
-    let (mut found, mut before) = (Vec::new(), None);
+    let (mut found, mut growth) = (Vec::new(), Growth::default());
     for (index, joints) in JOINTS.into_iter().enumerate() {
         bench.progress.begin("step", (index, JOINTS.len()), &format!("{joints} joints"));
         headless.set_model(skinned(joints)?)?;
-        headless.draw()?;
-        let (mut cpu, mut device) = (Vec::new(), Vec::new());
-        for _ in 0..bench.args.samples {
-            let clock = CpuClock::start();
-            headless.draw_next()?;
-            cpu.extend(clock.map(CpuClock::ms));
-            device.extend(headless.device_ms());
-        }
-        let cpu = summary(cpu);
-        let now = cpu["min"].as_f64();
-        let growth = now.zip(before).map(|(now, before): (f64, f64)| round(now / before));
-        before = now;
-        found.push(json!({ "joints": joints, "cpu_ms": cpu, "device_ms": summary(device), "growth": growth }));
+        let Times { cpu, device } = frames(bench, headless, Headless::draw_next)?;
+        let growth = growth.to(cpu["min"].as_f64());
+        found.push(json!({ "joints": joints, "cpu_ms": cpu, "device_ms": device, "growth": growth }));
     }
     Ok(found)
 }

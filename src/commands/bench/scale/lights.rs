@@ -2,14 +2,13 @@
 
 use glam::Vec3;
 use serde_json::{Value, json};
-use specula::cpu_clock::CpuClock;
 use specula::headless::Headless;
 use specula::scene::{Light, LightKind, Model, built_in};
 use specula::settings::LightSource;
 
-use super::context::Bench;
-use super::samples::{round, summary};
+use super::steps::{Growth, Times, frames, turned};
 use crate::commands::Failure;
+use crate::commands::bench::context::Bench;
 
 /// Numbers of lights.
 const LIGHTS: [usize; 4] = [1, 10, 100, 1_000];
@@ -25,25 +24,14 @@ pub(super) fn lights(bench: &Bench<'_>, headless: &mut Headless) -> Result<Vec<V
     let base = built_in(BASE).and_then(Result::ok).ok_or_else(missing)?;
     let settings = headless.settings_mut().clone();
     headless.settings_mut().lights.source = LightSource::Model;
-    let (mut found, mut before) = (Vec::new(), None);
+    let (mut found, mut growth) = (Vec::new(), Growth::default());
     for (index, count) in LIGHTS.into_iter().enumerate() {
         bench.progress.begin("step", (index, LIGHTS.len()), &format!("{count} lights"));
         let model = lit_by(&base, count);
         let range_m = model.lights.first().and_then(|light| light.range);
         headless.set_model(model)?;
-        headless.draw()?;
-        let (mut cpu, mut device) = (Vec::new(), Vec::new());
-        for _ in 0..bench.args.samples {
-            headless.settings_mut().camera.azimuth += 0.001;
-            let clock = CpuClock::start();
-            headless.draw()?;
-            cpu.extend(clock.map(CpuClock::ms));
-            device.extend(headless.device_ms());
-        }
-        let (cpu, device) = (summary(cpu), summary(device));
-        let now = device["min"].as_f64().or_else(|| cpu["min"].as_f64());
-        let growth = now.zip(before).map(|(now, before): (f64, f64)| round(now / before));
-        before = now;
+        let Times { cpu, device } = frames(bench, headless, turned)?;
+        let growth = growth.to(device["min"].as_f64().or_else(|| cpu["min"].as_f64()));
         found.push(json!({
             "lights": count,
             "range_m": range_m,

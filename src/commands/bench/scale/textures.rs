@@ -9,10 +9,11 @@ use specula::gpu::MemoryUse;
 use specula::interface::TEXTURE_BASE_COLOR;
 use specula::scene::{Image, Model, Sampler, Texture, TextureUse, mips};
 
-use super::context::Bench;
-use super::samples::round;
-use super::scale::grid;
+use super::grid;
+use super::steps::Growth;
 use crate::commands::Failure;
+use crate::commands::bench::context::Bench;
+use crate::commands::bench::samples::round;
 
 /// Sizes of all textures with their mip levels, MiB.
 const TOTALS: [u64; 7] = [16, 64, 256, 512, 1024, 2048, 4096];
@@ -23,11 +24,11 @@ const RESERVE: u64 = 128;
 
 /// Uploads and draws models with more and more textures. `growth` is the factor by which the time of the upload grows from the step before. A
 /// step for which the device has not enough memory says so in `skipped`.
-pub(super) fn series(bench: &Bench<'_>) -> Result<Vec<Value>, Failure> {
+pub(in crate::commands::bench) fn series(bench: &Bench<'_>) -> Result<Vec<Value>, Failure> {
     let (source, settings) = (bench.args.common.source()?, bench.args.common.settings()?);
     let mut headless = bench.renderer(source, settings, grid(1, 1)?)?;
     let totals: Vec<u64> = TOTALS.into_iter().filter(|mib| *mib <= bench.args.texture_mib).collect();
-    let (mut found, mut before) = (Vec::new(), None);
+    let (mut found, mut growth) = (Vec::new(), Growth::default());
     for (index, mib) in totals.iter().enumerate() {
         bench.progress.begin("step", (index, totals.len()), &format!("{mib} MiB of textures"));
         // The model of the step before would take memory beside the next one.
@@ -55,12 +56,10 @@ pub(super) fn series(bench: &Bench<'_>) -> Result<Vec<Value>, Failure> {
         }
         let start = Instant::now();
         headless.draw()?;
-        let growth = before.map(|before: f64| round(upload_ms / before));
-        before = Some(upload_ms);
         step["upload_ms"] = json!(round(upload_ms));
         step["first_frame_ms"] = json!(round(start.elapsed().as_secs_f64() * 1e3));
         step["device_mib"] = json!(bench.gpu.memory().used.saturating_sub(memory.used) >> 20);
-        step["growth"] = json!(growth);
+        step["growth"] = json!(growth.to(Some(upload_ms)));
         found.push(step);
     }
     Ok(found)
