@@ -276,7 +276,7 @@ impl Headless {
         self.frames.pass_times()
     }
 
-    /// What the last frame drew, if the device supports timestamps.
+    /// Numbers of draws and of commands of the last frame.
     pub fn draw_counts(&self) -> DrawCounts {
         self.frames.draw_counts()
     }
