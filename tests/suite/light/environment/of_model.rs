@@ -74,6 +74,7 @@ fn strip() -> Vec<u8> {
 fn write_ball(folder: &Path) {
     let metal = json!({ "pbrMetallicRoughness": { "roughnessFactor": 0.2 } });
     let (mut json, mut bin) = glb::document(&glb::sphere(16, 32), &metal);
+    let mut images = Vec::new();
     for face in 0..6 {
         let mut png = Cursor::new(Vec::new());
         let rgba = image::RgbaImage::from_fn(SIDE as u32, SIDE as u32, |x, y| {
@@ -83,11 +84,12 @@ fn write_ball(folder: &Path) {
         let picture = image::DynamicImage::ImageRgba8(rgba);
         let picture = if face == 2 { picture } else { picture.into_rgb8().into() };
         picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
-        let view = json["bufferViews"].as_array().unwrap().len();
-        json["bufferViews"][view] = json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": png.get_ref().len() });
-        json["images"][face] = json!({ "bufferView": view, "mimeType": "image/png" });
+        let views = json["bufferViews"].as_array_mut().unwrap();
+        images.push(json!({ "bufferView": views.len(), "mimeType": "image/png" }));
+        views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": png.get_ref().len() }));
         bin.extend(png.into_inner());
     }
+    json["images"] = json!(images);
     json["buffers"][0]["byteLength"] = json!(bin.len());
     json["extensionsUsed"] = json!(["EXT_lights_image_based"]);
     json["extensions"]["EXT_lights_image_based"]["lights"] = json!([{ "intensity": INTENSITY,
