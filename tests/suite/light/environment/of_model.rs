@@ -122,5 +122,6 @@ fn the_light_of_a_gltf_file_is_that_of_the_same_cube_as_a_map() {
     run(folder, &["render", "--look", "a.png", "--size", "48x32", "--out", "b.png"]).expect(0, &[]);
     let [a, b] = ["a.png", "b.png"].map(|name| open_image(&folder.join(name)).into_rgba8());
     assert!(a == b, "the picture of the look differs");
-    run(folder, &["info", "ball.glb"]).expect(0, &["environment a cube of 8 x 8, intensity 1.5 (--env model)"]);
+    let info = run(folder, &["info", "ball.glb"]);
+    assert!(info.stdout.contains("environment a cube of 8 x 8, intensity 1.5 (--env model)"), "{info:#?}");
 }
