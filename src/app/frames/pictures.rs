@@ -11,7 +11,8 @@ use crate::gpu::GpuError;
 use crate::picture;
 use crate::render::{BoundFrame, Capture};
 
-/// Writes the screenshot that a key has asked for. It waits for the first picture, and for the range of a mode's values.
+/// Writes the screenshot that a key has asked for. It waits for the first picture, for the model's textures, and for the range of a mode's
+/// values.
 pub(super) fn take_screenshot(
     state: &mut State,
     engine: &mut Engine,
@@ -19,7 +20,8 @@ pub(super) fn take_screenshot(
     frame: &BoundFrame,
 ) -> Result<(), GpuError> {
     let is_empty = frame.state.scene.is_none() && (state.model.loading || state.session.model().is_some());
-    if !state.screenshot || is_empty || screen.lacks_limits(frame) {
+    let awaits_textures = state.model.loading && state.model.awaits.is_some();
+    if !state.screenshot || is_empty || awaits_textures || screen.lacks_limits(frame) {
         return Ok(());
     }
     state.screenshot = false;

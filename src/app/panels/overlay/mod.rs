@@ -138,7 +138,7 @@ fn warnings(egui: &egui::Context, state: &State, picture: Rect, commands: &mut V
     }
 }
 
-/// The passing messages, or that a model is loading. `free` is the part of the picture above the diagnostics.
+/// The passing messages, or that a model is loading, and that its textures are not on screen. `free` is the part of the picture above the diagnostics.
 fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
     let has_model = state.session.model().is_some_and(|model| !model.instances.is_empty());
     // If no model could be loaded, the message stays.
@@ -150,8 +150,10 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
         }
         texts.push(text);
     }
-    if texts.is_empty() && state.model.loading {
-        texts.push("Loading the model…");
+    match state.missing_textures() {
+        Some(missing) => texts.push(missing),
+        None if texts.is_empty() && state.model.loading => texts.push("Loading the model…"),
+        None => {}
     }
     if texts.is_empty() {
         return;
