@@ -121,7 +121,7 @@ fn a_model_is_on_screen_before_its_textures_and_gets_them_whatever_comes() {
         event["event"] == "ready"
     });
     assert!(!early.contains(&json!("settled")), "the picture was final without textures: {early:?}");
-    let is_red = |pixel: &image::Rgba<u8>| pixel[0] > 150 && pixel[1] < 60 && pixel[2] < 60;
+    let is_red = |pixel: &image::Rgba<u8>| pixel[0] > 80 && pixel[1] < 30 && pixel[2] < 30;
     let reds = |shot: &image::RgbaImage| shot.pixels().filter(|pixel| is_red(pixel)).count();
     let screen = viewer.until_screen("words about the textures", |screen| count(screen, 0..640, 0..480, WARNING) > 0);
     assert_eq!(reds(&screen), 0, "the textures were there before they were decoded");

@@ -158,6 +158,7 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
     if texts.is_empty() {
         return;
     }
+    let edge = if state.missing_textures().is_some() { WARNING } else { LINE };
     // Where the diagnostics leave no room below, it stands at the top.
     let above_names = if state.compare.is_on() { NAMES } else { 0.0 };
     let (corner, room) = match free.height() >= NOTICE {
@@ -165,7 +166,7 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
         false => (Align2::CENTER_TOP, picture),
     };
     area(Id::new("notice"), corner, room).interactable(false).show(egui, |ui| {
-        card(LINE.color()).show(ui, |ui| {
+        card(edge).show(ui, |ui| {
             let font = TextStyle::Body.resolve(ui.style());
             let color = ui.visuals().text_color();
             for text in texts {
