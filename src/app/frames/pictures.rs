@@ -20,7 +20,8 @@ pub(super) fn take_screenshot(
     frame: &BoundFrame,
 ) -> Result<(), GpuError> {
     let is_empty = frame.state.scene.is_none() && (state.model.loading || state.session.model().is_some());
-    let awaits_textures = state.model.loading && state.model.awaits.is_some();
+    let lacks_textures = frame.state.scene.as_ref().is_some_and(|scene| scene.model().awaits_textures);
+    let awaits_textures = lacks_textures && state.model.loading;
     if !state.screenshot || is_empty || awaits_textures || screen.lacks_limits(frame) {
         return Ok(());
     }
