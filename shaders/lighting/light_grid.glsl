@@ -19,8 +19,8 @@ struct LightGridWord {
     uint word;
 };
 
-// Words: the place of the list of each cell, x fastest; that of the list for points outside of all cells; the end of them. Then the
-// lists: numbers of lights in ascending order, and NO_LIGHT.
+// Words: the place of the list of each cell, x fastest, and the end of the last. Then the lists: numbers of lights in ascending order, and
+// NO_LIGHT. The outermost cells have no end.
 layout(set = SET_FRAME, binding = BINDING_LIGHT_GRID, scalar) readonly buffer LightGridWords {
     LightGrid light_grid;
     LightGridWord light_words[];
@@ -30,11 +30,12 @@ const uint NO_LIGHT = 0xffffffffu;
 
 // The place of the list of a point's cell. The place after it is that of the next list.
 uint light_cell(vec3 position_ws) {
-    vec3 at = floor((position_ws - light_grid.min_ws) * light_grid.cells_per_m);
     uvec3 cells = light_grid.cells;
-    uvec3 cell = uvec3(max(at, vec3(0.0)));
-    bool is_in = all(greaterThanEqual(at, vec3(0.0))) && all(lessThan(at, vec3(cells)));
-    return is_in ? (cell.z * cells.y + cell.y) * cells.x + cell.x : cells.x * cells.y * cells.z;
+    vec3 at = (position_ws - light_grid.min_ws) * light_grid.cells_per_m;
+    uvec3 last = max(cells, uvec3(1u)) - 1u;
+    // Twice, since a position that is no number may be any cell.
+    uvec3 cell = min(uvec3(clamp(at, vec3(0.0), vec3(last))), last);
+    return (cell.z * cells.y + cell.y) * cells.x + cell.x;
 }
 
 // The lists of a point, one after the other: of the lights for every point, and of its cell.

@@ -3,7 +3,7 @@
 //!
 //! The cells are boxes in world space, not in the camera's frustum as in that paper. So one grid serves every camera, size and view of a
 //! frame, and also what no camera sees: hits of path tracing, the ground, compute passes. It changes with the lights alone. It spans only
-//! the part of the model's bounds that lights with a range reach, and one more list holds the lights that reach points outside of it.
+//! the part of the model's bounds that lights with a range reach. Its outermost cells have no end: they hold the points outside of it.
 //!
 //! A light is in the list of every cell that it may reach, so the picture is that of a loop over all lights: beyond its range and outside
 //! its cone, a light of KHR_lights_punctual is exactly 0. Lights without an end, or in more than half of the cells, are in one list for
@@ -17,7 +17,7 @@ use glam::{Vec3, Vec4Swizzles};
 use super::model::Bounds;
 use crate::interface::{self, Light};
 
-/// Cells of a grid, at most.
+/// Cells of a grid, at most, without the layers for points outside.
 const MOST_CELLS: usize = 32_768;
 /// Cells that lists may name in all. Beyond it, the lights with the largest range go to the list for all cells.
 const MOST_NAMED: u64 = 1 << 20;
@@ -56,30 +56,36 @@ impl LightGrid {
         // A flat model has a grid of some height, and rounding leaves no point of the model outside.
         let margin = 1e-3 * bounds.radius() + 1e-5 * bounds.center().abs().max_element();
         let (reached_min, reached_max) = (corner(Vec3::min, -1.0, Vec3::MAX), corner(Vec3::max, 1.0, Vec3::MIN));
-        let (min, max) = (reached_min.max(bounds.min - margin), reached_max.min(bounds.max + margin));
-        // The sides beyond which lights reach.
-        let is_cut = [reached_min.cmplt(min), reached_max.cmpgt(max)];
+        let (mut min, mut max) = (reached_min.max(bounds.min - margin), reached_max.min(bounds.max + margin));
         let size = max - min;
         if !(size.is_finite() && size.min_element() > 0.0) {
             // No light with a range reaches the model. Points outside of it may still be lit.
             return Self::everywhere(lights.len());
         }
-        let cells = cells_of(size);
-        let per_m = cells.map(|count| count as f32);
-        let per_m = Vec3::from(per_m) / size;
+        let mut cells = cells_of(size);
+        let per_m = Vec3::from(cells.map(|count| count as f32)) / size;
+        // Where no light reaches beyond the grid, an outermost layer without lights is for the points there.
+        for axis in 0..3 {
+            if reached_min[axis] >= min[axis] {
+                min[axis] -= 1.0 / per_m[axis];
+                cells[axis] += 1;
+            }
+            if reached_max[axis] <= max[axis] {
+                max[axis] += 1.0 / per_m[axis];
+                cells[axis] += 1;
+            }
+        }
         // What rounding may move a point by, in cells.
         let slack = 1e-3 + 4e-7 * min.abs().max(max.abs()).max_element() * per_m.max_element();
         let mut reaches: Vec<Reach> = Vec::new();
         for (light, sphere) in spheres.iter().enumerate() {
             let Some((center, radius)) = *sphere else { continue };
             let (center, radius) = ((center - min) * per_m, radius * per_m + 2.0 * slack);
-            let index =
-                |at: Vec3, up: f32| [0, 1, 2].map(|axis| (at[axis].floor() + up).clamp(0.0, cells[axis] as f32) as u32);
-            let (first, end) = (index(center - radius, 0.0), index(center + radius, 1.0));
+            let index = |at: Vec3| [0, 1, 2].map(|axis| at[axis].floor().clamp(0.0, cells[axis] as f32 - 1.0) as u32);
+            let (first, end) = (index(center - radius), index(center + radius).map(|last| last + 1));
             reaches.push(Reach { light: light as u32, center, radius, first, end });
         }
-        let outside = cells.iter().product();
-        let limit = largest_reach(&reaches, outside);
+        let limit = largest_reach(&reaches, cells.iter().product());
         // Cells and lights that reach them. Sorted by cell, they stay in the order of the lights.
         let mut named: Vec<[u32; 2]> = Vec::new();
         let mut is_everywhere: Vec<bool> = spheres.iter().map(Option::is_none).collect();
@@ -89,12 +95,6 @@ impl LightGrid {
                 continue;
             }
             reach.name_cells(cells, &mut named);
-            let (low, high) = (reach.center - reach.radius, reach.center + reach.radius);
-            let grid = Vec3::from(cells.map(|count| count as f32));
-            let touched = [low, grid - high].map(|left| left.cmple(Vec3::splat(slack)));
-            if (touched[0] & is_cut[0] | touched[1] & is_cut[1]).any() {
-                named.push([outside, reach.light]);
-            }
         }
         let everywhere = (0..lights.len()).filter(|light| is_everywhere[*light]).map(|light| light as u32).collect();
         let head = interface::LightGrid {
@@ -111,10 +111,10 @@ impl LightGrid {
         Self::of_lists(interface::LightGrid::default(), &[], (0..count as u32).collect())
     }
 
-    /// The words after the head: where the list of each cell begins, that of the points outside, and the end of both; then the lists,
-    /// each with [`END`] behind it, and the list for all points.
+    /// The words after the head: where the list of each cell begins, and the end of the last; then the lists, each with [`END`] behind
+    /// it, and the list for all points. Without cells there is one empty list.
     fn of_lists(mut head: interface::LightGrid, named: &[[u32; 2]], everywhere: Vec<u32>) -> Self {
-        let lists = head.cells.iter().product::<u32>() as usize + 1;
+        let lists = head.cells.iter().product::<u32>().max(1) as usize;
         let mut places = vec![1; lists + 1];
         for [cell, _] in named {
             places[*cell as usize] += 1;
@@ -143,12 +143,14 @@ impl LightGrid {
 }
 
 impl Reach {
-    /// Names each cell that the sphere touches. Cells may be flat boxes, so distances are measured in radii.
+    /// Names each cell that the sphere touches. Cells may be flat boxes, so distances are measured in radii. The outermost have no end.
     fn name_cells(&self, cells: [u32; 3], named: &mut Vec<[u32; 2]>) {
         // Squared distance of the cells at a place along an axis, in radii.
         let apart = |axis: usize, at: u32| {
             let (low, center) = (at as f32, self.center[axis]);
-            let distance = (low - center).max(center - low - 1.0).max(0.0) / self.radius[axis];
+            let below = if at == 0 { 0.0 } else { low - center };
+            let above = if at + 1 == cells[axis] { 0.0 } else { center - low - 1.0 };
+            let distance = below.max(above).max(0.0) / self.radius[axis];
             distance * distance
         };
         let row = |axis: usize| (self.first[axis]..self.end[axis]).map(move |at| (at, apart(axis, at)));
@@ -241,9 +243,8 @@ mod tests {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(words);
         let at = ((point - Vec3::from(head.min_ws)) * Vec3::from(head.cells_per_m)).floor();
         let cells = Vec3::from(head.cells.map(|cells| cells as f32));
-        let is_in = at.cmpge(Vec3::ZERO).all() && at.cmplt(cells).all();
-        let [x, y, z] = at.to_array().map(|at| at as u32);
-        let cell = if is_in { (z * head.cells[1] + y) * head.cells[0] + x } else { head.cells.iter().product::<u32>() };
+        let [x, y, z] = at.clamp(Vec3::ZERO, (cells - 1.0).max(Vec3::ZERO)).to_array().map(|at| at as u32);
+        let cell = (z * head.cells[1] + y) * head.cells[0] + x;
         let list = |place: u32| words[place as usize..].iter().copied().take_while(|word| *word != END).collect();
         let [of_cell, next]: [u32; 2] = words[cell as usize..][..2].try_into().unwrap();
         let of_cell_list: Vec<u32> = list(of_cell);
@@ -301,7 +302,7 @@ mod tests {
         };
         let named = |lights: &[Light]| {
             let grid = LightGrid::new(lights, &bounds());
-            let listed = points().map(|point| (point, lists(&grid, point)[0].clone()));
+            let listed = points().map(|point| (point, lists(&grid, point).concat()));
             let mut named = 0;
             for (point, list) in listed {
                 named += list.len();

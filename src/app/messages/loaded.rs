@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::actions::compare::file::on_picture_changed;
 use crate::app::actions::files::load_model;
-use crate::app::actions::select::follow_lights;
+use crate::app::actions::select::{follow_environment, follow_lights};
 use crate::app::actions::watch::watch_files;
 use crate::app::engine::Engine;
 use crate::app::state::State;
@@ -55,6 +55,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             }
             if !is_restored && (is_other || state.session.model().is_none()) {
                 follow_lights(state, model);
+                follow_environment(state, model);
             }
             state.model.awaits = awaits_textures.then_some(loaded.number);
             if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {

@@ -2,6 +2,7 @@
 //! crate's own readers panic on invalid files and refuse some valid ones.
 
 mod compression;
+mod environment;
 mod file;
 mod geometry;
 mod instancing;
@@ -87,6 +88,7 @@ fn build(
     let mut buffers = Buffers::load(&root, bin, &mut files)?;
     warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
     let reader = Reader { root: &root, buffers: &buffers };
+    let environment = environment::read(&root, &buffers, &mut files, scene, &mut warnings);
     let mut scene = nodes::walk(&root, scene)?;
     let weights = skins::attach(reader, &raw, &mut scene)?;
     let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut scene.warnings);
@@ -112,6 +114,7 @@ fn build(
         variants: variants.into(),
         files: files.tried.clone().into(),
         nodes: scene.nodes.into(),
+        environment,
         contents: contents.into(),
         timing: LoadTiming { parse_ms: milliseconds(start), ..LoadTiming::default() },
         ..Model::default()

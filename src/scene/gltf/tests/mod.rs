@@ -6,6 +6,7 @@ mod extensions;
 mod features;
 mod geometry;
 mod growth;
+mod image_based;
 mod invalid;
 mod materials;
 mod motion;
