@@ -77,7 +77,7 @@ impl Early {
         // Both only begin early what would be done later.
         let _ = std::thread::Builder::new().spawn(move || compiler.warm());
         let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
-        let reading = loader::read(options.model.clone(), options.load_options.clone());
+        let reading = loader::read(options.model.clone(), options.load_options.clone(), true);
         Self { watcher, reading, events: events.clone() }
     }
 }

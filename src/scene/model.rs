@@ -57,6 +57,8 @@ pub struct Model {
     /// Warnings, one sentence for each part that the loader ignored or replaced: unknown extensions, images that cannot be
     /// decoded, repaired tangents.
     pub warnings: Arc<Vec<String>>,
+    /// Whether placeholders stand for its images, which are still being decoded. All else is that of the whole model.
+    pub awaits_textures: bool,
     /// Loading times.
     pub timing: LoadTiming,
 }

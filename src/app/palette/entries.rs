@@ -178,9 +178,11 @@ fn of_scene(state: &State) -> Vec<Entry> {
     let mut entries: Vec<Entry> =
         nodes.map(|(at, node)| select(format!("Select node {}", node.name), Selected::Node(at))).collect();
     entries.extend(
-        (1..model.materials.len())
+        (0..)
+            .zip(model.material_keys())
+            .skip(1)
             .take(MOST_NODES)
-            .map(|index| select(format!("Select material {}", model.material_key(index)), Selected::Material(index))),
+            .map(|(index, key)| select(format!("Select material {key}"), Selected::Material(index))),
     );
     entries.extend((0..state.session.settings.lights.orbit.len()).map(|light| {
         select(format!("Move light {} in the picture", light + 1), Selected::Light(LightId::Orbit(light)))

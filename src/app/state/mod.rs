@@ -385,6 +385,12 @@ impl State {
         SessionState { settings: self.session.shared_settings(), model: model.clone(), scene, tree }
     }
 
+    /// A few words if the model on screen lacks its textures.
+    pub(in crate::app) fn missing_textures(&self) -> Option<&'static str> {
+        self.session.model().filter(|model| model.awaits_textures)?;
+        Some(if self.model.loading { "textures are being decoded" } else { "textures are missing" })
+    }
+
     /// Whether the shaders have errors.
     pub(in crate::app) fn has_errors(&self) -> bool {
         self.errors().next().is_some()
