@@ -34,16 +34,26 @@ impl<T: Send + 'static> Running<T> {
 
     /// Returns the result of the work, or `None` once `canceled` returns true. A panic of the work is resumed in the caller.
     pub(crate) fn wait_unless(mut self, canceled: &dyn Fn() -> bool) -> Option<T> {
-        loop {
-            match self.result.recv_timeout(INTERVAL) {
-                Ok(result) => return Some(result),
-                Err(RecvTimeoutError::Timeout) if canceled() => return None,
-                Err(RecvTimeoutError::Timeout) => {}
-                // The thread has ended without a result.
-                Err(RecvTimeoutError::Disconnected) => {
-                    return self.thread.take()?.join().map_or_else(|panic| resume_unwind(panic), |()| None);
-                }
+        match receive_unless(&self.result, canceled) {
+            Ok(result) => Some(result),
+            Err(RecvTimeoutError::Timeout) => None,
+            // The thread has ended without a result.
+            Err(RecvTimeoutError::Disconnected) => {
+                self.thread.take()?.join().map_or_else(|panic| resume_unwind(panic), |()| None)
             }
+        }
+    }
+}
+
+/// Waits for what another thread sends.
+///
+/// # Errors
+/// `Timeout` once `canceled` returns true, `Disconnected` if nothing more is sent.
+pub(crate) fn receive_unless<T>(from: &Receiver<T>, canceled: &dyn Fn() -> bool) -> Result<T, RecvTimeoutError> {
+    loop {
+        match from.recv_timeout(INTERVAL) {
+            Err(RecvTimeoutError::Timeout) if !canceled() => {}
+            received => return received,
         }
     }
 }

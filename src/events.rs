@@ -18,7 +18,7 @@ pub enum Event<'a> {
         /// Milliseconds since the start of the program.
         ms: f64,
     },
-    /// The first picture of the model is on screen.
+    /// The first picture of the model is on screen. Textures that take long to decode follow before `settled`.
     Ready {
         /// Device in use.
         device: &'a str,
@@ -29,7 +29,7 @@ pub enum Event<'a> {
     Reload(ReloadEvent),
     /// After a reload: the stages that the frame did not need have been compiled.
     Completed(CompletedEvent),
-    /// The window shows all of the last reload: its stages are compiled and its light is baked.
+    /// The window shows all of the last reload: its stages are compiled, its light is baked, and the model has its textures.
     Settled {
         /// Shader generation.
         generation: u64,

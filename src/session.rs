@@ -123,7 +123,8 @@ impl Session {
     /// The absolute path of the environment's file; empty for a built-in environment.
     pub fn environment_files(&self) -> Vec<PathBuf> {
         let name = self.settings.environment.name.as_str();
-        let is_file = name != "none" && (!environment::BUILT_IN.contains(&name) || Path::new(name).is_file());
+        let is_file = !environment::is_word_of_specula(name)
+            || (environment::BUILT_IN.contains(&name) && Path::new(name).is_file());
         is_file.then(|| std::path::absolute(name).ok()).flatten().into_iter().collect()
     }
 

@@ -27,6 +27,8 @@ pub struct AppOptions {
     pub plain: Option<SessionState>,
     /// Whether a model that has lights is lit by them: the user has not chosen which lights shine.
     pub follows_lights: bool,
+    /// Whether a model that has an environment is lit by it: the user has not chosen one.
+    pub follows_environment: bool,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
@@ -75,7 +77,7 @@ impl Early {
         // Both only begin early what would be done later.
         let _ = std::thread::Builder::new().spawn(move || compiler.warm());
         let _ = std::thread::Builder::new().spawn(crate::learn::exercises);
-        let reading = loader::read(options.model.clone(), options.load_options.clone());
+        let reading = loader::read(options.model.clone(), options.load_options.clone(), true);
         Self { watcher, reading, events: events.clone() }
     }
 }

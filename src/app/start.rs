@@ -43,6 +43,7 @@ pub(super) fn start(
         hint: Hint::restored(),
         learning: Learning::restored(),
         follows_lights: options.follows_lights,
+        follows_environment: options.follows_environment,
         load_options: options.load_options,
         offers_session: options.plain.is_some(),
         plain: options.plain,

@@ -7,6 +7,7 @@ use specula::gpu::{AdapterInfo, GpuError, adapters};
 use specula::interface::{ATTRIBUTE_UV0, ATTRIBUTE_UV1, TEXTURES};
 use specula::message::escape;
 use specula::render::texel_forms;
+use specula::scene::environment::ModelEnvironment;
 use specula::scene::{Clip, Material, Model, Primitive, Skin, Topology, slot_name, texture_sources};
 
 use super::common::{Common, Models};
@@ -96,6 +97,11 @@ fn print_model(model: &Model) {
     out!("  materials   {}", materials(model));
     out!("  variants    {}", if variants.is_empty() { "none".to_owned() } else { variants.join(", ") });
     out!("  lights      {}", count(model.lights.len()));
+    if let Some(environment) = &model.environment {
+        let name = if environment.name.is_empty() { String::new() } else { format!("{}: ", escape(&environment.name)) };
+        let ModelEnvironment { side, intensity, .. } = **environment;
+        out!("  environment {name}a cube of {side} x {side}, intensity {intensity} (--env model)");
+    }
     out!("  cameras     {}", count(model.cameras.len()));
     for (number, camera) in model.cameras.iter().enumerate() {
         out!("    {} ({})", escape(&model.camera_key(number)), camera.lens);
@@ -167,6 +173,16 @@ fn count(number: usize) -> String {
 }
 
 fn summary(model: &Model) -> serde_json::Value {
+    let mut value = parts(model);
+    if let Some(environment) = &model.environment {
+        let ModelEnvironment { name, side, intensity, rotation, .. } = &**environment;
+        value["environment"] =
+            json!({ "name": name, "side": side, "intensity": intensity, "rotation": rotation.to_array() });
+    }
+    value
+}
+
+fn parts(model: &Model) -> serde_json::Value {
     let (vertices, indices) = counts(model);
     json!({
         "model": model.name,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::frame::stages::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES, TABLE_STAGES};
 use crate::gpu::Specialization;
+use crate::scene::environment::{MODEL, ModelEnvironment};
 use crate::shader::{ShaderSet, Stage};
 
 /// A compute stage with the author's constants that it declares, and the author's parameters. Two are equal if the driver is
@@ -102,6 +103,8 @@ impl TablesKey {
 pub struct EnvironmentKey {
     /// Built-in name or file.
     pub name: String,
+    /// The environment of the model's file, if `name` asks for it.
+    pub(crate) of_model: Option<Arc<ModelEnvironment>>,
     pub(crate) revision: u64,
     /// Whether suns are separated from the maps.
     pub(crate) suns: bool,
@@ -114,9 +117,16 @@ pub struct EnvironmentKey {
 }
 
 impl EnvironmentKey {
-    pub(crate) fn new(name: &str, revision: u64, suns: bool, shaders: &ShaderSet, values: BakeValues<'_>) -> Self {
+    /// `of_model`: the environment of the model's file.
+    pub(crate) fn new(
+        (name, revision, suns): (&str, u64, bool),
+        of_model: Option<&Arc<ModelEnvironment>>,
+        shaders: &ShaderSet,
+        values: BakeValues<'_>,
+    ) -> Self {
         Self {
             name: name.to_owned(),
+            of_model: of_model.filter(|_| name == MODEL).cloned(),
             revision,
             suns,
             radiance: stages(shaders, &RADIANCE_STAGES, values),
@@ -135,15 +145,19 @@ impl EnvironmentKey {
         self.radiance.first().map_or(&[], |stage| &stage.params)
     }
 
+    fn has_map_of(&self, other: &Self) -> bool {
+        let of = |key: &Self| (key.revision, key.suns);
+        (&self.name, &self.of_model) == (&other.name, &other.of_model) && of(self) == of(other)
+    }
+
     /// Whether the cube map and the irradiance are the same.
     pub(crate) fn has_radiance_of(&self, other: &Self) -> bool {
-        (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)
-            && self.radiance == other.radiance
+        self.has_map_of(other) && self.radiance == other.radiance
     }
 
     /// Whether both differ at most by values of parameters, as two steps of a slider do.
     pub(crate) fn is_step_of(&self, other: &Self) -> bool {
-        (&self.name, self.revision, self.suns) == (&other.name, other.revision, other.suns)
+        self.has_map_of(other)
             && same_modules(&self.radiance, &other.radiance)
             && same_modules(&self.prefilter, &other.prefilter)
             && same_modules(&self.sheen, &other.sheen)
@@ -151,7 +165,7 @@ impl EnvironmentKey {
 
     /// Whether both use the same map, suns and models, so that they differ by an edit of the shaders or of the file at most.
     pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
-        (&self.name, self.suns) == (&other.name, other.suns)
+        (&self.name, &self.of_model, self.suns) == (&other.name, &other.of_model, other.suns)
             && same_constants(&self.prefilter, &other.prefilter)
             && same_constants(&self.sheen, &other.sheen)
     }

@@ -41,6 +41,7 @@ use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
+use crate::scene::environment::MODEL;
 use crate::scene::{
     Bounds, CameraView, LightGrid, Model, Sun, has_exact_sun, lights, separates_suns, view_of, view_of_light,
 };
@@ -153,18 +154,21 @@ struct Needs {
 impl Needs {
     /// `pipelines`: those of a picture without suns.
     fn new(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
-        let FrameInputs { settings, shaders, revisions, .. } = *inputs;
+        let FrameInputs { settings, shaders, scene, revisions, .. } = *inputs;
         let pipelines = pipelines.for_suns(revisions.suns_of(settings));
         let params: Arc<[u8]> = values::params(&settings.shader, &shaders.parameters).into();
         let values = BakeValues { constants: &pipelines.constants, params: &params };
         let environment = || {
             let (name, revision) = (&settings.environment.name, revisions.environment);
             let suns = separates_suns(&settings.environment);
-            Arc::new(EnvironmentKey::new(name, revision, suns, shaders, values))
+            let of_model = scene.and_then(|scene| scene.model().environment.as_ref());
+            Arc::new(EnvironmentKey::new((name, revision, suns), of_model, shaders, values))
         };
+        // Before there is a model, its environment is unknown.
+        let is_known = settings.environment.name != MODEL || scene.is_some();
         Self {
             tables: Arc::new(TablesKey::new(shaders, values)),
-            environment: settings.environment.is_lit().then(environment),
+            environment: (settings.environment.is_lit() && is_known).then(environment),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
             pipelines: Arc::new(pipelines),

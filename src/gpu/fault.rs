@@ -20,6 +20,7 @@
 //! - `worker-panic:N`: the worker panics at the Nth reload of the process.
 //! - `compile-delay-ms:N`: every reload takes so much longer.
 //! - `load-delay-ms:N`: reading a model takes so much longer.
+//! - `textures-delay-ms:N`: the textures of a model that is shown without them take so much longer.
 //! - `closing-panic:1`, `closing-delay-ms:N`, `closing-limit-ms:N`: closing the window panics, takes so much longer, or may take so long.
 //! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
 //!

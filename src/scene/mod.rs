@@ -3,6 +3,7 @@
 //! [`load`] turns a glTF file into a [`Model`] and checks all indices and numbers, so that later code may index and divide
 //! without checks. An error in the file becomes a [`LoadError`] or a warning of the model.
 
+pub mod background;
 mod bounds;
 mod built_in;
 mod bvh;
@@ -48,7 +49,7 @@ pub use gltf::{find_model, triangles};
 pub use images::{ASTC_BLOCKS, Basis, TexelForm, TexelForms, Texels};
 pub use light_grid::LightGrid;
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
-pub use load_options::{Canceled, LoadOptions};
+pub use load_options::{Caller, Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use members::{Member, Places};
 pub use model::*;
@@ -66,22 +67,23 @@ pub use texture_source::{TextureSource, slot_name, texture_sources};
 /// # Errors
 /// As [`load`].
 pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadError> {
-    open_unless(path, options, &|| false)
+    open_for(path, options, Caller::until(&|| false))
 }
 
-/// As [`open`], until `canceled` says so. It is asked before each file and each image.
+/// As [`open`], until the caller cancels it. One model alone is given to the caller early, if it wants that.
 ///
 /// # Errors
 /// As [`load`], or [`Problem::Canceled`].
-pub fn open_unless(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
-    let first = open_one(path, options, canceled)?;
+pub fn open_for(path: Option<&Path>, options: &LoadOptions, caller: Caller<'_>) -> Result<Model, LoadError> {
     if options.added.is_empty() {
-        return Ok(first);
+        return open_one(path, options, caller);
     }
+    let caller = Caller::until(caller.canceled);
+    let first = open_one(path, options, caller)?;
     let own = LoadOptions { scene: None, ..options.clone() };
     let mut models = vec![(String::new(), first)];
     for file in &options.added {
-        let loaded = open_one(Some(Path::new(file)), &own, canceled);
+        let loaded = open_one(Some(Path::new(file)), &own, caller);
         let tried = || models.iter().flat_map(|(_, model)| model.files.iter().cloned());
         let model = loaded.map_err(|error| LoadError { files: tried().chain(error.files).collect(), ..error })?;
         models.push((file.clone(), model));
@@ -89,11 +91,11 @@ pub fn open_unless(path: Option<&Path>, options: &LoadOptions, canceled: Cancele
     Ok(together::side_by_side(models))
 }
 
-fn open_one(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
+fn open_one(path: Option<&Path>, options: &LoadOptions, caller: Caller<'_>) -> Result<Model, LoadError> {
     let name = path.map_or(Some(BUILT_IN[0]), |path| if path.exists() { None } else { path.to_str() });
     match (name.and_then(built_in), path) {
         (Some(model), _) => model,
-        (None, path) => load_unless(path.unwrap_or(Path::new("")), options, canceled),
+        (None, path) => load_for(path.unwrap_or(Path::new("")), options, caller),
     }
 }
 
@@ -104,12 +106,12 @@ fn open_one(path: Option<&Path>, options: &LoadOptions, canceled: Canceled<'_>) 
 /// Fails if the file or a file that it names cannot be read or is invalid, or requires an unsupported extension. Never
 /// panics, whatever the content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
-    load_unless(path, options, &|| false)
+    load_for(path, options, Caller::until(&|| false))
 }
 
-fn load_unless(path: &Path, options: &LoadOptions, canceled: Canceled<'_>) -> Result<Model, LoadError> {
+fn load_for(path: &Path, options: &LoadOptions, caller: Caller<'_>) -> Result<Model, LoadError> {
     let mut files = Vec::new();
-    let loaded = gltf::load_file(path, options, canceled, &mut files);
+    let loaded = gltf::load_file(path, options, caller, &mut files);
     loaded.map_err(|problem| LoadError { file: path.to_owned(), problem: Box::new(problem), files })
 }
 

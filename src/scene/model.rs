@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 pub use super::bounds::Bounds;
+use super::environment::ModelEnvironment;
 pub use super::images::Image;
 pub use super::material::*;
 use super::members::Member;
@@ -37,6 +38,8 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// Cameras, placed in the world.
     pub cameras: Vec<Camera>,
+    /// The environment that the scene names (EXT_lights_image_based).
+    pub environment: Option<Arc<ModelEnvironment>>,
     /// The models that are shown together; empty for a single one.
     pub members: Arc<Vec<Member>>,
     /// How the model can move.
@@ -54,6 +57,8 @@ pub struct Model {
     /// Warnings, one sentence for each part that the loader ignored or replaced: unknown extensions, images that cannot be
     /// decoded, repaired tangents.
     pub warnings: Arc<Vec<String>>,
+    /// Whether placeholders stand for its images, which are still being decoded. All else is that of the whole model.
+    pub awaits_textures: bool,
     /// Loading times.
     pub timing: LoadTiming,
 }

@@ -17,6 +17,8 @@ pub const MOST_INSTANCES: usize = 2000;
 const MOST_POINTS: usize = 1 << 21;
 /// Points that one task searches.
 const POINTS_A_TASK: usize = 4096;
+/// Points whose box is looked at before they are.
+const POINTS_A_BOX: usize = 64;
 
 /// The model's hull points, world space: the farthest point in each of many directions. They are vertices that some index refers
 /// to, as in the model's bounds. The work grows with the number of points and never faster than the number of instances.
@@ -64,7 +66,8 @@ struct Directions {
     z: [f32; DIRECTIONS],
 }
 
-/// For each direction the largest distance along it, and the index of the point there.
+/// For each direction a distance that some point has reached along it, and the index of the last such point so far, or [`NOWHERE`].
+#[derive(Clone, Copy)]
 struct Farthest {
     distance: [f32; DIRECTIONS],
     point: [u32; DIRECTIONS],
@@ -78,14 +81,25 @@ impl Directions {
 
     /// For each direction the point that lies farthest along it; of several the last. Empty without points.
     fn farthest(&self, points: &[Vec3]) -> Vec<Vec3> {
-        let search = |(task, points): (usize, &[Vec3])| self.search(points, task * POINTS_A_TASK);
+        // A few of the points say which others need not be looked at.
+        let some: Vec<Vec3> = points.iter().step_by(POINTS_A_BOX).copied().collect();
+        let reached = self.search(&some, 0, &NOTHING).distance;
+        let search = |(task, points): (usize, &[Vec3])| {
+            // Points that are as far are found again, and the last of them counts.
+            let known = Farthest { distance: reached, ..NOTHING };
+            let boxes = points.chunks(POINTS_A_BOX).enumerate();
+            boxes.fold(known, |known, (number, points)| match self.may_reach(points, &known) {
+                true => self.search(points, task * POINTS_A_TASK + number * POINTS_A_BOX, &known),
+                false => known,
+            })
+        };
         let found = points.par_chunks(POINTS_A_TASK).enumerate().map(search).reduce_with(Farthest::or_later);
-        found.iter().flat_map(|found| found.point).map(|index| points[index as usize]).collect()
+        found.iter().flat_map(|found| found.point).filter_map(|index| points.get(index as usize)).copied().collect()
     }
 
-    /// Searches points whose first one has the index `first` among all.
-    fn search(&self, points: &[Vec3], first: usize) -> Farthest {
-        let mut found = Farthest { distance: [f32::NEG_INFINITY; DIRECTIONS], point: [first as u32; DIRECTIONS] };
+    /// Searches points whose first one has the index `first` among all, and that come after the known ones.
+    fn search(&self, points: &[Vec3], first: usize, known: &Farthest) -> Farthest {
+        let mut found = *known;
         for (index, point) in (first as u32..).zip(points) {
             for k in 0..DIRECTIONS {
                 let distance = self.x[k] * point.x + self.y[k] * point.y + self.z[k] * point.z;
@@ -96,13 +110,32 @@ impl Directions {
         }
         found
     }
+
+    /// Whether one of the points may lie as far as the known ones in some direction: their box does.
+    fn may_reach(&self, points: &[Vec3], known: &Farthest) -> bool {
+        let (min, max) = points
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| (min.min(*point), max.max(*point)));
+        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        // More than what rounding may take from the distance of a corner.
+        let slack = 1e-5 * min.abs().max(max.abs()).element_sum();
+        (0..DIRECTIONS).any(|k| {
+            let [x, y, z] = [self.x[k], self.y[k], self.z[k]];
+            let middle = x * center.x + y * center.y + z * center.z;
+            middle + (x.abs() * half.x + y.abs() * half.y + z.abs() * half.z) + slack >= known.distance[k]
+        })
+    }
 }
+
+/// No point has been found.
+const NOWHERE: u32 = u32::MAX;
+const NOTHING: Farthest = Farthest { distance: [f32::NEG_INFINITY; DIRECTIONS], point: [NOWHERE; DIRECTIONS] };
 
 impl Farthest {
     /// For each direction the farther point; if both lie equally far, that of `later`.
     fn or_later(mut self, later: Self) -> Self {
         for k in 0..DIRECTIONS {
-            if later.distance[k] >= self.distance[k] {
+            if later.point[k] != NOWHERE && later.distance[k] >= self.distance[k] {
                 (self.distance[k], self.point[k]) = (later.distance[k], later.point[k]);
             }
         }
@@ -168,6 +201,25 @@ mod tests {
         let (min, max) = extent(&outline(&row(sphere(DIRECTIONS), 1)));
         assert!(min.min_element() >= -1.001 && max.max_element() <= 1.001, "{min} {max}");
         assert!(max.distance(Vec3::ONE) < 0.05, "{max}");
+    }
+
+    #[test]
+    fn boxes_leave_out_no_point() {
+        // A Lissajous curve with a point of every distance twice, in an order whose boxes overlap; the last of equal points counts.
+        let at = |index: usize| {
+            let t = (index % 9_001) as f32 * 0.013;
+            Vec3::new((3.0 * t).sin(), (5.0 * t + 1.0).sin() * 2.0, (7.0 * t).cos() * (0.1 * t).sin()) * 40.0
+        };
+        let points: Vec<Vec3> = (0..18_002).map(at).chain([Vec3::splat(1.0); 70]).collect();
+        let directions = Directions::new();
+        let each = directions.search(&points, 0, &NOTHING).point;
+        assert_eq!(directions.farthest(&points), each.map(|index| points[index as usize]));
+        for points in points.chunks(POINTS_A_BOX) {
+            let own = directions.search(points, 0, &NOTHING);
+            assert!(directions.may_reach(points, &own), "a box does not reach its own points");
+            let beyond = Farthest { distance: own.distance.map(|distance| distance + 1000.0), ..own };
+            assert!(!directions.may_reach(points, &beyond), "a box reaches everything");
+        }
     }
 
     #[test]

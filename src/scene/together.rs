@@ -263,6 +263,9 @@ impl Together {
         let extensions: Vec<String> = more.extensions.iter().filter(unknown).cloned().collect();
         all.extensions.extend(extensions);
         self.files.extend(model.files.iter().cloned());
+        // A picture has one environment: that of the first model with one.
+        let environment = &mut self.model.environment;
+        *environment = environment.take().or_else(|| model.environment.clone());
         let (sum, more) = (&mut self.model.timing, model.timing);
         *sum = LoadTiming {
             parse_ms: sum.parse_ms + more.parse_ms,

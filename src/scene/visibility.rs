@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::model::{Camera, Instance, Model, Node};
+use super::model::{Camera, Instance, Material, Model, Node};
 use crate::message::did_you_mean;
 use crate::settings::{CameraSettings, MaterialValues, SceneSettings};
 
@@ -69,6 +69,18 @@ impl Model {
     /// The index in `nodes` of the node of an instance.
     pub fn node_of(&self, instance: &Instance) -> Option<usize> {
         self.nodes.iter().position(|node| node.index == instance.node)
+    }
+
+    /// [`Model::material_key`] of each material.
+    pub fn material_keys(&self) -> Vec<String> {
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        self.materials.iter().for_each(|material| *counts.entry(&material.name).or_default() += 1);
+        let key = |(index, material): (usize, &Material)| match counts[material.name.as_str()] {
+            _ if material.name.is_empty() => material_number(index),
+            1 => material.name.clone(),
+            _ => format!("{}{}", material.name, material_number(index)),
+        };
+        self.materials.iter().enumerate().map(key).collect()
     }
 
     /// The name by which settings refer to a material: its own, followed by its number in the file if others have it too, or else that
@@ -158,7 +170,7 @@ impl Model {
         names.peek()?;
         let set: HashSet<String> = (0..self.materials.len()).flat_map(|index| self.material_names(index)).collect();
         let unknown = names.find(|name| name.is_empty() || !set.contains(*name))?;
-        let known: Vec<String> = (0..self.materials.len()).map(|index| self.material_key(index)).collect();
+        let known = self.material_keys();
         let hint = did_you_mean(unknown, known.iter().map(String::as_str));
         // The first is glTF's default material.
         let list = known.get(1..).unwrap_or_default().join(", ");
@@ -241,6 +253,7 @@ mod tests {
         let materials = ["", "Paint", "Glass", "Paint", ""].map(named).to_vec();
         let model = Model { materials: materials.into(), ..Model::default() };
         let keys: Vec<String> = (0..5).map(|index| model.material_key(index)).collect();
+        assert_eq!(model.material_keys(), keys);
         assert_eq!(keys, ["#default", "Paint#0", "Glass", "Paint#2", "#3"]);
         let changed = |key: &str| {
             let values = BTreeMap::from([(key.to_owned(), MaterialValues::new())]);

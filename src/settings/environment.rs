@@ -11,8 +11,8 @@ settings! {
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(default, deny_unknown_fields)]
     pub struct EnvironmentSettings {
-        /// Environment map: studio, furnace, sky, an .hdr or .exr file, or none, which leaves the ambient light. A file may be dropped on
-        /// the window.
+        /// Environment map: studio, furnace, sky, an .hdr or .exr file, model (the environment that the model's file brings along), or none,
+        /// which leaves the ambient light. A file may be dropped on the window.
         name: String = "studio".into(), row("Map");
         /// Rotation of the environment around +Y (Alt+drag in the window): a positive angle turns what is ahead (-Z) to the left (-X).
         rotation: f32 = 0.0, limits(-1e6, 1e6) unit(DEGREES) row("Rotation") slider(-180.0, 180.0, 0) when(LIT);

@@ -1,18 +1,20 @@
 //! The loader parses, decodes and uploads models. The old model stays on screen until then, and the newest request wins: an older one
-//! stops before its next file or image, and is not uploaded.
+//! stops before its next file or image, and is not uploaded. A model whose images take long to decode is uploaded twice: first with
+//! placeholders for them, then with its textures.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
 use super::gate::DeviceGate;
 use super::message::{Message, MessageSender, TaskKind};
 use super::results::Loaded;
-use crate::cancel::Running;
+use crate::cancel::{Running, receive_unless};
 use crate::gpu::{Gpu, SetLayouts, fault, return_freed_memory};
 use crate::render::GpuModel;
-use crate::scene::{self, LoadError, LoadOptions, Model};
+use crate::scene::{self, Caller, LoadError, LoadOptions, Model, background};
 
 /// A model that is being read. This needs no device, so it starts before the window opens. Dropping this stops the reading before the next
 /// file or image.
@@ -20,10 +22,17 @@ pub(crate) struct Reading {
     path: Option<PathBuf>,
     start: Instant,
     canceled: Arc<AtomicBool>,
+    /// The model while its images are being decoded, if that takes long.
+    early: Receiver<Model>,
     model: Option<Running<Result<Model, LoadError>>>,
 }
 
 impl Reading {
+    /// The model without its images, or `None` if it comes with them or as soon as `superseded` says so.
+    fn early_unless(&self, superseded: &dyn Fn() -> bool) -> Option<Model> {
+        receive_unless(&self.early, superseded).ok()
+    }
+
     /// The model, or `None` as soon as `superseded` says so.
     fn wait_unless(&mut self, superseded: &dyn Fn() -> bool) -> Option<Result<Model, LoadError>> {
         self.model.take()?.wait_unless(superseded)
@@ -36,16 +45,28 @@ impl Drop for Reading {
     }
 }
 
-/// Starts to read a model: parse, decode, generate tangents.
-pub(crate) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
+/// Starts to read a model: parse, decode, generate tangents. `is_early`: whether to show it before its images are decoded.
+pub(crate) fn read(path: Option<PathBuf>, options: LoadOptions, is_early: bool) -> Reading {
     let (start, canceled) = (Instant::now(), Arc::new(AtomicBool::new(false)));
     let (file, stops) = (path.clone(), canceled.clone());
+    let (sender, early) = channel();
     let model = Running::start(move || {
-        let model = scene::open_unless(file.as_deref(), &options, &|| stops.load(Ordering::Relaxed));
+        let canceled = || stops.load(Ordering::Relaxed);
+        let was_early = AtomicBool::new(false);
+        let take_early = |model| {
+            was_early.store(true, Ordering::Relaxed);
+            // Nobody takes it if the load has been superseded.
+            let _ = sender.send(model);
+        };
+        let caller = Caller { canceled: &canceled, take_early: is_early.then_some(&take_early) };
+        let model = scene::open_for(file.as_deref(), &options, caller);
         fault::delay("load-delay-ms");
+        if was_early.into_inner() {
+            fault::delay("textures-delay-ms");
+        }
         model
     });
-    Reading { path, start, canceled, model: Some(model) }
+    Reading { path, start, canceled, early, model: Some(model) }
 }
 
 /// Uploads models and counts the loads.
@@ -70,9 +91,10 @@ impl Loader {
         self.newest.load(Ordering::Relaxed) == number
     }
 
-    /// Reads a model and uploads it. Sends the result as a message, unless a newer load begins first.
-    pub(crate) fn load(&self, path: Option<PathBuf>, options: LoadOptions) {
-        self.finish(move || read(path, options));
+    /// Reads a model and uploads it. Sends the result as a message, unless a newer load begins first. `is_early`: whether the model
+    /// without its images is sent before, if they take long.
+    pub(crate) fn load(&self, path: Option<PathBuf>, options: LoadOptions, is_early: bool) {
+        self.finish(move || read(path, options, is_early));
     }
 
     /// [`Loader::load`] for a model whose reading has begun.
@@ -87,21 +109,36 @@ impl Loader {
         self.sender.spawn(TaskKind::Loader(number), move |sender| {
             let superseded = || newest.load(Ordering::Relaxed) != number;
             let mut reading = begin();
-            let Some(model) = reading.wait_unless(&superseded) else { return };
-            let upload = |model: Model| {
+            let upload = |model: Model, early: Option<&GpuModel>| {
                 let files = model.files.to_vec();
                 let (gpu, layouts) = (gpu.upgrade()?, layouts.upgrade()?);
-                Some(GpuModel::upload(&gpu, &layouts, model).map_err(|error| (error.to_string(), files)))
+                let uploaded = background::run_if(early.is_some(), || match early {
+                    Some(early) => early.with_textures(&gpu, &layouts, model),
+                    None => GpuModel::upload(&gpu, &layouts, model),
+                });
+                Some(uploaded.map_err(|error| (error.to_string(), files)))
             };
+            // Uploads wait here for each other, so the one that is next may no longer be the newest.
+            let pass = |model, early: Option<&GpuModel>| {
+                gate.pass(|| (!superseded()).then(|| upload(model, early)).flatten()).flatten()
+            };
+            let send = |reading: &Reading, result| {
+                let (path, ms) = (reading.path.clone(), reading.start.elapsed().as_secs_f64() * 1e3);
+                sender.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));
+            };
+            // If there is no memory for it, there is none for the whole model either.
+            let early = reading.early_unless(&superseded).and_then(|model| pass(model, None)?.ok());
+            if let Some(early) = &early {
+                send(&reading, Ok(early.clone()));
+            }
+            let Some(model) = reading.wait_unless(&superseded) else { return };
             let result = match model {
-                // Uploads wait here for each other, so the one that is next may no longer be the newest.
-                Ok(model) => gate.pass(|| (!superseded()).then(|| upload(model)).flatten()).flatten(),
+                Ok(model) => pass(model, early.as_deref()),
                 Err(error) => Some(Err((error.to_string(), error.files))),
             };
             return_freed_memory();
             if let Some(result) = result {
-                let (path, ms) = (reading.path.take(), reading.start.elapsed().as_secs_f64() * 1e3);
-                sender.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));
+                send(&reading, result);
             }
         });
     }

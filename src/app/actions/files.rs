@@ -14,9 +14,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Loads a model, with the models beside it. What is on screen stays until all are ready.
+/// Loads a model, with the models beside it. What is on screen stays until all are ready. A model alone whose images take long to decode
+/// is shown without them before; not so the one on screen, since that would lose its textures.
 pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: Option<PathBuf>) {
-    engine.threads.loader.load(path.clone(), state.load_options.clone());
+    let is_early = state.session.model().is_none() || state.model.path != path;
+    engine.threads.loader.load(path.clone(), state.load_options.clone(), is_early);
     begin_loading(state, path);
 }
 

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::app::state::State;
 use crate::app::state::selection::{LightId, Selected};
 use crate::app::state::workspace::PanelRequest;
+use crate::scene::environment::MODEL;
 use crate::scene::{CameraController, CameraView, Model, pick};
-use crate::settings::LightSource;
+use crate::settings::{EnvironmentSettings, LightSource};
 
 /// Selects what a pixel of the picture on screen shows, or nothing, also if that is selected already.
 pub(in crate::app) fn select_at(state: &mut State, [x, y]: [u32; 2]) {
@@ -114,6 +115,20 @@ pub(in crate::app) fn follow_lights(state: &mut State, model: &Model) {
     }
 }
 
+/// Chooses the environment of a new model's file, or the default one if it has none, as long as the user has not chosen one.
+pub(in crate::app) fn follow_environment(state: &mut State, model: &Model) {
+    let name = &mut state.session.settings.environment.name;
+    state.follows_environment &= *name == state.followed_environment;
+    if !state.follows_environment {
+        return;
+    }
+    *name = if model.environment.is_some() { MODEL.to_owned() } else { EnvironmentSettings::default().name };
+    state.followed_environment.clone_from(name);
+    if model.environment.is_some() {
+        state.say("Using the environment of the model's file instead of the studio (Environment > Map)");
+    }
+}
+
 /// Moves the camera so that it looks at the surface at a pixel, and orbits around it. Returns whether there is one.
 pub(in crate::app) fn focus(state: &mut State, size: (u32, u32), at: (u32, u32), view: &CameraView) -> bool {
     let Some(scene) = state.session.scene() else { return false };
@@ -121,4 +136,34 @@ pub(in crate::app) fn focus(state: &mut State, size: (u32, u32), at: (u32, u32),
     let Some(hit) = hit else { return false };
     CameraController::focus(&mut state.session.settings.camera, view, hit.point);
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+
+    use super::*;
+    use crate::scene::environment::ModelEnvironment;
+    use crate::settings::Settings;
+    use crate::shader::Source;
+
+    #[test]
+    fn the_environment_follows_the_model_until_the_user_chooses_one() {
+        let mut state = State::new(Settings::default(), Source::embedded());
+        let faces = [(); 6].map(|()| vec![255; 4]);
+        let environment = ModelEnvironment::new(String::new(), 1, (Quat::IDENTITY, 1.0), faces);
+        let lit = Model { environment: Some(Arc::new(environment)), ..Model::default() };
+        let shown = |state: &mut State, model: &Model| {
+            follow_environment(state, model);
+            state.session.settings.environment.name.clone()
+        };
+        assert_eq!(shown(&mut state, &lit), "studio", "an option has chosen it");
+        state.follows_environment = true;
+        assert_eq!(shown(&mut state, &lit), "model");
+        assert_eq!(shown(&mut state, &Model::default()), "studio");
+        assert_eq!(shown(&mut state, &lit), "model");
+        state.session.settings.environment.name = "sky".into();
+        assert_eq!(shown(&mut state, &lit), "sky");
+        assert_eq!(shown(&mut state, &Model::default()), "sky");
+    }
 }

@@ -69,7 +69,8 @@ fn frame_of_settings(
         prepare(&frame)?;
         let generation = frame_state.shaders.generation;
         // A reload is reported first.
-        let settles = is_complete && frame_state.scene.is_some() && state.first_frame.is_none();
+        let is_whole = frame_state.scene.as_ref().is_some_and(|scene| !scene.model().awaits_textures);
+        let settles = is_complete && is_whole && state.first_frame.is_none();
         if settles && state.picture.settled.replace(generation) != Some(generation) {
             emit(&state.events, &Event::Settled { generation });
             check_exercise(state, engine);

@@ -11,7 +11,8 @@ use crate::gpu::GpuError;
 use crate::picture;
 use crate::render::{BoundFrame, Capture};
 
-/// Writes the screenshot that a key has asked for. It waits for the first picture, and for the range of a mode's values.
+/// Writes the screenshot that a key has asked for. It waits for the first picture, for the model's textures, and for the range of a mode's
+/// values.
 pub(super) fn take_screenshot(
     state: &mut State,
     engine: &mut Engine,
@@ -19,7 +20,9 @@ pub(super) fn take_screenshot(
     frame: &BoundFrame,
 ) -> Result<(), GpuError> {
     let is_empty = frame.state.scene.is_none() && (state.model.loading || state.session.model().is_some());
-    if !state.screenshot || is_empty || screen.lacks_limits(frame) {
+    let lacks_textures = frame.state.scene.as_ref().is_some_and(|scene| scene.model().awaits_textures);
+    let awaits_textures = lacks_textures && state.model.loading;
+    if !state.screenshot || is_empty || awaits_textures || screen.lacks_limits(frame) {
         return Ok(());
     }
     state.screenshot = false;

@@ -28,7 +28,7 @@ pub(in crate::app) fn on_bake(state: &mut State, engine: &mut Engine, message: B
                 Ok(environment) => {
                     environment.report.warnings.iter().for_each(|warning| state.say(warning.as_str()));
                     warn_of(state, environment.wrong());
-                    if !environment::BUILT_IN.contains(&key.name.as_str()) {
+                    if !environment::is_word_of_specula(&key.name) {
                         state.recent.remember(Kind::Environment, Path::new(&key.name));
                     }
                     emit(&state.events, &Event::Bake(&environment.report));

@@ -1,18 +1,18 @@
-//! Shows the model that the loader has read, and reads changed files again.
+//! Shows the model that the loader has read, before and after its textures, and reads changed files again.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::app::actions::compare::file::on_picture_changed;
 use crate::app::actions::files::load_model;
-use crate::app::actions::select::follow_lights;
+use crate::app::actions::select::{follow_environment, follow_lights};
 use crate::app::actions::watch::watch_files;
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::recent::Kind;
 use crate::app::state::selection::Selected;
 use crate::message;
-use crate::scene::BUILT_IN;
+use crate::scene::{BUILT_IN, Model};
 use crate::settings::{LightSource, SceneSettings};
 use crate::threads::Loaded;
 
@@ -20,7 +20,8 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
     if !engine.threads.loader.is_newest(loaded.number) {
         return;
     }
-    state.model.loading = false;
+    let awaits_textures = loaded.result.as_ref().is_ok_and(|uploaded| uploaded.model().awaits_textures);
+    state.model.loading = awaits_textures;
     let added = state.model.added.take();
     match loaded.result {
         Ok(uploaded) => {
@@ -40,12 +41,6 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
                     state.frame_model();
                 }
             }
-            for warning in model.warnings.iter() {
-                message::warn(format_args!("{}: {warning}", model.name));
-            }
-            if state.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
-                state.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
-            }
             // A session that is restored brings its own settings.
             let is_restored = std::mem::take(&mut state.model.keeps_camera);
             if is_other && !is_restored {
@@ -60,8 +55,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             }
             if !is_restored && (is_other || state.session.model().is_none()) {
                 follow_lights(state, model);
+                follow_environment(state, model);
             }
-            state.model.shows_warnings = true;
+            state.model.awaits = awaits_textures.then_some(loaded.number);
             if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
                 state.recent.remember(Kind::Model, path);
             }
@@ -70,12 +66,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             state.model.files = model.files.as_slice().into();
             state.session.set_model(model);
             engine.resources.set_model(&uploaded);
-            let settings = &state.session.settings;
-            let unknown = model.unknown_part(&settings.scene);
-            let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
-            let unknown = unknown.or_else(|| model.unknown_clip(&settings.animation));
-            let unknown = unknown.or_else(|| model.unknown_target(&settings.animation));
-            unknown.into_iter().for_each(|problem| state.say(problem));
+            if !awaits_textures {
+                tell_problems(state, model);
+            }
         }
         Err((message, tried)) => {
             state.model.keeps_camera = false;
@@ -91,9 +84,30 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             }
             state.waiting.model_failed(&message);
             state.say(message);
+            // The load that failed has ended the one that was decoding the textures of the model on screen.
+            if state.model.awaits.take().is_some_and(|number| number != loaded.number) {
+                load_model(state, engine, state.model.path.clone());
+            }
         }
     }
     watch_files(state, engine);
+}
+
+/// Tells the user of everything in a model, and in settings for it, that cannot be shown.
+fn tell_problems(state: &mut State, model: &Model) {
+    for warning in model.warnings.iter() {
+        message::warn(format_args!("{}: {warning}", model.name));
+    }
+    state.model.shows_warnings = true;
+    let settings = &state.session.settings;
+    let has_no_lights = settings.lights.source == LightSource::Model && model.lights.is_empty();
+    let lights =
+        has_no_lights.then(|| format!("warning: {} has no lights of its own for `--lights model`", model.name));
+    let unknown = model.unknown_part(&settings.scene);
+    let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
+    let unknown = unknown.or_else(|| model.unknown_clip(&settings.animation));
+    let unknown = unknown.or_else(|| model.unknown_target(&settings.animation));
+    lights.into_iter().chain(unknown).for_each(|problem| state.say(problem));
 }
 
 /// Handles changed files of the environment, the measured BRDF or the model.

@@ -24,7 +24,7 @@ use crate::app::state::selection::{LightId, Selected, name_or};
 use crate::app::state::shaders::effects::{is_of_pass, is_switch};
 use crate::learn::exercises;
 use crate::message::did_you_mean;
-use crate::scene::environment::BUILT_IN;
+use crate::scene::environment::{BUILT_IN, MODEL};
 use crate::settings::{Settings, ShaderValue};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
@@ -105,7 +105,7 @@ fn files(state: &State) -> impl Iterator<Item = Entry> {
     };
     let recent = |kind| state.recent.of(kind).iter().cloned();
     let built_in = |names: &'static [&'static str]| names.iter().map(PathBuf::from);
-    let environments = built_in(&BUILT_IN).chain([PathBuf::from("none")]).chain(recent(Kind::Environment));
+    let environments = built_in(&BUILT_IN).chain([MODEL, "none"].map(PathBuf::from)).chain(recent(Kind::Environment));
     let environments = environments.map(move |path| {
         let is_in_force = Path::new(&state.session.settings.environment.name) == path;
         Entry { is_in_force, ..entry("Environment", Kind::Environment, path, Open::Environment) }
@@ -178,9 +178,11 @@ fn of_scene(state: &State) -> Vec<Entry> {
     let mut entries: Vec<Entry> =
         nodes.map(|(at, node)| select(format!("Select node {}", node.name), Selected::Node(at))).collect();
     entries.extend(
-        (1..model.materials.len())
+        (0..)
+            .zip(model.material_keys())
+            .skip(1)
             .take(MOST_NODES)
-            .map(|index| select(format!("Select material {}", model.material_key(index)), Selected::Material(index))),
+            .map(|(index, key)| select(format!("Select material {key}"), Selected::Material(index))),
     );
     entries.extend((0..state.session.settings.lights.orbit.len()).map(|light| {
         select(format!("Move light {} in the picture", light + 1), Selected::Light(LightId::Orbit(light)))

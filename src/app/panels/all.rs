@@ -135,6 +135,7 @@ fn bars(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut 
     top_bar::show(ui, (layout, palette, show_keys), state, commands);
     let status = status_bar::Status {
         shader: &state.shader,
+        missing_textures: state.missing_textures(),
         waits: baking::long_wait(ui.ctx(), context),
         not_finite: state.shown_not_finite(),
         progress: context.readings.baking.map(|(done, _)| *done),

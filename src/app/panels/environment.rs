@@ -11,7 +11,7 @@ use crate::app::state::recent::Kind;
 use crate::app::widgets::rows::{Row, check, choose, group, set_option, special};
 use crate::app::widgets::theme::QUIET;
 use crate::render::BakeReport;
-use crate::scene::environment::BUILT_IN;
+use crate::scene::environment::{BUILT_IN, MODEL};
 use crate::settings::{Settings, ViewSettings};
 
 /// How the rest of the window finds the panel.
@@ -21,15 +21,16 @@ pub(super) static PANEL: PanelSpec =
 /// The panel.
 pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let recent = context.state.recent.of(Kind::Environment);
-    show(ui, &mut commands.settings, recent, context.readings.baking, context.readings.baked);
+    let has_own = context.state.session.model().is_some_and(|model| model.environment.is_some());
+    show(ui, &mut commands.settings, (recent, has_own), context.readings.baking, context.readings.baked);
 }
 
-/// Shows the panel. `recent`: files that were shown, the newest first. `progress` is the fraction of the current bake that is
+/// Shows the panel. `recent`: files that were shown, the newest first, and whether the model brings a map along. `progress` is the fraction of the current bake that is
 /// done, and its next pass.
 fn show(
     ui: &mut Ui,
     settings: &mut Settings,
-    recent: &[PathBuf],
+    recent: (&[PathBuf], bool),
     progress: Option<&(f32, String)>,
     report: &BakeReport,
 ) {
@@ -62,12 +63,12 @@ fn baked(ui: &mut Ui, is_lit: bool, progress: Option<&(f32, String)>, report: &B
 }
 
 /// The list of maps.
-fn map(ui: &mut Ui, settings: &mut Settings, recent: &[PathBuf]) {
+fn map(ui: &mut Ui, settings: &mut Settings, (recent, has_own): (&[PathBuf], bool)) {
     let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     special(ui, settings, "environment.name", |ui, settings| {
         let name = &mut settings.environment.name;
         choose(ui, "environment", short(name), |ui| {
-            for choice in BUILT_IN.into_iter().chain(["none"]) {
+            for choice in BUILT_IN.into_iter().chain(has_own.then_some(MODEL)).chain(["none"]) {
                 ui.selectable_value(name, choice.to_owned(), choice);
             }
             for path in recent {

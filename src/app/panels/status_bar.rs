@@ -26,6 +26,8 @@ const ROOM_FOR_STAGE: f32 = 700.0;
 /// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
+    /// A few words if the model on screen lacks its textures.
+    pub(super) missing_textures: Option<&'static str>,
     /// The work that has delayed the picture for long, and since when.
     pub(super) waits: Option<(Waits, Duration)>,
     /// The fraction of the bake that is done.
@@ -63,11 +65,13 @@ pub(super) fn show(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>
 fn state(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
     let count = |severity: Severity| status.diagnostics.iter().filter(|d| d.severity == severity).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    let missing = status.missing_textures.map(str::to_owned);
     let (color, text) = match (status.shader.compiling, errors, warnings, status.waits) {
         (true, ..) => (WARNING, "compiling".to_owned()),
         (_, 0, _, Some((Waits::Pipelines, _))) => (WARNING, "building pipelines".to_owned()),
         (_, 0, _, Some((Waits::Light { of_edit }, time))) => (WARNING, baking::text(of_edit, time, status.progress)),
         (_, 0, ..) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
+        (_, 0, ..) if let Some(missing) = missing => (WARNING, missing),
         (_, 0, 0, _) => (GOOD, "watching".to_owned()),
         (_, 0, warnings, _) => (WARNING, plural(warnings, "warning")),
         (_, errors, ..) => (ERROR, plural(errors, "error")),
@@ -116,6 +120,7 @@ mod tests {
     fn status(shader: &ShaderStatus) -> Status<'_> {
         Status {
             shader,
+            missing_textures: None,
             waits: None,
             progress: None,
             not_finite: None,
@@ -125,6 +130,15 @@ mod tests {
             stage: None,
             device: "",
         }
+    }
+
+    #[test]
+    fn missing_textures_are_told() {
+        let show_bar = |ui: &mut Ui, commands: &mut Vec<Command>| {
+            let shader = ShaderStatus::default();
+            show(ui, &Status { missing_textures: Some("textures are missing"), ..status(&shader) }, commands);
+        };
+        Harness::new_ui_state(show_bar, Vec::new()).get_by_label("textures are missing");
     }
 
     #[test]

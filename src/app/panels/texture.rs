@@ -246,6 +246,9 @@ fn meshes(scene: &Scene, source: TextureSource, uses: &[(usize, usize)]) -> Vec<
 
 /// Size, format, color space, sampler and uses of a texture.
 fn about(model: &Model, source: TextureSource, uses: &[(usize, usize)], (width, height): (u32, u32)) -> String {
+    if model.awaits_textures {
+        return "It is being decoded. One pixel stands for it".to_owned();
+    }
     let (form, levels) = (source.form(model), source.levels(model));
     let mib = source.bytes(model) as f64 / f64::from(1 << 20);
     let space = if source.is_srgb() { "sRGB" } else { "linear" };

@@ -40,7 +40,7 @@ use crate::recovery::SessionState;
 use crate::render::NotFinitePixels;
 use crate::scene::LoadOptions;
 use crate::session::Session;
-use crate::settings::{LightSource, Settings};
+use crate::settings::{EnvironmentSettings, LightSource, Settings};
 use crate::shader::expression;
 use crate::shader::rewrite::{Edit, defaults};
 use crate::shader::{Diagnostic, Severity, Source};
@@ -120,6 +120,10 @@ pub(super) struct State {
     pub(super) follows_lights: bool,
     /// The lights that the last model was shown with because of that.
     pub(super) followed_source: LightSource,
+    /// The same of the environment.
+    pub(super) follows_environment: bool,
+    /// The environment that the last model was shown in because of that.
+    pub(super) followed_environment: String,
     /// The picture that the user compares with.
     pub(super) compare: Compare,
     pub(super) watched: WatchedFiles,
@@ -187,6 +191,8 @@ impl State {
             selected_cache: None,
             follows_lights: false,
             followed_source: LightSource::default(),
+            follows_environment: false,
+            followed_environment: EnvironmentSettings::default().name,
             compare: Compare::default(),
             watched: WatchedFiles::default(),
             load_options: LoadOptions::default(),
@@ -377,6 +383,12 @@ impl State {
         let tree = self.source.location().map(Path::to_owned);
         let scene = self.load_options.scene;
         SessionState { settings: self.session.shared_settings(), model: model.clone(), scene, tree }
+    }
+
+    /// A few words if the model on screen lacks its textures.
+    pub(in crate::app) fn missing_textures(&self) -> Option<&'static str> {
+        self.session.model().filter(|model| model.awaits_textures)?;
+        Some(if self.model.loading { "textures are being decoded" } else { "textures are missing" })
     }
 
     /// Whether the shaders have errors.

@@ -15,6 +15,8 @@ pub(in crate::app) struct ModelStatus {
     /// The watched files: those of the model on screen, and after a failed load also those that it tried.
     pub(in crate::app) files: Arc<[PathBuf]>,
     pub(in crate::app) loading: bool,
+    /// Number of the load from which the model on screen still awaits its textures.
+    pub(in crate::app) awaits: Option<u64>,
     /// The models beside the one that is being loaded, which the settings get with it. `None`: those of the settings.
     pub(in crate::app) added: Option<Vec<AddedModel>>,
     pub(in crate::app) load_ms: f64,

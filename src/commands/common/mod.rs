@@ -34,7 +34,7 @@ pub struct Common {
     /// Shader tree: a folder, an example such as examples:fur, or a shader written for Shadertoy or glslViewer [default: ./shaders if it is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR|FILE")]
     pub shaders: Option<PathBuf>,
-    /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
+    /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, model (the light of the model's file), or none [default: studio]
     #[arg(long, value_name = "NAME|FILE")]
     env: Option<String>,
     /// Measured BRDF (MERL or UTIA file) for the modes measured, measured-split and measured-error
@@ -158,6 +158,12 @@ impl Common {
     pub fn leaves_lights_open(&self) -> bool {
         let is_source = |set: &String| set.trim_start().starts_with("lights.source");
         self.lights.is_none() && self.look.is_none() && !self.set.iter().any(is_source)
+    }
+
+    /// Whether no option says which environment lights the model.
+    pub fn leaves_environment_open(&self) -> bool {
+        let is_name = |set: &String| set.trim_start().starts_with("environment.name");
+        self.env.is_none() && self.look.is_none() && !self.set.iter().any(is_name)
     }
 
     /// The same without the warnings.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use specula::file_kind::{FileKind, models_in};
 use specula::message::nearest;
+use specula::scene::environment::MODEL;
 use specula::scene::{self, BUILT_IN};
 
 use crate::commands::Failure;
@@ -71,7 +72,7 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
 
 /// Fails when an environment is a word but not a built-in name. A missing file is reported where it is opened.
 pub fn check_environment(name: &str) -> Result<(), Failure> {
-    let known = || scene::environment::BUILT_IN.into_iter().chain(["none"]);
+    let known = || scene::environment::BUILT_IN.into_iter().chain([MODEL, "none"]);
     if known().any(|known| known == name) || !is_word(name) || Path::new(name).exists() {
         return Ok(());
     }

@@ -109,6 +109,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         tree: source.location().map(Path::to_owned),
     };
     let follows_lights = args.common.leaves_lights_open();
+    let follows_environment = args.common.leaves_environment_open();
     let state = folder.as_deref().map(RecoveryState::read).unwrap_or_default();
     // A model and options say what is wanted, and after a loss the record does.
     let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
@@ -138,6 +139,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         model: work.model,
         // After a loss the settings are those of the session.
         follows_lights: follows_lights && state.work.is_none(),
+        follows_environment: follows_environment && state.work.is_none(),
         settings: Arc::unwrap_or_clone(work.settings),
         plain,
         size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),

@@ -13,7 +13,7 @@ use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::pipeline::PipelineSet;
-use crate::scene::environment::restore_clipped;
+use crate::scene::environment::{MODEL, restore_clipped};
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
@@ -209,8 +209,10 @@ impl Bake<'_> {
     /// The cube map, the irradiance and the small lights of the map.
     fn radiance(&mut self) -> Result<Arc<Radiance>, BakeError> {
         let time = self.begin(0.0, "reading")?;
-        let name = self.key.name.clone();
-        let file = Running::start(move || EnvironmentFile::open(&name)).wait_unless(self.control.superseded);
+        let (name, of_model) = (self.key.name.clone(), self.key.of_model.clone());
+        let open =
+            move || if name == MODEL { EnvironmentFile::of_model(of_model) } else { EnvironmentFile::open(&name) };
+        let file = Running::start(open).wait_unless(self.control.superseded);
         let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         self.report.environment.clone_from(&file.name);
         let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits(), self.key.suns.into()];

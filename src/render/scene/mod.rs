@@ -34,14 +34,14 @@ pub(crate) use placed::{PlacedScene, Posed, normals_from};
 use scratch::Scratch;
 pub(crate) use sorted::{Layer, SortedDraws};
 pub use texel_formats::texel_forms;
-use upload::{Range, Uploaded, upload};
+use upload::{Range, Uploaded, upload, upload_textures};
 
 /// A model on the device: geometry, textures and a descriptor set per material.
 pub struct GpuModel {
     model: Arc<Model>,
     vertices: Arc<Buffer>,
     indices: Arc<Buffer>,
-    ranges: Vec<Range>,
+    ranges: Arc<[Range]>,
     materials: Vec<Arc<DescriptorSet>>,
     /// The textures of the materials, and those that are bound where a material has none.
     textures: Textures,
@@ -55,14 +55,34 @@ impl GpuModel {
     /// # Errors
     /// An image that exceeds the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
-        Arc::make_mut(&mut model.primitives).iter_mut().for_each(list_triangles);
+        let is_other = |p: &Primitive| matches!(p.topology, Topology::TriangleStrip | Topology::TriangleFan);
+        if model.primitives.iter().any(is_other) {
+            Arc::make_mut(&mut model.primitives).iter_mut().for_each(list_triangles);
+        }
         let Uploaded { vertices, indices, ranges, textures, deformers } = upload(gpu, &mut model)?;
         let deformables = deformers.and_then(|from| Deformables::new(&model, &ranges, &vertices, from));
-        let samplers = HashMap::new();
-        let mut sets = MaterialSets { gpu, layouts, model: &model, textures: &textures, samplers };
-        let materials =
-            (0..).zip(model.materials.iter()).map(|(id, material)| sets.set(material, id)).collect::<Result<_, _>>()?;
-        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures, deformables }))
+        let materials = material_sets(gpu, layouts, &model, &textures)?;
+        let (model, ranges) = (Arc::new(model), ranges.into());
+        Ok(Arc::new(Self { model, vertices, indices, ranges, materials, textures, deformables }))
+    }
+
+    /// Uploads the textures of a model that has been uploaded while they were being decoded ([`Model::awaits_textures`]). All else is
+    /// shared.
+    ///
+    /// # Errors
+    /// As [`GpuModel::upload`].
+    pub fn with_textures(
+        &self,
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        mut model: Model,
+    ) -> Result<Arc<Self>, UploadError> {
+        model.primitives = self.model.primitives.clone();
+        let textures = upload_textures(gpu, &mut model)?;
+        let materials = material_sets(gpu, layouts, &model, &textures)?;
+        let (vertices, indices, ranges) = (self.vertices.clone(), self.indices.clone(), self.ranges.clone());
+        let (model, deformables) = (Arc::new(model), self.deformables.clone());
+        Ok(Arc::new(Self { model, vertices, indices, ranges, materials, textures, deformables }))
     }
 
     /// The model that was uploaded, without the pixels of its images.
@@ -109,6 +129,16 @@ impl GpuModel {
             lists: Mutex::default(),
         }))
     }
+}
+
+fn material_sets(
+    gpu: &Arc<Gpu>,
+    layouts: &Arc<SetLayouts>,
+    model: &Model,
+    textures: &Textures,
+) -> Result<Vec<Arc<DescriptorSet>>, GpuError> {
+    let mut sets = MaterialSets { gpu, layouts, model, textures, samplers: HashMap::new() };
+    (0..).zip(model.materials.iter()).map(|(id, material)| sets.set(material, id)).collect()
 }
 
 /// The draws of a [`Scene`]. They stay while the scene's pose changes.

@@ -56,11 +56,10 @@ const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
 /// # Errors
 /// An image that exceeds the device's limit, or no memory left. Some pixels may be freed by then.
 pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, UploadError> {
-    let forms = forms_of(gpu);
-    Arc::make_mut(&mut model.images).iter_mut().for_each(|image| image.settle(&forms));
-    let sources: Vec<TextureSource> = texture_sources(model).into_iter().collect();
-    check_sizes(gpu, model, &sources)?;
-    let staging = Staging::new(gpu, model, &sources)?;
+    let sources = settled_sources(gpu, model)?;
+    let geometry =
+        model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)) as u64);
+    let staging = Staging::new(gpu, model, &sources, geometry.sum())?;
     let textures = staging.textures(model, &sources)?;
     let (mut ranges, mut first_vertex, mut first_index) = (Vec::new(), 0u64, 0u32);
     for primitive in model.primitives.iter() {
@@ -78,6 +77,24 @@ pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, Uplo
     let indices = staging.buffer("indices", &indices, index_usage)?;
     let deformers = deformers(&staging, model)?;
     Ok(Uploaded { vertices, indices, ranges, textures, deformers })
+}
+
+/// Uploads the textures of a model whose geometry is on the device, as [`upload`] does.
+///
+/// # Errors
+/// As [`upload`].
+pub(super) fn upload_textures(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Textures, UploadError> {
+    let sources = settled_sources(gpu, model)?;
+    Staging::new(gpu, model, &sources, 0)?.textures(model, &sources)
+}
+
+/// The textures of a model, whose images have the forms in which the device samples them.
+fn settled_sources(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Vec<TextureSource>, UploadError> {
+    let forms = forms_of(gpu);
+    Arc::make_mut(&mut model.images).iter_mut().for_each(|image| image.settle(&forms));
+    let sources: Vec<TextureSource> = texture_sources(model).into_iter().collect();
+    check_sizes(gpu, model, &sources)?;
+    Ok(sources)
 }
 
 fn deformers(staging: &Staging<'_>, model: &Model) -> Result<Option<Deformers>, UploadError> {
@@ -113,11 +130,10 @@ struct Staging<'a> {
 }
 
 impl<'a> Staging<'a> {
-    fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[TextureSource]) -> Result<Self, UploadError> {
-        let geometry =
-            model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)));
+    /// `geometry`: bytes of a buffer that is uploaded too.
+    fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[TextureSource], geometry: u64) -> Result<Self, UploadError> {
         let images = || sources.iter().map(|source| staged_bytes(source, model));
-        let total = images().sum::<u64>().max(geometry.map(|bytes| bytes as u64).sum());
+        let total = images().sum::<u64>().max(geometry);
         let size = total.min(STAGING_BYTES).max(images().max().unwrap_or_default());
         let buffer = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
         Ok(Self { gpu, buffer })

@@ -29,6 +29,15 @@ pub enum EnvironmentProblem {
         /// The built-in names, separated by commas.
         built_in: String,
     },
+    /// The model's file has no environment.
+    #[error(
+        "is the environment of the model's file (EXT_lights_image_based), and this model has none that can be used. Choose \
+         a .hdr or .exr file, or one of the built-in environments: {built_in}."
+    )]
+    NotInModel {
+        /// The built-in names, separated by commas.
+        built_in: String,
+    },
     /// The file has no bytes.
     #[error("is empty. Expected a Radiance HDR or OpenEXR image; copy or export it again.")]
     Empty,

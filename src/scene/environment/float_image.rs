@@ -1,5 +1,6 @@
 //! Decodes the bytes of an image file into a validated [`Environment`].
 
+use glam::Mat3;
 use rayon::prelude::*;
 
 use super::decoded::{Decoded, MAX_WIDTH};
@@ -65,7 +66,7 @@ fn finish(decoded: Decoded) -> Result<Environment, Problem> {
     let (width, height, pixels) = match projection.or_else(|| Projection::of_shape(width, height)) {
         Some(Projection::Cube(layout)) => {
             warnings.push(format!("the environment's {width}x{height} pixels are read as {}", layout.name));
-            layout.unwrap((width, height), &pixels, MAX_WIDTH)
+            layout.unwrap((width, height), &pixels, MAX_WIDTH, Mat3::IDENTITY)
         }
         Some(Projection::Equirectangular) => (width, height, pixels),
         None => {

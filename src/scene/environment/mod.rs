@@ -9,6 +9,7 @@ mod direction;
 mod error;
 mod float_image;
 mod importance;
+mod of_model;
 mod open_exr;
 mod panorama;
 mod primaries;
@@ -21,6 +22,7 @@ mod suns;
 mod tests;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use xxhash_rust::xxh3::xxh3_128_with_seed;
 
@@ -31,6 +33,7 @@ pub use decoded::{MAX_HEIGHT, MAX_WIDTH};
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 pub use importance::CubeLuminance;
+pub use of_model::{MODEL, ModelEnvironment};
 pub use panorama::Environment;
 pub use suns::{Sun, has_exact_sun, restore_clipped, separates_suns};
 
@@ -57,9 +60,29 @@ pub struct EnvironmentFile {
 enum Source {
     BuiltIn(&'static str),
     Bytes(Vec<u8>),
+    Model(Arc<ModelEnvironment>),
+}
+
+/// Whether settings name this environment by a word of Specula instead of a file.
+pub fn is_word_of_specula(name: &str) -> bool {
+    BUILT_IN.contains(&name) || name == MODEL || name == "none"
 }
 
 impl EnvironmentFile {
+    /// The environment that the model's file brings along, as [`MODEL`] names it.
+    ///
+    /// # Errors
+    /// The model has none.
+    pub fn of_model(environment: Option<Arc<ModelEnvironment>>) -> Result<Self, EnvironmentError> {
+        let (given, files) = (PathBuf::from(MODEL), Vec::new());
+        let Some(environment) = environment else {
+            let problem = EnvironmentProblem::NotInModel { built_in: BUILT_IN.join(", ") };
+            return Err(EnvironmentError { file: given, problem, files });
+        };
+        let fingerprint = environment.fingerprint();
+        Ok(Self { name: MODEL.to_owned(), files, fingerprint, given, source: Source::Model(environment) })
+    }
+
     /// Opens `name`: a file, or else the environment of that name in [`BUILT_IN`].
     ///
     /// # Errors
@@ -91,6 +114,7 @@ impl EnvironmentFile {
     pub fn decode(&self) -> Result<Environment, EnvironmentError> {
         let mut environment = match &self.source {
             Source::BuiltIn(name) => built_in::make(name),
+            Source::Model(environment) => environment.decode(),
             Source::Bytes(bytes) => float_image::decode(bytes).map_err(|problem| EnvironmentError {
                 file: self.given.clone(),
                 problem,

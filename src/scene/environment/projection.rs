@@ -1,6 +1,6 @@
 //! How the pixels of an image lie on the sphere, and the conversion of cubes to the equirectangular form.
 
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::direction::TexelDirections;
@@ -32,21 +32,25 @@ pub struct Layout {
 const ROW: [(u32, u32, bool); 6] =
     [(0, 0, false), (1, 0, false), (2, 0, false), (3, 0, false), (4, 0, false), (5, 0, false)];
 
-static LAYOUTS: [Layout; 4] = [
-    Layout {
+/// Six faces in the order of OpenGL, side by side.
+pub static GL_ROW: Layout =
+    Layout { name: "six faces of a cube from left to right", grid: (6, 1), faces: ROW, reaches_edges: false };
+
+static LAYOUTS: [&Layout; 4] = [
+    &Layout {
         name: "a horizontal cross of six faces of a cube",
         grid: (4, 3),
         faces: [(2, 1, false), (0, 1, false), (1, 0, false), (1, 2, false), (1, 1, false), (3, 1, false)],
         reaches_edges: false,
     },
-    Layout {
+    &Layout {
         name: "a vertical cross of six faces of a cube",
         grid: (3, 4),
         faces: [(2, 1, false), (0, 1, false), (1, 0, false), (1, 2, false), (1, 1, false), (1, 3, true)],
         reaches_edges: false,
     },
-    Layout { name: "six faces of a cube from left to right", grid: (6, 1), faces: ROW, reaches_edges: false },
-    Layout {
+    &GL_ROW,
+    &Layout {
         name: "six faces of a cube, one below the other",
         grid: (1, 6),
         faces: [(0, 0, false), (0, 1, false), (0, 2, false), (0, 3, false), (0, 4, false), (0, 5, false)],
@@ -68,7 +72,7 @@ impl Projection {
         if u64::from(width) == 2 * u64::from(height) {
             return Some(Self::Equirectangular);
         }
-        LAYOUTS.iter().find(|layout| layout.fits(width, height)).map(Self::Cube)
+        LAYOUTS.into_iter().find(|layout| layout.fits(width, height)).map(Self::Cube)
     }
 }
 
@@ -80,14 +84,20 @@ impl Layout {
     }
 
     /// Width, height and pixels of the equirectangular image, which is at most `widest` pixels wide.
-    pub fn unwrap(&self, (width, height): (u32, u32), pixels: &[[f32; 4]], widest: u32) -> (u32, u32, Vec<[f32; 4]>) {
+    pub fn unwrap(
+        &self,
+        (width, height): (u32, u32),
+        pixels: &[[f32; 4]],
+        widest: u32,
+        cube_from_world: Mat3,
+    ) -> (u32, u32, Vec<[f32; 4]>) {
         let side = (width / self.grid.0).min(height / self.grid.1);
         let columns = (4 * side).min(widest);
         let directions = TexelDirections::new(columns as usize, columns as usize / 2);
         let mut unwrapped = vec![[0.0; 4]; columns as usize * (columns as usize / 2)];
         unwrapped.par_chunks_exact_mut(columns as usize).enumerate().for_each(|(y, row)| {
             for (pixel, direction) in row.iter_mut().zip(directions.row(y)) {
-                *pixel = self.sample(width, side, pixels, direction);
+                *pixel = self.sample(width, side, pixels, cube_from_world * direction);
             }
         });
         (columns, columns / 2, unwrapped)

@@ -2,6 +2,7 @@
 //! crate's own readers panic on invalid files and refuse some valid ones.
 
 mod compression;
+mod environment;
 mod file;
 mod geometry;
 mod instancing;
@@ -35,8 +36,9 @@ pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
 use self::motion::raw::Raw;
 use self::motion::{animations, skins};
+use super::background;
 use super::error::Problem;
-use super::load_options::{Canceled, LoadOptions};
+use super::load_options::{Caller, Canceled, LoadOptions, TakeEarly};
 use super::model::{Contents, Image, LoadTiming, Material, Model};
 use super::motion::Motion;
 use crate::interface::MAX_LIGHTS;
@@ -46,7 +48,7 @@ use crate::message::catch_panic;
 pub fn load_file(
     path: &Path,
     options: &LoadOptions,
-    canceled: Canceled<'_>,
+    caller: Caller<'_>,
     tried: &mut Vec<PathBuf>,
 ) -> Result<Model, Problem> {
     let start = Instant::now();
@@ -54,63 +56,111 @@ pub fn load_file(
     tried.push(path.clone());
     let Opened { path, name, bytes, place } = opened::open(&path)?;
     *tried = vec![path];
-    guarded(&name, &bytes, Files::new(place, options.allow_outside, canceled, tried), options.scene, start)
+    let files = Files::new(place, options.allow_outside, caller.canceled, tried);
+    guarded(&name, &bytes, files, (options.scene, caller.take_early), start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files::new(Place::Nowhere, false, &|| false, &mut Vec::new()), None, Instant::now())
+    guarded(name, bytes, Files::new(Place::Nowhere, false, &|| false, &mut Vec::new()), (None, None), Instant::now())
 }
 
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
 /// the session.
-fn guarded(name: &str, bytes: &[u8], files: Files<'_>, scene: Option<usize>, start: Instant) -> Result<Model, Problem> {
-    catch_panic(|| build(name, bytes, files, scene, start)).unwrap_or_else(|found| Err(Problem::Refused { found }))
+fn guarded(
+    name: &str,
+    bytes: &[u8],
+    files: Files<'_>,
+    wanted: (Option<usize>, Option<TakeEarly<'_>>),
+    start: Instant,
+) -> Result<Model, Problem> {
+    catch_panic(|| build(name, bytes, files, wanted, start)).unwrap_or_else(|found| Err(Problem::Refused { found }))
 }
 
 fn build(
     name: &str,
     bytes: &[u8],
     mut files: Files<'_>,
-    scene: Option<usize>,
+    (scene, take_early): (Option<usize>, Option<TakeEarly<'_>>),
     start: Instant,
 ) -> Result<Model, Problem> {
     let container::Document { mut root, raw, bin, mut warnings } = container::parse(bytes)?;
     let mut buffers = Buffers::load(&root, bin, &mut files)?;
     warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
     let reader = Reader { root: &root, buffers: &buffers };
+    let environment = environment::read(&root, &buffers, &mut files, scene, &mut warnings);
     let mut scene = nodes::walk(&root, scene)?;
     let weights = skins::attach(reader, &raw, &mut scene)?;
     let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut scene.warnings);
     scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;
-    let material::Materials { mut materials, textures, images, warnings: material_warnings } = material::read(&root)?;
+    let material::Materials { materials, textures, images, warnings: material_warnings } = material::read(&root)?;
     let variants = variants::names(&root, &mut warnings)?;
-    let encoded = images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
+    let encoded: Vec<images::Encoded<'_>> =
+        images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
     let meshes = read_meshes(reader, &raw, &scene, &materials, variants.len())?;
-    let parse_ms = milliseconds(start);
+    warnings.append(&mut scene.warnings);
+    warnings.extend(material_warnings);
+    let contents = Contents {
+        scenes: root.scenes.len(),
+        meshes: root.meshes.len(),
+        animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
+        skins: root.skins.len(),
+        extensions: root.extensions_used.clone(),
+    };
+    let model = Model {
+        name: name.into(),
+        materials: Arc::new(materials),
+        textures: textures.into(),
+        variants: variants.into(),
+        files: files.tried.clone().into(),
+        nodes: scene.nodes.into(),
+        environment,
+        contents: contents.into(),
+        timing: LoadTiming { parse_ms: milliseconds(start), ..LoadTiming::default() },
+        ..Model::default()
+    };
+    let motion = Motion { clips, rig: scene.rig, values, target_names: weights.names };
+    let objects = placing::Objects { meshes: scene.meshes, lights: scene.lights, cameras: scene.cameras };
     let canceled = files.canceled;
-    let ((images, decode_ms), (meshes, tangents_ms)) = rayon::join(
-        || timed(|| images::decode(encoded, canceled)),
-        || timed(|| finish_meshes(meshes, &materials, canceled)),
+    // Whoever takes the model early does so while the images are being decoded.
+    let early =
+        take_early.filter(|_| images::take_long(&encoded)).map(|take| (take, images::placeholders(&model, &encoded)));
+    let is_early = early.is_some();
+    let ((images, decode_ms), placed) = rayon::join(
+        || timed(|| background::run_if(is_early, || images::decode(encoded, canceled))),
+        || {
+            let (placed, place_warnings) = assemble(model, meshes, objects, (motion, weights.rest), canceled)?;
+            if let Some((take, images)) = early {
+                take(Model { images: images.into(), awaits_textures: true, ..placed.clone() });
+            }
+            Ok((placed, place_warnings))
+        },
     );
     if canceled() {
         return Err(Problem::Canceled);
     }
+    let (mut model, place_warnings): (Model, Vec<String>) = placed?;
     let (images, failures): (Vec<Image>, Vec<_>) = images.into_iter().map(|i| (i.image, i.failure)).unzip();
+    if failures.iter().any(Option::is_some) {
+        let materials: &mut Vec<Material> = Arc::make_mut(&mut model.materials);
+        warnings.extend(placeholder::replace(materials, &model.textures, &failures));
+    }
+    warnings.extend(place_warnings);
+    (model.images, model.warnings) = (images.into(), warnings.into());
+    model.timing.decode_ms = decode_ms;
+    Ok(model)
+}
 
-    warnings.extend(scene.warnings);
-    warnings.extend(material_warnings);
-    warnings.extend(placeholder::replace(&mut materials, &textures, &failures));
-    let mut model = Model {
-        name: name.into(),
-        materials: materials.into(),
-        textures: textures.into(),
-        images: images.into(),
-        variants: variants.into(),
-        files: files.tried.clone().into(),
-        nodes: scene.nodes.into(),
-        ..Model::default()
-    };
+/// Completes the meshes and places them. Returns the model without images, and the warnings about what it has placed.
+fn assemble(
+    mut model: Model,
+    meshes: Meshes,
+    objects: placing::Objects,
+    motion: (Motion, Vec<f32>),
+    canceled: Canceled<'_>,
+) -> Result<(Model, Vec<String>), Problem> {
+    let (meshes, tangents_ms) = timed(|| finish_meshes(meshes, &model.materials, canceled));
+    let mut warnings = Vec::new();
     let (mut ranges, mut primitives) = (HashMap::new(), Vec::new());
     for (mesh, geometries) in meshes {
         let first = primitives.len();
@@ -121,24 +171,13 @@ fn build(
         ranges.insert(mesh, first..primitives.len());
     }
     model.primitives = Arc::new(primitives);
-    let contents = Contents {
-        scenes: root.scenes.len(),
-        meshes: root.meshes.len(),
-        animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
-        skins: root.skins.len(),
-        extensions: root.extensions_used.clone(),
-    };
-    model.contents = contents.into();
-    let motion = Motion { clips, rig: scene.rig, values, target_names: weights.names };
-    let objects = placing::Objects { meshes: scene.meshes, lights: scene.lights, cameras: scene.cameras };
-    placing::place(&mut model, objects, (motion, weights.rest), &ranges, &mut warnings)?;
+    placing::place(&mut model, objects, motion, &ranges, &mut warnings)?;
     warnings.extend(unseen::reason(&model));
     if model.lights.len() > MAX_LIGHTS {
         warnings.push(format!("it has {} lights: the first {MAX_LIGHTS} shine.", model.lights.len()));
     }
-    model.warnings = warnings.into();
-    model.timing = LoadTiming { parse_ms, decode_ms, tangents_ms };
-    Ok(model)
+    model.timing.tangents_ms = tangents_ms;
+    Ok((model, warnings))
 }
 
 type Meshes = Vec<(usize, Vec<Geometry>)>;

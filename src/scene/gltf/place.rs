@@ -9,7 +9,10 @@ pub const LARGEST_COORDINATE: f32 = 1e15;
 
 /// The name of an object in messages: `materials[3] "Visor"`.
 pub fn place(kind: &str, index: usize, name: Option<&str>) -> String {
+    // Nearly all names are plain, and a place is made for each object of the file.
+    let is_plain = |byte: u8| (b' '..=b'~').contains(&byte) && !matches!(byte, b'"' | b'\'' | b'\\');
     match name {
+        Some(name) if !name.is_empty() && name.bytes().all(is_plain) => format!("{kind}[{index}] \"{name}\""),
         Some(name) if !name.is_empty() => format!("{kind}[{index}] \"{}\"", name.escape_debug()),
         _ => format!("{kind}[{index}]"),
     }

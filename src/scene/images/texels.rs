@@ -41,7 +41,7 @@ impl Texels {
         }
     }
 
-    pub(super) fn is_hdr(&self) -> bool {
+    pub(in crate::scene) fn is_hdr(&self) -> bool {
         match self {
             Self::Stored { form, .. } => form.is_hdr(),
             Self::Basis(basis) => basis.is_hdr,

@@ -1,5 +1,6 @@
 //! Environments: the bake matches the file or name, a bad file keeps the last good one, and the cache is reliable.
 
+mod of_model;
 mod suns;
 
 use std::fs;

@@ -141,8 +141,13 @@ impl Viewer {
 
     /// [`Self::open`] with a standard input for [`Running::ask`].
     pub fn driven(tree: Tree, more: &[&str]) -> Self {
+        Self::driven_with_fault(tree, more, "")
+    }
+
+    /// [`Self::driven`] with a fault in the form of `SPECULA_FAULT`.
+    pub fn driven_with_fault(tree: Tree, more: &[&str], fault: &str) -> Self {
         dismiss_hint(&tree);
-        let mut viewer = Self::spawn(tree, more, &[], Stdio::piped());
+        let mut viewer = Self::spawn(tree, more, &[("SPECULA_FAULT", fault)], Stdio::piped());
         viewer.running.event("window");
         viewer.find_window();
         viewer

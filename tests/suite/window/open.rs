@@ -1,11 +1,13 @@
 //! Opens dropped files, and restores the last session.
 
+use std::io::Cursor;
+
 use serde_json::{Value, json};
 
-use super::controls::choose;
+use super::controls::{WARNING, choose, count};
 use crate::support::window::Viewer;
 use crate::support::xdnd::{drop_file, drop_files};
-use crate::support::{Tree, glb};
+use crate::support::{Tree, glb, open_image};
 
 const RECENT: &str = "state/specula/recent.json";
 const SESSIONS: &str = "state/specula/sessions.json";
@@ -83,6 +85,52 @@ fn a_model_is_added_beside_and_an_undo_takes_it_away() {
     viewer.until("two other models", |shot| *shot != both && *shot != first);
     let settings = viewer.running.done(json!({"command": "get"}));
     assert_eq!(settings["added"].as_array().map(Vec::len), Some(1), "{settings}");
+    viewer.running.end_input();
+    viewer.quit();
+}
+
+/// A model whose textures take ten minutes is shown without them, and says so. A screenshot waits for them. Another model that is bad ends
+/// their load, and costs nothing: they are loaded again.
+#[test]
+fn a_model_is_on_screen_before_its_textures_and_gets_them_whatever_comes() {
+    let tree = Tree::new();
+    let bad = tree.beside("bad.glb");
+    std::fs::write(&bad, "").unwrap();
+    let (mut document, mut bin) = glb::document(&glb::quad(1.0), &glb::gray());
+    let red = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
+    let mut png = Cursor::new(Vec::new());
+    red.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let mut png = png.into_inner();
+    // Bytes that no decoder reads make it large.
+    png.resize(2 << 20, 0);
+    bin.resize(bin.len().next_multiple_of(4), 0);
+    let views = document["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": png.len() }));
+    document["images"] = json!([{ "bufferView": views.len() - 1, "mimeType": "image/png" }]);
+    bin.extend(png);
+    document["buffers"][0]["byteLength"] = json!(bin.len());
+    document["textures"] = json!([{ "source": 0 }]);
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
+    document["materials"][0]["extensions"] = json!({ "KHR_materials_unlit": {} });
+    std::fs::write(tree.beside("model.glb"), glb::container(&document, &bin)).unwrap();
+
+    let mut viewer = Viewer::driven_with_fault(tree, &["model.glb"], "textures-delay-ms:600000");
+    let mut early = Vec::new();
+    viewer.running.until("ready", |event| {
+        early.push(event["event"].clone());
+        event["event"] == "ready"
+    });
+    assert!(!early.contains(&json!("settled")), "the picture was final without textures: {early:?}");
+    let is_red = |pixel: &image::Rgba<u8>| pixel[0] > 80 && pixel[1] < 30 && pixel[2] < 30;
+    let reds = |shot: &image::RgbaImage| shot.pixels().filter(|pixel| is_red(pixel)).count();
+    let screen = viewer.until_screen("words about the textures", |screen| count(screen, 0..640, 0..480, WARNING) > 0);
+    assert_eq!(reds(&screen), 0, "the textures were there before they were decoded");
+    viewer.key("F12");
+    let refused = viewer.running.refused(json!({"command": "open", "model": bad}));
+    assert!(refused.contains("bad.glb"), "{refused}");
+    let event = viewer.running.event("screenshot");
+    let shot = open_image(&viewer.tree.beside(event["file"].as_str().unwrap())).into_rgba8();
+    assert!(reds(&shot) > 10_000, "the screenshot has {} red pixels", reds(&shot));
     viewer.running.end_input();
     viewer.quit();
 }

@@ -138,7 +138,7 @@ fn warnings(egui: &egui::Context, state: &State, picture: Rect, commands: &mut V
     }
 }
 
-/// The passing messages, or that a model is loading. `free` is the part of the picture above the diagnostics.
+/// The passing messages, or that a model is loading, and that its textures are not on screen. `free` is the part of the picture above the diagnostics.
 fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
     let has_model = state.session.model().is_some_and(|model| !model.instances.is_empty());
     // If no model could be loaded, the message stays.
@@ -150,12 +150,15 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
         }
         texts.push(text);
     }
-    if texts.is_empty() && state.model.loading {
-        texts.push("Loading the model…");
+    match state.missing_textures() {
+        Some(missing) => texts.push(missing),
+        None if texts.is_empty() && state.model.loading => texts.push("Loading the model…"),
+        None => {}
     }
     if texts.is_empty() {
         return;
     }
+    let edge = if state.missing_textures().is_some() { WARNING } else { LINE };
     // Where the diagnostics leave no room below, it stands at the top.
     let above_names = if state.compare.is_on() { NAMES } else { 0.0 };
     let (corner, room) = match free.height() >= NOTICE {
@@ -163,7 +166,7 @@ fn notice(egui: &egui::Context, state: &State, picture: Rect, free: Rect) {
         false => (Align2::CENTER_TOP, picture),
     };
     area(Id::new("notice"), corner, room).interactable(false).show(egui, |ui| {
-        card(LINE.color()).show(ui, |ui| {
+        card(edge).show(ui, |ui| {
             let font = TextStyle::Body.resolve(ui.style());
             let color = ui.visuals().text_color();
             for text in texts {

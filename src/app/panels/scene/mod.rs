@@ -96,7 +96,7 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
     area.show_rows(ui, row::HEIGHT, rows, |ui, range| {
         ui.set_max_width(width);
         for at in range {
-            let row = &own.tree.rows()[at];
+            let Some(row) = own.tree.row(at) else { continue };
             let shown = row::RowState {
                 is_drawn: row.item.is_none_or(|item| own.tree.is_drawn(item)),
                 is_selected: row.item.is_some() && row.item == chosen_part,

@@ -1,6 +1,6 @@
 //! The rows of the tree: nodes with their primitives, materials, textures, cameras and lights.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use crate::app::state::selection::{LightId, Selected, name_or};
@@ -39,20 +39,29 @@ pub(super) struct TreeRow {
 #[derive(Default)]
 pub(super) struct Tree {
     folded: HashSet<(Group, Option<Selected>)>,
-    rows: Vec<TreeRow>,
+    /// All rows of the model, of which a large one has many.
+    all: Vec<TreeRow>,
+    /// Those that are shown, as indices.
+    shown: Vec<usize>,
     /// The scene of the last frame, and whether each of its nodes, or something below it, is drawn.
     drawn: Option<(Scene, Vec<bool>)>,
-    /// Whether folding has changed since the rows were made.
+    /// Whether folding has changed since the shown rows were chosen.
     is_changed: bool,
-    /// Inputs of the cached rows: the model and the search text.
+    /// Inputs of the shown rows: the model and the search text.
     made_of: Option<(Arc<Model>, String)>,
     /// The part that stands for each instance of the model.
     parts: Option<(Arc<Model>, Vec<Selected>)>,
 }
 
 impl Tree {
-    pub(super) fn rows(&self) -> &[TreeRow] {
-        &self.rows
+    /// The rows that are shown.
+    pub(super) fn rows(&self) -> impl ExactSizeIterator<Item = &TreeRow> {
+        self.shown.iter().map(|index| &self.all[*index])
+    }
+
+    /// A row that is shown.
+    pub(super) fn row(&self, at: usize) -> Option<&TreeRow> {
+        self.shown.get(at).map(|index| &self.all[*index])
     }
 
     /// Whether a part is drawn, or something below it.
@@ -78,38 +87,37 @@ impl Tree {
         }
         if self.made_of.as_ref().is_none_or(|(made, _)| !Arc::ptr_eq(made, model)) {
             self.folded.clear();
+            self.all = rows(model);
         }
-        let all = rows(model);
         let words = Words::new(search);
-        self.rows = match words.is_empty() {
-            true => self.unfolded(all),
+        match words.is_empty() {
+            true => self.unfold(),
             false => {
-                let has = |row: &TreeRow| words.are_in(&row.name);
-                all.into_iter().filter(|row| row.item.is_some() && has(row)).collect()
+                let has = |index: &usize| self.all[*index].item.is_some() && words.are_in(&self.all[*index].name);
+                self.shown = (0..self.all.len()).filter(has).collect();
             }
-        };
+        }
         self.made_of = Some((model.clone(), search.to_owned()));
     }
 
-    /// Leaves out what is below folded rows.
-    fn unfolded(&self, all: Vec<TreeRow>) -> Vec<TreeRow> {
+    /// Shows all but what is below folded rows.
+    fn unfold(&mut self) {
         let mut below = None;
-        let mut shown = Vec::with_capacity(all.len());
-        for mut row in all {
+        self.shown.clear();
+        for (index, row) in self.all.iter_mut().enumerate() {
             if below.is_some_and(|depth| row.depth > depth) {
                 continue;
             }
             let is_folded = row.is_folded.is_some() && self.folded.contains(&(row.group, row.item));
             below = is_folded.then_some(row.depth);
             row.is_folded = row.is_folded.map(|_| is_folded);
-            shown.push(row);
+            self.shown.push(index);
         }
-        shown
     }
 
     /// Folds or unfolds the rows below a row.
     pub(super) fn toggle(&mut self, at: usize) {
-        let Some(row) = self.rows.get(at) else { return };
+        let Some(row) = self.row(at) else { return };
         let key = (row.group, row.item);
         if !self.folded.remove(&key) {
             self.folded.insert(key);
@@ -154,21 +162,32 @@ impl Tree {
     /// The index of the row of a selection.
     pub(super) fn place(&self, selected: Selected) -> Option<usize> {
         let part = self.part_of(selected)?;
-        self.rows.iter().position(|row| row.item == Some(part))
+        self.rows().position(|row| row.item == Some(part))
     }
 }
 
 /// The place of each node in the model, by its index in the file.
-fn places_of_nodes(model: &Model) -> HashMap<usize, usize> {
-    model.nodes.iter().enumerate().map(|(at, node)| (node.index, at)).collect()
+struct NodePlaces(Vec<Option<usize>>);
+
+impl NodePlaces {
+    fn new(model: &Model) -> Self {
+        let mut places = vec![None; model.nodes.iter().map(|node| node.index + 1).max().unwrap_or(0)];
+        model.nodes.iter().enumerate().for_each(|(at, node)| places[node.index] = Some(at));
+        Self(places)
+    }
+
+    /// The place of the node of an instance.
+    fn of(&self, instance: &Instance) -> Option<usize> {
+        self.0.get(instance.node).copied().flatten()
+    }
 }
 
 /// The part that stands for each instance: a primitive that is alone in its node has no row of its own.
 fn parts(model: &Model) -> Vec<Selected> {
-    let (at, mut counts) = (places_of_nodes(model), HashMap::<usize, usize>::new());
-    model.instances.iter().for_each(|instance| *counts.entry(instance.node).or_default() += 1);
-    let part = |(index, instance): (usize, &Instance)| match at.get(&instance.node) {
-        Some(node) if counts[&instance.node] == 1 => Selected::Node(*node),
+    let (places, mut counts) = (NodePlaces::new(model), vec![0; model.nodes.len()]);
+    model.instances.iter().filter_map(|instance| places.of(instance)).for_each(|node| counts[node] += 1);
+    let part = |(index, instance): (usize, &Instance)| match places.of(instance) {
+        Some(node) if counts[node] == 1 => Selected::Node(node),
         _ => Selected::Instance(index),
     };
     model.instances.iter().enumerate().map(part).collect()
@@ -177,13 +196,13 @@ fn parts(model: &Model) -> Vec<Selected> {
 /// Whether each node, or something below it, is drawn; true for nodes with nothing to draw.
 fn drawn_nodes(scene: &Scene) -> Vec<bool> {
     let model = scene.model();
-    let at = places_of_nodes(model);
+    let places = NodePlaces::new(model);
     // Whether there is something to draw, and whether it is drawn.
     let mut nodes = vec![(false, false); model.nodes.len()];
     for (index, instance) in model.instances.iter().enumerate() {
-        if let Some(at) = at.get(&instance.node) {
-            nodes[*at].0 = true;
-            nodes[*at].1 |= scene.is_visible(index);
+        if let Some(at) = places.of(instance) {
+            nodes[at].0 = true;
+            nodes[at].1 |= scene.is_visible(index);
         }
     }
     // Children come after their parents.
@@ -199,8 +218,8 @@ fn drawn_nodes(scene: &Scene) -> Vec<bool> {
 
 /// All rows of a model.
 fn rows(model: &Model) -> Vec<TreeRow> {
-    let mut rows = Vec::new();
-    nodes(model, &mut rows);
+    let (mut rows, material_keys) = (Vec::new(), model.material_keys());
+    nodes(model, &material_keys, &mut rows);
     let mut uses = vec![0; model.materials.len()];
     for primitive in model.primitives.iter() {
         uses.get_mut(primitive.default_material).into_iter().for_each(|uses: &mut usize| *uses += 1);
@@ -209,12 +228,13 @@ fn rows(model: &Model) -> Vec<TreeRow> {
         .iter()
         .enumerate()
         .skip(1)
-        .map(|(index, used)| (model.material_key(index), plural(*used, "primitive"), Selected::Material(index)));
+        .map(|(index, used)| (material_keys[index].clone(), plural(*used, "primitive"), Selected::Material(index)));
     group(&mut rows, Group::Materials, "Materials", materials.collect());
     let textures = textures(model).into_keys().map(|source| {
         let image = source.image(model);
         let (name, size) = image
             .map_or_else(Default::default, |image| (image.name.clone(), format!("{} × {}", image.width, image.height)));
+        let size = if model.awaits_textures { "decoding".to_owned() } else { size };
         (name_or(&name, || "texture".to_owned()), size, Selected::Texture(source))
     });
     group(&mut rows, Group::Textures, "Textures", textures.collect());
@@ -267,18 +287,19 @@ fn title_of(group: Group, title: &str, count: usize) -> TreeRow {
 }
 
 /// The nodes, each with the primitives of its mesh if there are several.
-fn nodes(model: &Model, rows: &mut Vec<TreeRow>) {
-    let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (index, instance) in model.instances.iter().enumerate() {
-        of_node.entry(instance.node).or_default().push(index);
-    }
+fn nodes(model: &Model, material_keys: &[String], rows: &mut Vec<TreeRow>) {
+    let node_of = |instance: &usize| model.instances[*instance].node;
+    let mut by_node: Vec<usize> = (0..model.instances.len()).collect();
+    by_node.sort_by_key(node_of);
     let (group, keys) = (Group::Nodes, model.node_keys());
     rows.push(title_of(group, "Nodes", model.nodes.len()));
     let mut depths = Vec::with_capacity(model.nodes.len());
     for (at, node) in model.nodes.iter().enumerate() {
         let depth = node.parent.map_or(1, |parent| depths[parent] + 1);
         depths.push(depth);
-        let instances = of_node.get(&node.index).map(Vec::as_slice).unwrap_or_default();
+        let first = by_node.partition_point(|instance| node_of(instance) < node.index);
+        let instances = by_node[first..].chunk_by(|a, b| node_of(a) == node_of(b)).next().unwrap_or_default();
+        let instances = if instances.first().map(node_of) == Some(node.index) { instances } else { &[] };
         let triangles = |instance: &usize| model.primitives[model.instances[*instance].primitive].indices.len() / 3;
         let total: usize = instances.iter().map(triangles).sum();
         let has_children = model.nodes.get(at + 1).is_some_and(|next| next.parent == Some(at));
@@ -298,7 +319,7 @@ fn nodes(model: &Model, rows: &mut Vec<TreeRow>) {
             let primitive = &model.primitives[model.instances[*instance].primitive];
             rows.push(TreeRow {
                 depth: depth + 1,
-                name: format!("{} · {}", primitive.name, model.material_key(primitive.default_material)),
+                name: format!("{} · {}", primitive.name, material_keys[primitive.default_material]),
                 detail: thousands(triangles(instance)),
                 item: Some(Selected::Instance(*instance)),
                 group,
@@ -345,7 +366,7 @@ mod tests {
             let (scene, mut tree) = (scene(name), Tree::default());
             let model = scene.model();
             tree.update(&scene, "");
-            let has = |tree: &Tree, item| tree.rows().iter().any(|row| row.item == Some(item));
+            let has = |tree: &Tree, item| tree.rows().any(|row| row.item == Some(item));
             assert!((0..model.nodes.len()).all(|node| has(&tree, Selected::Node(node))), "{name}");
             assert!((1..model.materials.len()).all(|material| has(&tree, Selected::Material(material))), "{name}");
             assert!((0..model.lights.len()).all(|light| has(&tree, Selected::Light(LightId::Model(light)))), "{name}");
@@ -356,7 +377,7 @@ mod tests {
             tree.update(&scene, &material.to_uppercase());
             assert!(has(&tree, Selected::Material(1)), "{name}: {material}");
             tree.update(&scene, "no part has this name");
-            assert!(tree.rows().is_empty());
+            assert!(tree.rows().len() == 0);
         }
     }
 

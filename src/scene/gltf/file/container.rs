@@ -8,10 +8,11 @@ use crate::scene::error::Problem;
 use crate::scene::extensions::EXTENSIONS;
 use crate::scene::gltf::motion::pointers;
 use crate::scene::gltf::motion::raw::Raw;
-use crate::scene::gltf::{compression, instancing, nodes};
+use crate::scene::gltf::{compression, environment, instancing, nodes};
 
 /// Extensions that a model may require, beside those of `scene::extensions`.
 const SUPPORTED: &[&str] = &[
+    environment::EXTENSION,
     instancing::EXTENSION,
     "EXT_texture_webp",
     pointers::EXTENSION,
@@ -28,7 +29,6 @@ const SUPPORTED: &[&str] = &[
 /// Extensions that a model may use without loss, or with a known one: what Specula does instead.
 const IGNORED: &[(&str, &str)] = &[
     ("AGI_articulations", "the model looks the same without it"),
-    ("EXT_lights_image_based", "the environment of Specula lights the model"),
     ("EXT_mesh_features", "the model looks the same without it"),
     ("EXT_structural_metadata", "the model looks the same without it"),
     ("EXT_texture_avif", "the PNG, JPEG, WebP or KTX2 image of each texture is shown, if it has one"),

@@ -17,12 +17,14 @@ use crate::scene::gltf::file::uri;
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::images::{TexelForm, Texels};
 use crate::scene::load_options::Canceled;
-use crate::scene::model::Image;
+use crate::scene::model::{Image, Model};
 
 /// Maximum width and height of an image, in pixels.
 const MAX_SIZE: u32 = 16384;
 /// Maximum number of bytes that a decoder may allocate.
 const MAX_DECODED_BYTES: u64 = 512 << 20;
+/// Encoded bytes of images that take 30 ms and more to decode.
+const LONG: usize = 1 << 20;
 /// Maximum length of a quoted decoder message, in characters.
 const LONGEST_REASON: usize = 120;
 
@@ -108,6 +110,18 @@ fn reason(problem: Problem) -> String {
         Problem::Invalid { place, expected, found } => format!("{place}: expected {expected}, found {found}"),
         other => other.to_string(),
     }
+}
+
+/// Whether decoding the images takes so long that it is worth showing the model without them.
+pub fn take_long(encoded: &[Encoded<'_>]) -> bool {
+    let bytes = |image: &Encoded<'_>| image.bytes.as_ref().map_or(0, |bytes| bytes.len());
+    encoded.iter().map(bytes).sum::<usize>() >= LONG
+}
+
+/// A placeholder of one pixel for each image.
+pub fn placeholders(model: &Model, encoded: &[Encoded<'_>]) -> Vec<Image> {
+    let name = |image: &Encoded<'_>| image.name.clone();
+    encoded.iter().enumerate().map(|(index, image)| placeholder::pixel(name(image), model, index)).collect()
 }
 
 /// Decodes images in parallel, and frees the encoded bytes of each as soon as it is decoded. Stops early if the load is `canceled`.

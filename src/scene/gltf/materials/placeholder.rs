@@ -2,7 +2,7 @@
 //! material had no texture there.
 
 use crate::interface as contract;
-use crate::scene::model::{Image, Material, Texture};
+use crate::scene::model::{Image, Material, Model, Texture};
 
 /// Side of the checkerboard, in pixels.
 const SIDE: u32 = 256;
@@ -18,6 +18,22 @@ pub fn checkerboard(name: String) -> Image {
     let gray = |pixel: u32| GRAYS[((pixel % SIDE / SQUARE + pixel / SIDE / SQUARE) % 2) as usize];
     let rgba8 = (0..SIDE * SIDE).flat_map(|pixel| [gray(pixel), gray(pixel), gray(pixel), 255]).collect();
     Image::rgba8(name, SIDE, SIDE, rgba8)
+}
+
+/// A pixel that stands for an image while it is being decoded, so that a material looks as if it had no texture there. Like a failed
+/// image, it emits nothing.
+pub fn pixel(name: String, model: &Model, image: usize) -> Image {
+    let is_in = |slot: usize| {
+        let uses = model.materials.iter().filter_map(|material| material.textures[slot]);
+        uses.into_iter().any(|used| model.textures[used.texture].image == image)
+    };
+    let is_normal = |slot: &usize| contract::TEXTURES[*slot].content == contract::TextureContent::Normal;
+    let rgba8 = match (0..contract::TEXTURE_COUNT).filter(is_normal).any(is_in) {
+        _ if is_in(contract::TEXTURE_EMISSIVE as usize) => [0, 0, 0, 255],
+        true => [128, 128, 255, 255],
+        false => [255; 4],
+    };
+    Image::rgba8(name, 1, 1, rgba8.to_vec())
 }
 
 /// Removes failed images from the materials, except for base colors, which show the checkerboard. Returns a warning for each

@@ -59,6 +59,9 @@ pub fn read(
     rig: &Rig,
     warnings: &mut Vec<String>,
 ) -> (Vec<Clip>, Vec<Values>) {
+    if animations.is_empty() {
+        return Default::default();
+    }
     let (nodes, times, curves, values) = (HashMap::new(), HashMap::new(), HashMap::new(), Vec::new());
     let mut clips = Clips { reader, rig, nodes, times, curves, values, numbers: 0 };
     for (at, node) in rig.nodes.iter().enumerate() {

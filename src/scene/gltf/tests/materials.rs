@@ -273,7 +273,8 @@ fn a_load_that_is_canceled_stops_before_the_next_image() {
     std::fs::write(&path, builder.glb()).unwrap();
     let open = |images: usize| {
         let asked = AtomicUsize::new(0);
-        open_unless(Some(&path), &LoadOptions::default(), &|| asked.fetch_add(1, Ordering::Relaxed) >= images)
+        let canceled = || asked.fetch_add(1, Ordering::Relaxed) >= images;
+        open_for(Some(&path), &LoadOptions::default(), Caller::until(&canceled))
     };
     assert_eq!(open(usize::MAX).unwrap().images.len(), 2);
     for images in 0..2 {

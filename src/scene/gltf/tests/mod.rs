@@ -6,6 +6,7 @@ mod extensions;
 mod features;
 mod geometry;
 mod growth;
+mod image_based;
 mod invalid;
 mod materials;
 mod motion;
@@ -18,7 +19,7 @@ use serde_json::{Value, json};
 
 use super::super::error::{LoadError, Problem};
 use super::super::model::Model;
-use super::super::{LoadOptions, load, load_bytes, open, open_unless};
+use super::super::{Caller, LoadOptions, load, load_bytes, open, open_for};
 
 /// componentType numbers of the specification.
 const I8: u32 = 5120;
