@@ -206,11 +206,8 @@ fn read_meshes(
 }
 
 fn finish_meshes(mut meshes: Meshes, materials: &[Material], canceled: Canceled<'_>) -> Meshes {
-    meshes
-        .par_iter_mut()
-        .flat_map(|(_, geometries)| geometries)
-        .take_any_while(|_| !canceled())
-        .for_each(|geometry| tangents::complete(geometry, materials));
+    let mut all: Vec<&mut Geometry> = meshes.iter_mut().flat_map(|(_, geometries)| geometries).collect();
+    tangents::complete(&mut all, materials, canceled);
     meshes
 }
 

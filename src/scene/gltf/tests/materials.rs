@@ -109,6 +109,35 @@ fn tangents_turn_with_a_texture_transform() {
     assert_eq!(tangent(json!({ "scale": [-1, 1] })), [-1.0, 0.0, 0.0, -1.0]);
 }
 
+/// Primitives of equal vertices get the tangents that each would have alone: those of its own texture coordinates.
+#[test]
+fn equal_geometry_has_tangents_of_its_own_material() {
+    let mut builder = Builder::square();
+    builder.image("normalTexture", &png(2, 2));
+    let turned = json!({ "index": 0, "extensions": { "KHR_texture_transform": { "scale": [-1, 1] } } });
+    let turned = builder.push("materials", json!({ "normalTexture": turned }));
+    let first = builder.primitive().clone();
+    let mut other = first.clone();
+    other["material"] = json!(turned);
+    let mut mirrored = first.clone();
+    let accessor = builder.accessor("VEC2", F32, 4, bytemuck::cast_slice(&[1.0_f32, 1., 0., 1., 0., 0., 1., 0.]));
+    mirrored["attributes"]["TEXCOORD_0"] = json!(accessor);
+    let mut plain = first.clone();
+    plain.as_object_mut().unwrap().remove("material");
+    builder.json["meshes"][0]["primitives"] = json!([first, other, mirrored, plain, first, other, mirrored]);
+    let model = builder.model();
+    let (right, left) = ([1.0, 0.0, 0.0, 1.0], [-1.0, 0.0, 0.0, -1.0]);
+    let tangents: Vec<[f32; 4]> = model.primitives.iter().map(|primitive| primitive.vertices[0].tangent).collect();
+    assert_eq!(tangents, [right, left, left, right, right, left, left]);
+    for (copy, first) in [(4, 0), (5, 1), (6, 2)] {
+        let [copy, first] = [copy, first].map(|index: usize| &model.primitives[index]);
+        assert_eq!(
+            (&copy.vertices, &copy.indices, copy.attributes),
+            (&first.vertices, &first.indices, first.attributes)
+        );
+    }
+}
+
 #[test]
 fn texture_transform() {
     let mut builder = Builder::square();
