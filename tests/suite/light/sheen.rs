@@ -121,7 +121,7 @@ fn the_zeltner_sheen_gains_no_energy_where_charlie_does() {
 fn under_a_sun_sheen_is_as_bright_as_random_paths() {
     for sheen in ["SHEEN=Charlie", "SHEEN=ZeltnerLTC"] {
         for roughness in [0.2, 0.5, 1.0] {
-            let in_sun = lit(&[sheen, "lights.source=none", "environment.name=sky", "view.frames=64"]);
+            let in_sun = lit(&[sheen, "lights.source=none", "environment.name=sky", "view.frames=24"]);
             let mut headless = renderer(sphere(roughness), in_sun, SIZE);
             let [picture, paths] = ["final", "monte-carlo"]
                 .map(|mode| covered(&render(&mut headless, mode)).iter().map(|light| light.element_sum()).sum::<f64>());

@@ -47,9 +47,12 @@ fn the_light_that_the_scene_names_is_the_environment_of_the_model() {
     assert!(model.environment.is_none() && model.warnings.is_empty(), "no scene names the light");
 }
 
+/// Damages a file.
+type Damage = fn(&mut Builder);
+
 #[test]
 fn a_light_that_cannot_be_used_costs_a_warning() {
-    let damages: [(fn(&mut Builder), &str); 8] = [
+    let damages: [(Damage, &str); 8] = [
         (|b| b.json["extensions"][NAME]["lights"][0]["specularImages"][0] = json!([0, 1, 2, 3, 4]), "has 5 images"),
         (|b| b.json["extensions"][NAME]["lights"][0]["specularImages"] = json!([]), "has 0 images"),
         (|b| b.json["extensions"][NAME]["lights"][0]["specularImages"][0][3] = json!(99), "image 99 cannot be read"),

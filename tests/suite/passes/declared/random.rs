@@ -113,7 +113,7 @@ fn random_graphs_are_drawn_without_a_message() {
     let mut random = Random(0x9e37_79b9);
     let mut session = sphere(&[]);
     let mut drawn = 0;
-    let graphs = if is_long() { 300 } else { 40 };
+    let graphs = if is_long() { 300 } else { 24 };
     for graph in 0..graphs {
         session.set(["view.msaa=1", "view.msaa=4"][random.below(2) as usize]);
         let files = random_graph(&mut random);
