@@ -30,6 +30,7 @@
 //! and changes nothing else.
 
 pub mod app;
+mod astc;
 mod cancel;
 pub mod capture;
 pub mod control;

@@ -288,7 +288,7 @@ blocks! {
         weight: float,
     }
 
-    /// What a morph target with a weight of 1 adds to a vertex.
+    /// The change of a vertex by a morph target with a weight of 1.
     #[derive(PartialEq)]
     Displacement: "struct Displacement", "" {
         /// Added to the position, object space, meters.

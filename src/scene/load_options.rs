@@ -17,7 +17,7 @@ pub type Canceled<'a> = &'a (dyn Fn() -> bool + Sync);
 /// Takes a model while its images are still being decoded ([`super::Model::awaits_textures`]).
 pub type TakeEarly<'a> = &'a (dyn Fn(super::Model) + Sync);
 
-/// What a load asks and tells whoever waits for it.
+/// The questions and news of a load for whoever waits for it.
 #[derive(Clone, Copy)]
 pub struct Caller<'a> {
     /// Asked before each file and each image.

@@ -46,7 +46,7 @@ pub use error::{LoadError, Problem};
 pub use extensions::MaterialFactor;
 pub use features::{features, packs_occlusion};
 pub use gltf::{find_model, triangles};
-pub use images::{ASTC_BLOCKS, Basis, TexelForm, TexelForms, Texels};
+pub use images::{Basis, TexelForm, TexelForms, Texels};
 pub use light_grid::LightGrid;
 pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
 pub use load_options::{Caller, Canceled, LoadOptions};

@@ -7,6 +7,7 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
 use super::memory::{Resource, allocate};
+use crate::astc;
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
@@ -87,31 +88,13 @@ fn block(format: vk::Format) -> (u32, u32, u64) {
             raw if in_formats(raw, F::ASTC_4X4_UNORM_BLOCK, F::ASTC_12X12_SRGB_BLOCK) => {
                 // Each size is there as UNORM and as SRGB.
                 let size = (raw - F::ASTC_4X4_UNORM_BLOCK.as_raw()) / 2;
-                let (width, height) = ASTC_BLOCKS[size as usize];
-                (width, height, 16)
+                let (width, height) = astc::BLOCKS[size as usize];
+                (width.into(), height.into(), 16)
             }
             _ => (1, 1, 4),
         },
     }
 }
-
-/// The block sizes of ASTC, in the order of the formats.
-const ASTC_BLOCKS: [(u32, u32); 14] = [
-    (4, 4),
-    (5, 4),
-    (5, 5),
-    (6, 5),
-    (6, 6),
-    (8, 5),
-    (8, 6),
-    (8, 8),
-    (10, 5),
-    (10, 6),
-    (10, 8),
-    (10, 10),
-    (12, 10),
-    (12, 12),
-];
 
 /// Whether a format is one of those between two, which Vulkan numbers in order.
 fn in_formats(raw: i32, first: vk::Format, last: vk::Format) -> bool {

@@ -1,7 +1,8 @@
 //! The Vulkan formats of textures. Which of them a model's images take on a device is decided here alone.
 
+use crate::astc;
 use crate::gpu::{Gpu, GpuError, fault, texture_formats, vk};
-use crate::scene::{ASTC_BLOCKS, TexelForm, TexelForms};
+use crate::scene::{TexelForm, TexelForms};
 
 /// The format of texels. `srgb`: whether colors are sRGB-encoded. Forms of more than 8 bits a channel are always linear.
 pub(super) fn format_of(form: TexelForm, srgb: bool) -> vk::Format {
@@ -22,7 +23,7 @@ pub(super) fn format_of(form: TexelForm, srgb: bool) -> vk::Format {
         TexelForm::Etc2Rgba8 => (F::ETC2_R8G8B8A8_UNORM_BLOCK, F::ETC2_R8G8B8A8_SRGB_BLOCK),
         TexelForm::Astc(width, height) => {
             // Each size is there as UNORM and as SRGB.
-            let size = ASTC_BLOCKS.iter().position(|block| *block == (width, height)).unwrap_or(0);
+            let size = astc::BLOCKS.iter().position(|block| *block == (width, height)).unwrap_or(0);
             let first = F::ASTC_4X4_UNORM_BLOCK.as_raw() + 2 * size as i32;
             (F::from_raw(first), F::from_raw(first + 1))
         }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::astc;
+
 /// How texels are stored. Whether colors are sRGB-encoded depends on the use of the image, not on its form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TexelForm {
@@ -37,24 +39,6 @@ pub enum TexelForm {
     Astc(u8, u8),
 }
 
-/// The block sizes of ASTC, in the order of Vulkan's formats.
-pub const ASTC_BLOCKS: [(u8, u8); 14] = [
-    (4, 4),
-    (5, 4),
-    (5, 5),
-    (6, 5),
-    (6, 6),
-    (8, 5),
-    (8, 6),
-    (8, 8),
-    (10, 5),
-    (10, 6),
-    (10, 8),
-    (10, 10),
-    (12, 10),
-    (12, 12),
-];
-
 impl TexelForm {
     /// All forms that a device may have.
     pub fn all() -> impl Iterator<Item = Self> {
@@ -73,7 +57,7 @@ impl TexelForm {
             TexelForm::Etc2Rgba1,
             TexelForm::Etc2Rgba8,
         ];
-        OTHERS.into_iter().chain(ASTC_BLOCKS.map(|(width, height)| Self::Astc(width, height)))
+        OTHERS.into_iter().chain(astc::BLOCKS.map(|(width, height)| Self::Astc(width, height)))
     }
 
     /// Width and height of a block in texels, and its bytes. Without compression, a block is a texel.

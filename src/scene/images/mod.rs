@@ -12,6 +12,6 @@ mod texels;
 
 pub use basis::Basis;
 pub(super) use decode::rgba8 as rgba8_of_blocks;
-pub use form::{ASTC_BLOCKS, TexelForm, TexelForms};
+pub use form::{TexelForm, TexelForms};
 pub use image::Image;
 pub use texels::Texels;

@@ -7,7 +7,8 @@ use std::io::Read;
 use half::f16;
 use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
 
-use crate::scene::images::{ASTC_BLOCKS, Basis, TexelForm, Texels, rgba8_of_blocks};
+use crate::astc;
+use crate::scene::images::{Basis, TexelForm, Texels, rgba8_of_blocks};
 use crate::scene::mips;
 
 /// The first bytes of a file.
@@ -80,7 +81,7 @@ fn astc_block(format: Format) -> Option<(u8, u8)> {
     let first = Format::ASTC_4x4_UNORM_BLOCK.value();
     // Each size is there as UNORM and as SRGB.
     let index = format.value().checked_sub(first)? / 2;
-    ASTC_BLOCKS.get(index as usize).copied()
+    astc::BLOCKS.get(index as usize).copied()
 }
 
 /// How a file stores texels.
