@@ -22,7 +22,7 @@ const CODE: usize = 60;
     `return 2`, `? true` decides about a branch or a loop, `discard`. \u{d7}3: three times, with the different values.\n\
     The fragment stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. What passes, \
     random paths and files of Shadertoy compute is not traced. The log leaves out large structs: their members are logged where they are stored.\n\
-    Without --file, all files are traced, a few at a time, which takes a software device half a minute or more.\n\
+    Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
     In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [2]`: the second call of \
     `add_light` by `shade`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \

@@ -31,7 +31,7 @@ pub use statement::Site;
 pub use value::TracedValue;
 
 /// Most log points of a module once all calls are inlined, unless a single file has more. Drivers inline every call, and each copy of a
-/// log point takes about a millisecond to compile on a software device.
+/// log point takes some 20 ms to compile on a software device.
 const MOST_INSTANCES: usize = 400;
 
 /// A stage whose log is written to a buffer. A module in which every statement of every file logs would take a driver minutes to compile,

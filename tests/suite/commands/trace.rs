@@ -151,18 +151,22 @@ fn terms_of_the_brdf_are_those_of_the_cpu() {
     assert!(!missed.contains(&u64::from(line_of(&text, "float spread = n_dot_h"))), "{missed:?}");
 }
 
-/// Without --file, all files that the stage keeps are traced.
+/// Without --file, all files are traced that the stage keeps for the material: an unlit one needs no BRDF.
 #[test]
 fn all_files_are_traced_and_the_color_is_the_pictures() {
     let directory = tempfile::tempdir().unwrap();
-    write_sphere(directory.path());
-    let place = [&["ball.glb"][..], &AT, &EYE].concat();
-    let text = trace(directory.path(), &place);
+    let mut unlit = glb::gray();
+    unlit["extensions"] = json!({ "KHR_materials_unlit": {} });
+    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &unlit)).unwrap();
+    let text = trace(directory.path(), &[&["quad.glb"][..], &AT, &EYE].concat());
     text.expect(0, &[]);
-    assert!(text.stdout.contains("equal to the picture\n"), "{}", text.stdout);
-    for part in ["\npbr.frag\n", "\nbrdf/ndf.glsl\n", "\nuser.glsl\n", "not reached: ", "n_dot_h = ", "? true"] {
+    assert!(text.stdout.contains("fragment 0 of 1: equal to the picture\n"), "{}", text.stdout);
+    for part in
+        ["\npbr.frag\n", "\nmaterial/material.glsl\n", "\nuser.glsl\n", "not reached: ", "? true", "out_color = ("]
+    {
         assert!(text.stdout.contains(part), "no `{part}` in {}", text.stdout);
     }
+    assert!(!text.stdout.contains("\nbrdf/ndf.glsl\n"), "{}", text.stdout);
 }
 
 /// The stage of the debug modes, of a built-in model.
