@@ -53,7 +53,8 @@ impl Trace {
     /// The lines of a fragment, file by file in the order in which they were reached.
     pub fn lines(&self, fragment: usize) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
-        let (mut files, mut lines): (Vec<&str>, BTreeMap<(&str, u32), Vec<Done>>) = (Vec::new(), BTreeMap::new());
+        let mut files: Vec<&str> = Vec::new();
+        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
         let events = fragment.events.iter().map(|event| (&event.doing, Ok(event)));
         let left_out = fragment.left_out.iter().map(|(doing, count)| (doing, Err(*count)));
         for (doing, event) in events.chain(left_out) {

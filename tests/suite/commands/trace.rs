@@ -151,22 +151,35 @@ fn terms_of_the_brdf_are_those_of_the_cpu() {
     assert!(!missed.contains(&u64::from(line_of(&text, "float spread = n_dot_h"))), "{missed:?}");
 }
 
-/// Without --file, all files are traced that the stage keeps for the material: an unlit one needs no BRDF.
+/// A small stage of an own tree.
+const NORMALS: &str = "//@pass model \"Model\" draw=model to=picture doc=\"Normals\"\n#version 460\n#include \"interface.glsl\"\n\
+    #include \"common/fragment.glsl\"\n#include \"common/math.glsl\"\n#include \"common/pixel.glsl\"\n\
+    layout(location = 0) in Fragment fragment;\nlayout(location = 0) out vec4 out_color;\n\
+    void main() {\n    vec3 n = safe_normalize(fragment.normal_ws, vec3(1.0, 0.0, 0.0));\n    if (n.z < -2.0)\n        n = -n;\n    \
+    out_color = hdr_pixel(abs(n), 1.0, false);\n}\n";
+
+/// Without --file, all files of the stage are traced.
 #[test]
 fn all_files_are_traced_and_the_color_is_the_pictures() {
     let directory = tempfile::tempdir().unwrap();
-    let mut unlit = glb::gray();
-    unlit["extensions"] = json!({ "KHR_materials_unlit": {} });
-    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &unlit)).unwrap();
-    let text = trace(directory.path(), &[&["quad.glb"][..], &AT, &EYE].concat());
+    let tree = directory.path().join("tree");
+    specula::shader::embedded::write_to(&tree, None).unwrap();
+    std::fs::write(tree.join("pbr.frag"), NORMALS).unwrap();
+    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let text = trace(directory.path(), &[&["quad.glb", "--shaders", "tree"][..], &AT, &EYE].concat());
     text.expect(0, &[]);
     assert!(text.stdout.contains("fragment 0 of 1: equal to the picture\n"), "{}", text.stdout);
-    for part in
-        ["\npbr.frag\n", "\nmaterial/material.glsl\n", "\nuser.glsl\n", "not reached: ", "? true", "out_color = ("]
-    {
+    let parts = [
+        "\npbr.frag\n",
+        "\ncommon/math.glsl\n",
+        "\ncommon/pixel.glsl\n",
+        "n = (0, 0, 1)",
+        "? false",
+        "not reached: 12\n",
+    ];
+    for part in parts {
         assert!(text.stdout.contains(part), "no `{part}` in {}", text.stdout);
     }
-    assert!(!text.stdout.contains("\nbrdf/ndf.glsl\n"), "{}", text.stdout);
 }
 
 /// The stage of the debug modes, of a built-in model.
