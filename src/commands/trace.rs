@@ -40,7 +40,7 @@ pub struct Args {
     /// Trace the statements of this file of the tree alone, as brdf/ndf.glsl; may be repeated
     #[arg(long, value_name = "FILE")]
     file: Vec<String>,
-    /// Check values, as 'brdf/ndf.glsl:24 spread > 0'; may be repeated
+    /// Check values, as 'brdf/ndf.glsl:21 spread > 0'; may be repeated
     #[arg(long, value_name = "FILE:LINE NAME > NUMBER", value_parser = Assertion::parse)]
     assert: Vec<Assertion>,
     /// Print JSON

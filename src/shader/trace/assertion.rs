@@ -52,7 +52,7 @@ impl Assertion {
     /// # Errors
     /// A message with the form that was expected.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = || "expected FILE:LINE NAME > NUMBER, as 'brdf/ndf.glsl:24 spread > 0'".to_owned();
+        let expected = || "expected FILE:LINE NAME > NUMBER, as 'brdf/ndf.glsl:21 spread > 0'".to_owned();
         let words: Vec<&str> = text.split_whitespace().collect();
         let [place, name, comparison, limit] = words.as_slice() else { return Err(expected()) };
         let (file, line) = place.rsplit_once(':').ok_or_else(expected)?;

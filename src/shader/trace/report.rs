@@ -123,7 +123,7 @@ impl Trace {
         }
         let why = match self.redrawn == self.picture {
             true => "a pass after the model changes it, or other surfaces are blended with it",
-            false => "the driver computes the traced stage in another order",
+            false => "the driver computes the traced stage in another order, or passes read earlier frames",
         };
         format!("{} ulp from the picture: {why}", ulps(color, self.picture))
     }
