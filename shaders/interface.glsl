@@ -155,7 +155,7 @@ layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values
 layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few; 0: see frame.light_count
 layout(constant_id = 6) const uint MAPS_VALUES = 0u; // not 0: the display maps values by range, channels or colormap
 layout(constant_id = 7) const uint SUN_COUNT = 0u; // suns of the environment, which its irradiance and specular levels leave out
-layout(constant_id = 8) const uint SAMPLES = 0u; // samples of a pixel; for the pass with to=resolve
+layout(constant_id = 8) const uint SAMPLES = 0u; // samples of a pixel; for the passes with to=resolve and to=peel
 layout(constant_id = 9) const uint MANY_LIGHTS = 0u; // not 0: more than FEW_LIGHTS lights; see lighting/light_grid.glsl
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {

@@ -9,6 +9,9 @@
 
 layout(location = 0) out Fragment fragment;
 
+// Several stages draw the same surfaces, and compare their depths.
+invariant gl_Position;
+
 void main() {
     Vertex vertex = mesh_vertex();
     user_vertex(vertex);

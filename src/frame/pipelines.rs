@@ -3,6 +3,7 @@
 mod hooks;
 mod keys;
 mod modes;
+mod peeling;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use crate::settings::Settings;
 use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
+pub use peeling::Peeling;
 
 /// Everything that selects the pipelines of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -78,6 +80,8 @@ pub struct PipelineRequest {
     pub wireframe: Option<Arc<GraphPass>>,
     /// The stage of that pass, which may not be compiled yet; empty if no wireframe is shown.
     pub wireframe_stage: String,
+    /// How blended surfaces are sorted in each pixel.
+    pub peeling: Peeling,
     /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
     pub modes: Vec<SharedMode>,
 }
@@ -163,7 +167,7 @@ impl PipelineRequest {
             passes = active(false);
         }
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
-        Self {
+        let request = Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
             constants: constants.clone(),
@@ -195,8 +199,10 @@ impl PipelineRequest {
                 .and_then(|name| graph.pass(name)?.desc.watches.as_ref())
                 .map(|_| settings.view.tonemap as u32),
             shown_pass,
+            peeling: Peeling::default(),
             modes: Vec::new(),
-        }
+        };
+        Self { peeling: Peeling::new(settings.view.blend_layers, shaders, &request), ..request }
     }
 
     /// The same for an environment that has this many suns.
@@ -291,11 +297,12 @@ impl PipelineRequest {
     pub fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too, since the model is still loading. Its stage may not be compiled yet.
         let model = self.draws_model.then(|| self.stage.clone());
-        let all = self.passes.iter().chain(&self.wireframe);
+        let all = self.passes.iter().chain(&self.wireframe).chain(self.peel_pass());
         let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
-        let wireframe = Some(self.wireframe_stage.clone()).filter(|stage| !stage.is_empty());
+        let later =
+            [&self.wireframe_stage, &self.peeling.pending].into_iter().filter(|stage| !stage.is_empty()).cloned();
         let deform = self.deforms.then(|| DEFORM.to_owned());
-        passes.chain(model).chain(wireframe).chain(deform).collect()
+        passes.chain(model).chain(later).chain(deform).collect()
     }
 
     /// Whether a frame needs stages that are not compiled yet.

@@ -17,6 +17,9 @@ pub const SET_TASK: u32 = 3;
 
 /// Bytes of push constants of every graphics pipeline: the minimum that Vulkan guarantees, and lavapipe's limit.
 pub const PUSH_CONSTANT_SIZE: u32 = 128;
+
+/// The largest variable of an invocation, bytes.
+pub const LARGEST_VARIABLE: u64 = 256 << 10;
 /// Size in bytes of the author's parameter block `Params`, whose members have `//@ui` annotations.
 pub const PARAMS_SIZE: u32 = 4096;
 

@@ -36,7 +36,7 @@ pub const SPEC_MAPS_VALUES: u32 = 6;
 /// `constant_id` of the number of suns of the environment, up to [`MAX_SUNS`](super::MAX_SUNS).
 pub const SPEC_SUN_COUNT: u32 = 7;
 
-/// `constant_id` of the samples of a pixel; for the pass that makes one color from them.
+/// `constant_id` of the samples of a pixel; for the passes that read single samples.
 pub const SPEC_SAMPLES: u32 = 8;
 
 /// `constant_id` of whether there are more than [`FEW_LIGHTS`](super::FEW_LIGHTS) lights, so that shaders look for them in the grid.
@@ -64,7 +64,11 @@ pub const SPECIALIZATION: &[Specialization] = &[
         name: "SUN_COUNT",
         doc: "suns of the environment, which its irradiance and specular levels leave out",
     },
-    Specialization { id: SPEC_SAMPLES, name: "SAMPLES", doc: "samples of a pixel; for the pass with to=resolve" },
+    Specialization {
+        id: SPEC_SAMPLES,
+        name: "SAMPLES",
+        doc: "samples of a pixel; for the passes with to=resolve and to=peel",
+    },
     Specialization {
         id: SPEC_MANY_LIGHTS,
         name: "MANY_LIGHTS",

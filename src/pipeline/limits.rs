@@ -55,6 +55,7 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
 fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     const TESSELLATION_POINT_SIZE: u32 = 23;
     const GEOMETRY_POINT_SIZE: u32 = 24;
+    const SAMPLE_SHADING: u32 = 35;
     const MESH_SHADING: u32 = 5283;
     let mut out = Vec::new();
     let snapshot = Snapshot::new(source);
@@ -67,6 +68,9 @@ fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> 
             out.push(texts.error(&["main", "void"], message).with_help("delete the .tesc and the .tese file"));
         } else if stage.reflection.capabilities.contains(&MESH_SHADING) {
             out.extend(beyond_mesh(has.mesh, stage, texts));
+        } else if !has.sample_shading && stage.reflection.capabilities.contains(&SAMPLE_SHADING) {
+            let message = "this device runs no fragment stage for each sample (sampleRateShading)".to_owned();
+            out.push(texts.error(&["gl_SampleID", "gl_SamplePosition", "sample"], message));
         } else if !has.point_size
             && capabilities.any(|number| matches!(*number, TESSELLATION_POINT_SIZE | GEOMETRY_POINT_SIZE))
         {
@@ -154,7 +158,7 @@ mod tests {
         let update = library.update(&Change::All);
         let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
         let found = |tessellation: bool, point_size: bool| -> Vec<String> {
-            let has = OptionalStages { tessellation, point_size, mesh: None };
+            let has = OptionalStages { tessellation, point_size, sample_shading: true, mesh: None };
             missing_stages(has, shaders, &source).iter().map(Diagnostic::one_line).collect()
         };
         assert_eq!(found(true, true), [""; 0]);
@@ -179,7 +183,7 @@ mod tests {
         let update = library.update(&Change::All);
         let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
         let found = |mesh: Option<MeshLimits>| -> Vec<String> {
-            let has = OptionalStages { tessellation: true, point_size: true, mesh };
+            let has = OptionalStages { tessellation: true, point_size: true, sample_shading: true, mesh };
             missing_stages(has, shaders, &source).iter().map(Diagnostic::one_line).collect()
         };
         let limits = MeshLimits { task_invocations: 1, mesh_invocations: 64, vertices: 90, primitives: 30 };

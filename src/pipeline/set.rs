@@ -338,6 +338,7 @@ fn kind_of(input: &Input) -> PassBinding {
     match input {
         Input::Picture
         | Input::Samples
+        | Input::Peeled
         | Input::OpaqueScene
         | Input::Depth
         | Input::Image(_)

@@ -102,29 +102,44 @@ fn halve(above: &[u8], (from_w, from_h): (u32, u32), to: &mut [u8], (to_w, _): (
     let halve_row = |(y, row): (usize, &mut [u8])| {
         // A level of height 1 has a single row.
         let (top, bottom) = if from_h > 1 { (2 * y, 2 * y + 1) } else { (0, 0) };
-        let top = &above[top * row_bytes..][..row_bytes];
-        let bottom = &above[bottom * row_bytes..][..row_bytes];
-        if from_w == 1 {
-            mean_of_four(row, [top, top, bottom, bottom], curve);
-            return;
-        }
-        let pairs = top.chunks_exact(8).zip(bottom.chunks_exact(8));
-        for (pixel, (top, bottom)) in row.chunks_exact_mut(4).zip(pairs) {
-            mean_of_four(pixel, [&top[..4], &top[4..], &bottom[..4], &bottom[4..]], curve);
+        let rows = [top, bottom].map(|y| &above[y * row_bytes..][..row_bytes]);
+        // A level of width 1 has a single column.
+        let doubled = (from_w == 1).then(|| rows.map(|row| [row, row].concat()));
+        let rows = doubled.as_ref().map_or(rows, |rows| [&rows[0], &rows[1]]);
+        match curve {
+            Some(curve) => halve_light(row, rows, curve),
+            None => halve_values(row, rows),
         }
     };
     let rows_a_task = PIXELS_A_TASK.div_ceil(to_w as usize);
     to.par_chunks_exact_mut(to_w as usize * 4).enumerate().with_min_len(rows_a_task).for_each(halve_row);
 }
 
-fn mean_of_four(pixel: &mut [u8], taps: [&[u8]; 4], curve: Option<&Curve>) {
-    let mean = |channel: usize| {
-        let sum: u32 = taps.iter().map(|tap| u32::from(tap[channel])).sum();
-        ((sum + 2) / 4) as u8
-    };
-    let light = |channel: usize| curve.map(|curve| curve.mean(taps.map(|tap| tap[channel])));
-    for (channel, value) in pixel.iter_mut().enumerate() {
-        *value = if channel < 3 { light(channel).unwrap_or_else(|| mean(channel)) } else { mean(channel) };
+/// Means of 2x2 pixels, all channels at once: two channels of a pixel lie in 16 bits each.
+fn halve_values(to: &mut [u8], [top, bottom]: [&[u8]; 2]) {
+    const EVEN: u64 = 0x00ff_00ff_00ff_00ff;
+    let (to, _) = to.as_chunks_mut::<4>();
+    let pairs = top.as_chunks::<8>().0.iter().zip(bottom.as_chunks::<8>().0);
+    for (pixel, (top, bottom)) in to.iter_mut().zip(pairs) {
+        let [top, bottom] = [u64::from_le_bytes(*top), u64::from_le_bytes(*bottom)];
+        let mean = |top: u64, bottom: u64| {
+            let both = (top & EVEN) + (bottom & EVEN);
+            ((both + (both >> 32) + 0x0002_0002) >> 2) as u32 & EVEN as u32
+        };
+        *pixel = (mean(top, bottom) | (mean(top >> 8, bottom >> 8) << 8)).to_le_bytes();
+    }
+}
+
+/// Means of 2x2 pixels whose colors are sRGB-encoded.
+fn halve_light(to: &mut [u8], [top, bottom]: [&[u8]; 2], curve: &Curve) {
+    let (to, _) = to.as_chunks_mut::<4>();
+    let pairs = top.as_chunks::<8>().0.iter().zip(bottom.as_chunks::<8>().0);
+    for (pixel, (top, bottom)) in to.iter_mut().zip(pairs) {
+        for (channel, value) in pixel[..3].iter_mut().enumerate() {
+            *value = curve.mean([top[channel], top[4 + channel], bottom[channel], bottom[4 + channel]]);
+        }
+        let alpha = [top[3], top[7], bottom[3], bottom[7]].map(u32::from);
+        pixel[3] = ((alpha.iter().sum::<u32>() + 2) / 4) as u8;
     }
 }
 
@@ -176,6 +191,30 @@ mod tests {
         // 4 x 1 x 2: a level of 2 x 1 x 1, and one texel.
         assert_eq!(below_floats(&volume, [4, 1, 2]), [[2.5; 4], [4.5; 4], [3.5; 4]]);
         assert_eq!(below_floats(&volume[..3], [3, 1, 1]), [[0.5; 4]]);
+    }
+
+    /// A plain mean of each channel, for the lanes of `halve_values`.
+    #[test]
+    fn channels_do_not_touch_each_other() {
+        let mut state = 7_u32;
+        let mut byte = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            // Often the ends of the range, where a lane would carry.
+            [0, 255, (state >> 24) as u8][(state >> 16) as usize % 3]
+        };
+        for (width, height) in [(8, 6), (5, 7), (1, 9), (9, 1), (2, 2)] {
+            let image: Vec<u8> = (0..width * height * 4).map(|_| byte()).collect();
+            let [half_w, half_h] = [(width / 2).max(1), (height / 2).max(1)];
+            let at = |x: usize, y: usize, channel: usize| {
+                u32::from(image[(y.min(height - 1) * width + x.min(width - 1)) * 4 + channel])
+            };
+            let chain = below(&image, width as u32, height as u32, false);
+            for (place, value) in chain[..half_w * half_h * 4].iter().enumerate() {
+                let (x, y, channel) = (place / 4 % half_w * 2, place / 4 / half_w * 2, place % 4);
+                let taps = [at(x, y, channel), at(x + 1, y, channel), at(x, y + 1, channel), at(x + 1, y + 1, channel)];
+                assert_eq!(u32::from(*value), (taps.iter().sum::<u32>() + 2) / 4, "{width}x{height} {x} {y} {channel}");
+            }
+        }
     }
 
     #[test]

@@ -97,6 +97,7 @@ pub(super) mod unit {
     pub(in crate::settings) const LINEAR_RGB: Unit = Unit { name: "linear RGB", suffix: "" };
     pub(in crate::settings) const SAMPLES: Unit = Unit { name: "samples", suffix: "×" };
     pub(in crate::settings) const FRAMES: Unit = Unit { name: "frames", suffix: "" };
+    pub(in crate::settings) const LAYERS: Unit = Unit { name: "layers", suffix: "" };
     pub(in crate::settings) const REFLECTIONS: Unit = Unit { name: "reflections", suffix: "" };
     pub(in crate::settings) const MEBIBYTES: Unit = Unit { name: "MiB", suffix: " MiB" };
 }

@@ -66,6 +66,9 @@ settings! {
         dither: bool, row("Dither");
         /// Multisampling: samples of each pixel.
         msaa: u32 = 4, one_of(&[1, 4]) unit(SAMPLES) row("Samples") title("Samples per pixel");
+        /// Layers of blended surfaces that are sorted in each pixel, from the farthest on (depth peeling), so that surfaces which intersect or
+        /// interleave blend in the right order. 0 sorts whole primitives by their centers; so are surfaces in front of the last layer.
+        blend_layers: u32, whole(0, 64) unit(LAYERS) row("Blend layers") title("Layers of blended surfaces");
         /// Frames that `render` averages in modes that accumulate.
         frames: u32 = 64, whole(1, 100_000) unit(FRAMES);
         /// Reflections of a random path after the first, in modes that trace the model. 0 leaves direct light.

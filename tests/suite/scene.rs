@@ -1,6 +1,7 @@
 //! Models on their way to the device, and what a look changes of them.
 
 mod beside;
+mod blending;
 mod cameras;
 mod deform;
 mod draws;

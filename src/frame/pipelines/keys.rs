@@ -33,7 +33,12 @@ impl PipelineRequest {
     }
 
     /// The key of a pipeline that draws a material to the multisampled HDR target.
-    fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
+    pub(super) fn key_with_model(
+        &self,
+        pass: &Arc<GraphPass>,
+        material: MaterialVariant,
+        raster: Raster,
+    ) -> PipelineKey {
         PipelineKey {
             pass: KeyPass(pass.clone()),
             raster,
@@ -216,7 +221,7 @@ impl PipelineRequest {
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let others = self.passes.iter().filter(|pass| pass.phase != RenderPhase::Model);
         let tonemaps = self.tonemap_keys().chain(self.watched_tonemap_key());
-        self.model_keys().chain(tonemaps).chain(others.flat_map(|pass| self.pass_keys(pass)))
+        self.model_keys().chain(self.peel_keys()).chain(tonemaps).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
 }
 

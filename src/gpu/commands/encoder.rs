@@ -33,6 +33,7 @@ impl Rect {
 }
 
 /// The targets of drawing commands.
+#[derive(Clone, Copy)]
 pub struct Attachments<'a> {
     /// Color target, in [`Use::Color`].
     pub color: &'a Arc<Image>,
@@ -46,6 +47,8 @@ pub struct Attachments<'a> {
     pub resolve_depth: Option<&'a Arc<Image>>,
     /// Depth target, in [`Use::Depth`]. If color is cleared, depth is cleared to 0, which is far.
     pub depth: Option<&'a Arc<Image>>,
+    /// Clears depth to this value; `None` treats it as color.
+    pub clear_depth: Option<f32>,
     /// Whether later commands read the depth target.
     pub keeps_depth: bool,
     /// Whether later commands continue to draw to these targets. If so, depth and multisampled color are stored too.
@@ -58,8 +61,9 @@ impl<'a> Attachments<'a> {
     /// A color target alone, whose contents do not matter, drawn as a whole.
     pub fn of(color: &'a Arc<Image>) -> Self {
         let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
-        let (clear, resolve, resolve_depth, depth) = (None, None, None, None);
-        Self { color, more: &[], clear, resolve, resolve_depth, depth, keeps_depth: false, keeps_contents: false, area }
+        let (clear, resolve, resolve_depth, depth, clear_depth) = (None, None, None, None, None);
+        let (keeps_depth, keeps_contents, more) = (false, false, &[]);
+        Self { color, more, clear, resolve, resolve_depth, depth, clear_depth, keeps_depth, keeps_contents, area }
     }
 }
 
@@ -160,7 +164,10 @@ impl Encoder {
             let info = vk::RenderingAttachmentInfo::default()
                 .image_view(depth.view)
                 .image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
-                .load_op(load)
+                .load_op(if to.clear_depth.is_some() { vk::AttachmentLoadOp::CLEAR } else { load })
+                .clear_value(vk::ClearValue {
+                    depth_stencil: vk::ClearDepthStencilValue { depth: to.clear_depth.unwrap_or(0.0), stencil: 0 },
+                })
                 .store_op(if to.keeps_depth { vk::AttachmentStoreOp::STORE } else { store });
             match to.resolve_depth {
                 Some(resolve) => {
@@ -181,6 +188,15 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_begin_rendering(self.raw, &info) };
         self.is_rendering = true;
         self.set_viewport(to.area);
+        if to.depth.is_some() {
+            self.set_depth_test(vk::CompareOp::GREATER_OR_EQUAL);
+        }
+    }
+
+    /// Sets which fragments pass the depth test; at the start of rendering these are all that nothing nearer hides.
+    pub fn set_depth_test(&mut self, compare: vk::CompareOp) {
+        // SAFETY: this encoder records the command buffer.
+        unsafe { self.gpu.device.cmd_set_depth_compare_op(self.raw, compare) };
     }
 
     /// Clips later draws to a rectangle. The viewport stays.

@@ -31,13 +31,15 @@ pub struct GpuOptions {
     pub pipelines: Option<&'static dyn PipelineStore>,
 }
 
-/// Optional pre-rasterization stages, and their features. Every device that Specula accepts has geometry stages.
+/// Optional stages, and their features. Every device that Specula accepts has geometry stages.
 #[derive(Clone, Copy, Debug)]
 pub struct OptionalStages {
     /// Whether there are tessellation stages.
     pub tessellation: bool,
     /// Whether tessellation and geometry stages can use `gl_PointSize`.
     pub point_size: bool,
+    /// Whether fragment stages can run for each sample.
+    pub sample_shading: bool,
     /// The limits of task and mesh stages; `None` without VK_EXT_mesh_shader.
     pub mesh: Option<MeshLimits>,
 }
@@ -131,6 +133,7 @@ impl Gpu {
             optional_stages: OptionalStages {
                 tessellation: supported.tessellation_shader == vk::TRUE,
                 point_size: supported.shader_tessellation_and_geometry_point_size == vk::TRUE,
+                sample_shading: supported.sample_rate_shading == vk::TRUE,
                 mesh: optional.mesh,
             },
             vertex_stores: supported.vertex_pipeline_stores_and_atomics == vk::TRUE,
@@ -301,6 +304,7 @@ fn create_device(
         vertex_pipeline_stores_and_atomics: supported.vertex_pipeline_stores_and_atomics,
         fragment_stores_and_atomics: supported.fragment_stores_and_atomics,
         geometry_shader: vk::TRUE,
+        sample_rate_shading: supported.sample_rate_shading,
         tessellation_shader: supported.tessellation_shader,
         texture_compression_bc: supported.texture_compression_bc,
         texture_compression_etc2: supported.texture_compression_etc2,

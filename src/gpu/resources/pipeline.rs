@@ -119,6 +119,8 @@ pub enum Raster {
     BlendedLines,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
+    /// Depth alone; the color target keeps its content.
+    Depth,
     /// Linear interpolation from the target to the fragment, by the weight of [`crate::gpu::Encoder::set_weight`]; alpha
     /// becomes the maximum.
     Averaged,
@@ -165,7 +167,7 @@ impl PipelineDesc<'_> {
     }
 }
 
-/// A graphics pipeline. Viewport, scissor, cull mode, front face and topology are dynamic.
+/// A graphics pipeline. Viewport, scissor, cull mode, front face, topology and the depth test's comparison are dynamic.
 pub struct Pipeline {
     gpu: Arc<Gpu>,
     /// Its layout.
@@ -259,14 +261,16 @@ impl Pipeline {
             .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(desc.depth && desc.raster != Raster::Added)
-            .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines))
-            .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
-        let attachment = blending(desc.raster).color_write_mask(vk::ColorComponentFlags::RGBA);
+            .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines | Raster::Depth));
+        let written = if desc.raster == Raster::Depth { Default::default() } else { vk::ColorComponentFlags::RGBA };
+        let attachment = blending(desc.raster).color_write_mask(written);
         let attachments = vec![attachment; desc.colors.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         if desc.depth {
-            dynamic_states.extend([vk::DynamicState::CULL_MODE, vk::DynamicState::FRONT_FACE]);
+            let states =
+                [vk::DynamicState::CULL_MODE, vk::DynamicState::FRONT_FACE, vk::DynamicState::DEPTH_COMPARE_OP];
+            dynamic_states.extend(states);
             // The mesh stage declares its output primitive.
             if !desc.has(vk::ShaderStageFlags::MESH_EXT) {
                 dynamic_states.push(vk::DynamicState::PRIMITIVE_TOPOLOGY);
@@ -320,7 +324,7 @@ impl Pipeline {
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
-        Raster::Solid | Raster::Replaced | Raster::Lines | Raster::Edges => state,
+        Raster::Solid | Raster::Replaced | Raster::Lines | Raster::Edges | Raster::Depth => state,
         Raster::Blended | Raster::BlendedLines => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)

@@ -22,6 +22,7 @@ mod model_draws;
 mod motion;
 mod moved_vertices;
 mod passes;
+mod peeling;
 mod pixel_modes;
 mod range_sample;
 mod scan;
@@ -50,6 +51,7 @@ use scan::Scan;
 
 use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
 use motion::Motion;
+use peeling::PeelImages;
 
 use super::bound_frame::BoundFrame;
 use super::scene::PlacedScene;
@@ -184,6 +186,7 @@ impl View {
             format: request.target,
             transmission: request.has_transmission(),
             accumulates: request.accumulates,
+            peels: request.peel_pass().is_some(),
             reads_depth: request.passes.iter().any(|pass| pass.inputs.values().any(|input| *input == Input::Depth)),
         };
         if self.targets.as_ref().is_none_or(|targets| targets.desc != desc) {
@@ -257,7 +260,9 @@ impl View {
         let images = FrameImages { picture: Some(&targets.color), samples, opaque_scene, ..FrameImages::default() };
         let keys = redrawn.then(|| frame.state.pipelines.model_keys()).into_iter().flatten();
         let sets = self.declared.sets_of(&context, &images, keys)?;
-        let passes = passes::Passes { layouts: &self.layouts, targets, frame, placed, sets: &sets, only, more: &[] };
+        let peeling = PeelImages::new(&mut self.declared, &context, targets)?;
+        let (layouts, more, peeling) = (&self.layouts, &[][..], peeling.as_ref());
+        let passes = passes::Passes { layouts, targets, frame, placed, sets: &sets, only, more, peeling };
         if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);

@@ -6,7 +6,8 @@
 //! the environment where nothing covers it; blended surfaces back to front. A mode that says `through` draws the opaque
 //! surfaces twice: as in the final picture for the copy, then as the mode shows them. Lines of the wireframe come last,
 //! in the same multisampled target, flagged as "no data" over data. Blended primitives are sorted by their centers, so
-//! interleaved ones blend in the wrong order. Draws beyond the frame are left out, unless a stage may move them into it.
+//! interleaved ones blend in the wrong order, unless `view.blend_layers` sorts them in each pixel (`peeling.rs`). Draws
+//! beyond the frame are left out, unless a stage may move them into it.
 //!
 //! How `model` is drawn stays in Rust: the order of its surfaces, the copy of the opaque scene and the number of
 //! samples depend on the scene and the settings, not on the shader tree.
@@ -15,6 +16,7 @@ use std::sync::Arc;
 
 use super::declared::PassSets;
 use super::model_draws::{Draws, ModelDraws, instances};
+use super::peeling::PeelImages;
 use super::targets::{ColorTarget, Targets};
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
@@ -34,6 +36,7 @@ pub struct Output<'a> {
 }
 
 /// The arguments of all passes of a frame.
+#[derive(Clone, Copy)]
 pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
@@ -46,6 +49,8 @@ pub(super) struct Passes<'a> {
     pub(super) only: Option<Rect>,
     /// The targets of further modes that are drawn at once: color, and multisampled color if there is more than one sample.
     pub(super) more: &'a [ColorTarget],
+    /// How blended surfaces are sorted in each pixel; `None` if they are not.
+    pub(super) peeling: Option<&'a PeelImages<'a>>,
 }
 
 impl Passes<'_> {
@@ -120,17 +125,23 @@ impl Passes<'_> {
         let weigh = self.request().resolve_key().and_then(|key| self.pipeline(&key));
         let hdr = self.hdr();
         let resolve = hdr.resolve.filter(|_| weigh.is_none());
-        encoder.begin_rendering(&Attachments { clear, resolve, resolve_depth, keeps_depth, ..hdr });
-        if let Some(only) = self.only {
-            encoder.set_scissor(only);
-        }
+        let peeling = self.peeling.filter(|_| !sorted.blended.is_empty());
+        let last = Attachments { clear, resolve, resolve_depth, keeps_depth, ..hdr };
+        self.begin(encoder, &if peeling.is_some() { self.to_go_on(clear) } else { last });
         if !has_opaque {
             self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::model_key);
             self.added(encoder, false);
         }
         self.draw(encoder, sorted, &sorted.transmissive, PipelineRequest::model_key);
         self.background(encoder);
-        self.draw(encoder, sorted, &sorted.blended, PipelineRequest::model_key);
+        match peeling {
+            None => self.draw(encoder, sorted, &sorted.blended, PipelineRequest::model_key),
+            Some(peeling) => {
+                encoder.end_rendering();
+                self.sort_blended(encoder, sorted, peeling);
+                self.begin(encoder, &Attachments { clear: None, ..last });
+            }
+        }
         self.added(encoder, true);
         self.wireframe(encoder);
         encoder.end_rendering();
@@ -142,6 +153,31 @@ impl Passes<'_> {
             let before = if resolve_depth.is_some() { Use::DepthResolve } else { Use::Depth };
             encoder.transition(depth, before, Use::Sampled);
         }
+    }
+
+    /// Attachments of the HDR target for a part of its draws.
+    fn to_go_on(&self, clear: Option<[f32; 4]>) -> Attachments<'_> {
+        Attachments { clear, resolve: None, keeps_contents: true, ..self.hdr() }
+    }
+
+    fn begin(&self, encoder: &mut Encoder, to: &Attachments<'_>) {
+        encoder.begin_rendering(to);
+        if let Some(only) = self.only {
+            encoder.set_scissor(only);
+        }
+    }
+
+    /// Draws the blended surfaces, sorted in each pixel, to the HDR target.
+    fn sort_blended(&self, encoder: &mut Encoder, sorted: &SortedDraws, peeling: &PeelImages<'_>) {
+        let (color, depth) = (self.hdr().color, &self.targets.depth);
+        encoder.transition(color, Use::Color, Use::Color);
+        encoder.transition(depth, Use::Depth, Use::Depth);
+        self.peel(encoder, sorted, peeling, |encoder, to| {
+            let (depth, clear_depth) = (Some(to.depth), to.clear_depth);
+            self.begin(encoder, &Attachments { depth, clear_depth, ..self.to_go_on(None) });
+        });
+        encoder.transition(color, Use::Color, Use::Color);
+        encoder.transition(depth, Use::Depth, Use::Depth);
     }
 
     /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
@@ -265,7 +301,7 @@ impl Passes<'_> {
         Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), ..Attachments::of(color) }
     }
 
-    fn model_draws<'p>(&'p self, pass: &'p Arc<GraphPass>, instances: u32) -> ModelDraws<'p> {
+    pub(super) fn model_draws<'p>(&'p self, pass: &'p Arc<GraphPass>, instances: u32) -> ModelDraws<'p> {
         let Self { layouts, frame, placed, sets, .. } = self;
         ModelDraws { layouts, frame, placed: *placed, sets, instances, pass }
     }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use super::capture::PixelReadback;
 use super::declared::{FrameImages, PassContext};
 use super::passes::Passes;
+use super::peeling::PeelImages;
 use super::targets::ColorTarget;
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};
@@ -84,7 +85,9 @@ impl PixelModes {
         let images = FrameImages { picture: Some(&targets.color), ..FrameImages::default() };
         let pass_sets = view.declared.sets_of(&context(of_pixel), &images, state.pipelines.model_keys())?;
         let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
-        let passes = Passes { layouts: &view.layouts, targets, frame, placed, sets: &pass_sets, only: None, more };
+        let peeling = PeelImages::new(&mut view.declared, &context(of_pixel), targets)?;
+        let (layouts, sets, peeling) = (&view.layouts, &pass_sets, peeling.as_ref());
+        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling };
         let all: Vec<&Arc<Image>> =
             std::iter::once(&targets.color).chain(more.iter().map(|target| &target.color)).collect();
         encoder.pass("inspector", |encoder| draw_pixel(encoder, &passes, &all, origin));
@@ -106,6 +109,7 @@ impl PixelModes {
             transmission: false,
             accumulates: false,
             reads_depth: false,
+            peels: request.peel_pass().is_some(),
         };
         let targets = match self.targets.take().filter(|targets| targets.desc == desc) {
             Some(targets) => targets,
@@ -168,9 +172,22 @@ fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], o
         passes.background(encoder);
         go_on(encoder);
     }
-    begin(encoder, first, &further, None);
-    passes.draw(encoder, &sorted, &sorted.blended, PipelineRequest::model_key);
-    go_on(encoder);
+    match passes.peeling.filter(|_| !sorted.blended.is_empty()) {
+        Some(peeling) => passes.peel(encoder, &sorted, peeling, |encoder, to| {
+            let more = if to.is_shaded { &further[..] } else { &[] };
+            let (depth, clear_depth) = (Some(to.depth), to.clear_depth);
+            let attachments = Attachments { more, depth, clear_depth, keeps_contents: true, ..Attachments::of(first) };
+            encoder.begin_rendering(&attachments);
+            encoder.set_part_of_picture(origin, frame.state.size);
+        }),
+        None => {
+            begin(encoder, first, &further, None);
+            passes.draw(encoder, &sorted, &sorted.blended, PipelineRequest::model_key);
+            encoder.end_rendering();
+        }
+    }
+    all.iter().for_each(|image| encoder.transition(image, Use::Color, Use::Color));
+    encoder.transition(depth, Use::Depth, Use::Depth);
     for color in all {
         begin(encoder, color, &[], None);
         passes.added(encoder, true);

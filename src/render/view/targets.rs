@@ -33,6 +33,8 @@ pub(super) struct TargetDesc {
     pub(super) accumulates: bool,
     /// Whether a declared pass reads the model's depth.
     pub(super) reads_depth: bool,
+    /// Whether blended surfaces are sorted in each pixel.
+    pub(super) peels: bool,
 }
 
 /// The images of one [`TargetDesc`], replaced as a whole. Frames in flight keep the old ones alive.
@@ -46,6 +48,8 @@ pub(super) struct Targets {
     pub(super) depth: Arc<Image>,
     /// Depth of the first sample of each pixel, if a pass reads it and there is more than one.
     pub(super) resolved_depth: Option<Arc<Image>>,
+    /// Depth of the last layer of blended surfaces and of the next one, in turn, if these are sorted in each pixel.
+    pub(super) peeled: Option<[Arc<Image>; 2]>,
     /// The opaque scene color, with mip levels, for transmissive surfaces to look up.
     pub(super) opaque_scene: Option<Arc<Image>>,
     /// The accumulation buffer: the mean of the frames so far.
@@ -66,8 +70,10 @@ impl Targets {
         };
         let (depth_format, attached) = (vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT);
         let read = attached | Usage::SAMPLED;
-        let depth =
-            image("depth", multi(depth_format, if desc.reads_depth && samples == 1 { read } else { attached }))?;
+        let is_read = (desc.reads_depth && samples == 1) || desc.peels;
+        let depth = image("depth", multi(depth_format, if is_read { read } else { attached }))?;
+        let peeled = || image("depth of a layer", multi(depth_format, read));
+        let peeled = if desc.peels { Some([peeled()?, peeled()?]) } else { None };
         let resolved_depth = match desc.reads_depth && samples > 1 {
             true => Some(image("resolved depth", ImageDesc::new(width, height, depth_format, read))?),
             false => None,
@@ -82,7 +88,7 @@ impl Targets {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
-        Ok(Self { desc, color, multisampled, depth, resolved_depth, opaque_scene, mean })
+        Ok(Self { desc, color, multisampled, depth, resolved_depth, peeled, opaque_scene, mean })
     }
 
     /// Another color target of the same size and format.

@@ -122,7 +122,8 @@ impl Thumbnails {
         let images = FrameImages { picture: Some(&targets.color), opaque_scene, ..FrameImages::default() };
         let sets = view.declared.sets_of(&context, &images, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
-        let passes = Passes { layouts: &view.layouts, targets, frame, placed, sets: &sets, only: None, more };
+        let (layouts, sets) = (&view.layouts, &sets);
+        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling: None };
         match &*request.modes {
             [] => passes.model(encoder),
             _ => encoder.pass("thumbnails", |encoder| passes.modes(encoder)),

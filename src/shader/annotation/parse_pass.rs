@@ -76,6 +76,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
             "to" => {
                 let all = [
                     ("picture", PassTarget::Picture),
+                    ("peel", PassTarget::Peel),
                     ("resolve", PassTarget::Resolve),
                     ("mean", PassTarget::Mean),
                     ("display", PassTarget::Display),
@@ -83,7 +84,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassDesc, Box<Diagnostic>> {
                 desc.to = cursor.one_of(key, &all)?;
             }
             other => {
-                let known = "to=picture|resolve|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
+                let known = "to=picture|peel|resolve|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
                              blend, instead=, dispatch=, when=, mips, keep, off or doc=";
                 if other == "camera" {
                     let message = "the camera of a pass is its vertex stage: a .vert file of the same name decides where vertices go";

@@ -106,6 +106,8 @@ pub enum PassTarget {
     Image,
     /// The HDR target.
     Picture,
+    /// The depth of the next layer of blended surfaces.
+    Peel,
     /// One color from the samples of each pixel.
     Resolve,
     /// The accumulation buffer, in modes that accumulate.
@@ -197,7 +199,7 @@ impl PassDesc {
 
     /// Whether it is one of the built-in steps of the picture: the model, what may replace it, and the steps to the display.
     pub fn is_built_in(&self) -> bool {
-        matches!(self.to, PassTarget::Resolve | PassTarget::Mean | PassTarget::Display)
+        matches!(self.to, PassTarget::Peel | PassTarget::Resolve | PassTarget::Mean | PassTarget::Display)
             || self.instead.is_some()
             || self.name == MODEL
     }

@@ -9,6 +9,7 @@ const AVAILABLE: &[u32] = &[
     3,    // Tessellation: `pipeline::limits` asks the device
     23,   // TessellationPointSize: the same
     24,   // GeometryPointSize: the same
+    35,   // SampleRateShading: `pipeline::limits` asks the device
     40,   // InputAttachment
     43,   // Sampled1D
     44,   // Image1D
@@ -57,7 +58,6 @@ const KNOWN: &[(u32, &str, &[&str])] = &[
     (32, "ClipDistance", &["gl_ClipDistance"]),
     (33, "CullDistance", &["gl_CullDistance"]),
     (34, "ImageCubeArray", &["imageCubeArray"]),
-    (35, "SampleRateShading", &["gl_SampleID", "gl_SamplePosition", "sample"]),
     (39, "Int8", &["int8_t", "uint8_t", "i8vec2", "i8vec3", "i8vec4", "u8vec2", "u8vec3", "u8vec4"]),
     (41, "SparseResidency", &["sparseTextureARB"]),
     (42, "MinLod", &["textureClampARB"]),

@@ -104,6 +104,7 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
         }
     }
     out.extend(check_constants(reflection, texts));
+    out.extend(reflection.large_variables.iter().map(|(name, bytes)| too_large(name, *bytes, texts)));
     match StageKind::of(texts.stage) {
         Some(StageKind::Vertex) => out.extend(check_vertex_inputs(&reflection.inputs, texts)),
         // `graph` checks the outputs of passes, which depend on their annotations.
@@ -259,6 +260,14 @@ fn check_block(found: &Block, name: &str, texts: Texts<'_>) -> Option<Diagnostic
 /// `Light` of `Light[]`, as the declaration spells it.
 fn short_type(type_name: &str) -> &str {
     type_name.split('[').next().unwrap_or(type_name)
+}
+
+/// A driver may take minutes to compile such a variable, or run out of its stack.
+fn too_large(name: &str, bytes: u64, texts: Texts<'_>) -> Diagnostic {
+    let (has, most) = (bytes.div_ceil(1024), interface::LARGEST_VARIABLE / 1024);
+    let message = format!("`{name}` has {has} KiB in each invocation, at most {most} KiB fit");
+    let help = "make the array shorter, or put it into a buffer that all invocations share";
+    texts.error(&[name], message).with_help(help)
 }
 
 fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {

@@ -181,12 +181,12 @@ fn a_fragment_stage_writes_one_color() {
 fn features_that_are_not_enabled_are_named() {
     let cases = [
         ("double d = o.x; o = vec4(float(d * d));", "Float64", "m.frag:5:"),
-        ("o = vec4(float(gl_SampleID));", "SampleRateShading", "m.frag:5:30:"),
         ("o = vec4(float(int64_t(o.x) * 3));", "Int64", "m.frag:5:30:"),
         ("float16_t h = float16_t(o.x); o = vec4(float(h * h));", "Float16", "m.frag:5:15:"),
         ("o = vec4(interpolateAtOffset(x, vec2(0.1)));", "InterpolationFunction", "m.frag:5:24:"),
         ("o = vec4(subgroupAdd(1.0));", "GroupNonUniformArithmetic", "m.frag:5:24:"),
         ("o = vec4(float(gl_PrimitiveID), dFdxFine(o.y), 0, 0);", "", ""),
+        ("o = vec4(float(gl_SampleID));", "", ""),
         ("if (o.x > 0.5) discard;", "", ""),
     ];
     let extensions = "#extension GL_EXT_shader_explicit_arithmetic_types : require\n\
@@ -203,6 +203,26 @@ fn features_that_are_not_enabled_are_named() {
             }
             more => panic!("{more:#?}"),
         }
+    }
+}
+
+#[test]
+fn variables_that_no_driver_can_keep_are_named() {
+    for (body, found) in [
+        ("float a[65536]; a[int(x)] = x; o = vec4(a[3]);", ""),
+        ("float a[65537]; a[int(x)] = x; o = vec4(a[3]);", "`a` has 257 KiB in each invocation, at most 256 KiB fit"),
+        ("float b[100000][1000]; b[1][int(x)] = x; o = vec4(b[1][2]);", "`b` has 390625 KiB"),
+        ("Many c; c.m[2].v[int(x)] = x; o = vec4(c.m[1].v[2]);", "`c` has 4000 KiB"),
+        ("d[int(x)] = x; o = vec4(d[2]);", "`d` has 391 KiB"),
+    ] {
+        let head = "layout(location = 0) out vec4 o; layout(location = 0) in float x;\nfloat d[100000];\n\
+                    struct One { float v[1024]; }; struct Many { One m[1000]; };";
+        let head = if found.contains("`d`") { head.to_owned() } else { head.replace("float d[100000];", "") };
+        let text = format!("#version 460\n{head}\nvoid main() {{ {body} }}\n");
+        let told: Vec<String> =
+            complaints_of("m.frag", &[("m.frag", &text)]).iter().map(Diagnostic::one_line).collect();
+        assert_eq!(told.is_empty(), found.is_empty(), "{body}: {told:?}");
+        assert!(told.iter().all(|line| line.contains(found) && line.starts_with("m.frag:")), "{body}: {told:?}");
     }
 }
 

@@ -39,7 +39,8 @@ pub fn hosts<'a>(stages: impl Iterator<Item = &'a TreePath>, snapshot: &Snapshot
 /// Whether a pass of a fragment stage can show an expression. `has_own_vertices`: it has stages of its own before the rasterizer.
 pub fn can_show(desc: &PassDesc, has_own_vertices: impl FnOnce() -> bool) -> bool {
     let is_repeated = desc.to_picture() && desc.model.is_some_and(|instances| instances != Instances::Count(1));
-    let is_sampled = desc.quads || desc.background || matches!(desc.to, PassTarget::Resolve | PassTarget::Mean);
+    let is_sampled =
+        desc.quads || desc.background || matches!(desc.to, PassTarget::Peel | PassTarget::Resolve | PassTarget::Mean);
     desc.instead.is_none() && !is_sampled && !is_repeated && (desc.name == MODEL || !has_own_vertices())
 }
 

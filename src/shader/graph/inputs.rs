@@ -37,6 +37,7 @@ impl Input {
         match self {
             Self::Picture
             | Self::Samples
+            | Self::Peeled
             | Self::OpaqueScene
             | Self::Depth
             | Self::Before(_)
@@ -136,6 +137,11 @@ fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>
             let message = format!("the pass `{}` has no `{name}`", desc.name);
             Err((message, "it reads the samples of the picture: uniform sampler2DMS samples;".into()))
         }
+        "sampler2DMS" if desc.to == PassTarget::Peel && name == "peeled_samples" => Ok(Input::Peeled),
+        "sampler2DMS" if desc.to == PassTarget::Peel => {
+            let message = format!("the pass `{}` has no `{name}`", desc.name);
+            Err((message, "it reads the depth of the last layer: uniform sampler2DMS peeled_samples;".into()))
+        }
         "uniform block" if desc.is_built_in() && name != PASS_BLOCK => {
             let message = format!("the uniform block `{name}` has no binding");
             Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
@@ -189,6 +195,7 @@ fn input(desc: &PassDesc, kind: StageKind, found: &Descriptor, names: &Names<'_>
 fn given(desc: &PassDesc) -> &'static [(&'static str, Input)] {
     match desc.to {
         PassTarget::Resolve => &[],
+        PassTarget::Peel => &[("peeled", Input::Peeled)],
         PassTarget::Mean | PassTarget::Display => &[("picture", Input::Picture)],
         PassTarget::Picture if desc.is_drawn_with_model() => &[("behind", Input::OpaqueScene)],
         PassTarget::Picture | PassTarget::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],

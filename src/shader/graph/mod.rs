@@ -23,11 +23,13 @@
 //! | `model` | `pbr.frag` | `draw=model to=picture` |
 //! | `debug`, `paths` | `debug.frag`, `paths.frag` | `draw=model to=picture instead=model`: draws the model in modes that say `stage=debug`, `stage=paths` |
 //! | `background` | `sky.frag` | `draw=background to=picture` |
+//! | `peel` | `peel.frag` | `to=peel`: the depth of the next layer of blended surfaces, if `view.blend_layers` is not 0 |
 //! | `resolve` | `resolve.frag` | `to=resolve`: one color from the samples of a pixel, where the mode is tone mapped |
 //! | `mean` | `average.frag` | `to=mean`: the accumulation buffer |
 //! | `tonemap` | `tonemap.frag` | `to=display` |
 //!
-//! A tree must have `model` and `tonemap`; `roles.rs` says what is required of them. A tree without `resolve` gets
+//! A tree must have `model` and `tonemap`; `roles.rs` says what is required of them. A tree without `peel` sorts
+//! blended surfaces by primitives. One without `resolve` gets
 //! plain averages, as data, accumulated frames, thumbnails and files of linear light do (`TargetFormat::weighs`).
 //!
 //! Order and phases:

@@ -31,6 +31,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     for phase in [
         RenderPhase::BeforeModel,
         RenderPhase::Model,
+        RenderPhase::Peel,
         RenderPhase::Resolve,
         RenderPhase::Mean,
         RenderPhase::Light,

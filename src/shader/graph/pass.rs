@@ -19,6 +19,8 @@ pub enum Input {
     Samples,
     /// Color of the opaque scene, with mip levels, which transmissive surfaces look up (`behind` in GLSL).
     OpaqueScene,
+    /// Depth of the last layer of blended surfaces, with one sample per pixel or several.
+    Peeled,
     /// Depth of the model: 1 near, 0 at infinity or where there is nothing.
     Depth,
     /// The image of another pass.
@@ -49,6 +51,8 @@ pub enum RenderPhase {
     BeforeModel,
     /// The model and the background.
     Model,
+    /// The depth of the next layer of blended surfaces.
+    Peel,
     /// One color from the samples of each pixel.
     Resolve,
     /// The mean of all frames.

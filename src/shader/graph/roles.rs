@@ -14,6 +14,7 @@ use crate::shader::diagnostic::Diagnostic;
 /// The phase that an annotation alone determines.
 pub(super) fn phase(desc: &PassDesc) -> RenderPhase {
     match desc.to {
+        PassTarget::Peel => RenderPhase::Peel,
         PassTarget::Resolve => RenderPhase::Resolve,
         PassTarget::Mean => RenderPhase::Mean,
         PassTarget::Display => RenderPhase::Tonemap,
@@ -123,6 +124,7 @@ fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str,
     }
     for (to, message) in [
         (PassTarget::Mean, "there is another pass with to=mean; one pass makes the mean of all frames"),
+        (PassTarget::Peel, "there is another pass with to=peel; one pass finds the layers of blended surfaces"),
         (PassTarget::Resolve, "there is another pass with to=resolve; one pass makes a color from a pixel's samples"),
     ] {
         let is_other = |other: &PassDesc| other.to == to && other.name < desc.name;
@@ -130,7 +132,7 @@ fn misplacement<'a>(desc: &'a PassDesc, passes: &[PassDesc]) -> Option<(&'a str,
             return Some(("to=", message.into()));
         }
     }
-    let covers = matches!(desc.to, PassTarget::Resolve | PassTarget::Mean | PassTarget::Display);
+    let covers = matches!(desc.to, PassTarget::Resolve | PassTarget::Mean | PassTarget::Display | PassTarget::Peel);
     if covers && desc.model.is_some() {
         let message = format!("the pass `{name}` covers the picture, so draw= and instances= do not go with it");
         return Some(("to=", message));

@@ -103,7 +103,8 @@ impl Library {
         for path in stages.clone().map(fragment_of) {
             for desc in annotation::passes_of(snapshot, &path) {
                 let is_switched_off = |name: &String| texts.iter().any(|(_, text)| is_zero(text, name));
-                match !desc.on || desc.when.as_ref().is_some_and(is_switched_off) {
+                let is_off = !desc.on || desc.to == PassTarget::Peel || desc.when.as_ref().is_some_and(is_switched_off);
+                match is_off {
                     true => drop(off.insert(path.clone())),
                     false if desc.to != PassTarget::Image => {}
                     false => on.push((path.clone(), desc.images().map(|(name, _)| name.to_owned()).collect())),

@@ -1,6 +1,7 @@
 //! Collects the declarations of a SPIR-V module: types, names, decorations, variables.
 
 mod locations;
+mod variables;
 
 use std::collections::BTreeMap;
 
@@ -122,6 +123,7 @@ impl<'a> Declarations<'a> {
             }
         }
         out.without_value = without_value(module).into_iter().map(|id| self.name(id)).collect();
+        out.large_variables = self.variables_beyond(interface::LARGEST_VARIABLE);
         out.constants = module.globals.iter().filter_map(|i| self.constant(*i)).collect();
         out.structs = self.structs();
         out.descriptors.sort_by_key(|descriptor| (descriptor.set, descriptor.binding));

@@ -109,6 +109,8 @@ pub struct Reflection {
     pub structs: BTreeMap<String, Block>,
     /// Constants that glslang left without a value: it generates no code for `&&` and `||` of specialization constants.
     pub without_value: Vec<String>,
+    /// Variables that have more than `interface::LARGEST_VARIABLE` bytes in each invocation, with their bytes.
+    pub large_variables: Vec<(String, u64)>,
     /// The SPIR-V capabilities that the module declares.
     pub capabilities: Vec<u32>,
     /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.

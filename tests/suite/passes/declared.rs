@@ -319,7 +319,7 @@ fn errors_have_their_line_and_the_picture_stays() {
         (show("").replace("to=picture", "format=rgb8"), "show.frag:1:21: error: expected one of the formats rgba16f"),
         (
             show("").replace("to=picture", "to=glow"),
-            "show.frag:1:17: error: expected to=picture, to=resolve, to=mean or to=display, found `glow`",
+            "show.frag:1:17: error: expected to=picture, to=peel, to=resolve, to=mean or to=display, found `glow`",
         ),
         (show("").replace("to=picture", "after=nobody"), "show.frag:1:20: error: no pass is named `nobody`."),
         (show("").replace("show to", "picture to"), "show.frag:1:9: error: `picture` names what Specula draws"),

@@ -30,7 +30,7 @@ fn grid(side: usize) -> Vec<u8> {
         material([0.5, 0.5, 0.5, 1.0], json!({ "doubleSided": true })),
     ];
     let meshes = materials.map(|material| (glb::cuboid([-0.2; 3], [0.2, 0.3, 0.1], true), material));
-    let (mut json, bin) = parts(&glb::scene(&meshes));
+    let (mut json, bin) = glb::parts(&glb::scene(&meshes));
     let node = |index: usize| {
         let at = [index % side, index / side % side, index / side / side].map(|cell| cell as f64 - (side / 2) as f64);
         let mirror = if index.is_multiple_of(3) { -1.0 } else { 1.0 };
@@ -44,19 +44,13 @@ fn grid(side: usize) -> Vec<u8> {
     glb::container(&json, &bin)
 }
 
-/// The JSON and the buffer of a GLB.
-fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
-    let length = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-    let json = &bytes[20..20 + length(12)];
-    (serde_json::from_slice(json).unwrap(), bytes[20 + length(12) + 8..].to_vec())
-}
-
 /// Renders modes of a model as files, with faults that choose how it is drawn. Returns the files.
 fn files(folder: &Path, model: &str, fault: &str) -> Vec<Vec<u8>> {
     let modes = "final,node-id,geometric-normal";
     let mut command = specula(folder);
     command.args(["render", model, "--mode", modes, "--out", "a.exr", "--size", "96x72", "--env", "studio"]);
-    command.args(["--set", "environment.intensity=1", "--validate"]).env("SPECULA_FAULT", fault);
+    command.args(["--set", "environment.intensity=1", "--set", "view.blend_layers=3"]);
+    command.arg("--validate").env("SPECULA_FAULT", fault);
     finish(&mut command).expect(0, &[]);
     modes.split(',').map(|mode| fs::read(folder.join(format!("a.{mode}.exr"))).unwrap()).collect()
 }

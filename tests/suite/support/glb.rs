@@ -63,6 +63,13 @@ pub fn container(json: &Value, bin: &[u8]) -> Vec<u8> {
     out
 }
 
+/// The JSON and the buffer of a GLB.
+pub fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
+    let length = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let json = &bytes[20..20 + length(12)];
+    (serde_json::from_slice(json).unwrap(), bytes[20 + length(12) + 8..].to_vec())
+}
+
 /// The document of one mesh, one material and one node, and its buffer; tests bend it before they pack it.
 pub fn document(mesh: &Mesh, material: &Value) -> (Value, Vec<u8>) {
     let mut bin = Vec::new();

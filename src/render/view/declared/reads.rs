@@ -23,6 +23,8 @@ pub(in crate::render::view) struct FrameImages<'a> {
     pub(in crate::render::view) picture: Option<&'a Arc<Image>>,
     /// Its samples, before they are resolved.
     pub(in crate::render::view) samples: Option<&'a Arc<Image>>,
+    /// The depth of the last layer of blended surfaces.
+    pub(in crate::render::view) peeled: Option<&'a Arc<Image>>,
     /// The opaque scene color, with mip levels.
     pub(in crate::render::view) opaque_scene: Option<&'a Arc<Image>>,
     /// The model's depth.
@@ -47,6 +49,7 @@ impl DeclaredPasses {
             Ok(match reads.inputs.get(&binding).ok_or_else(missing)? {
                 Input::Picture => self.sampled(images.picture.unwrap_or(&self.blank)),
                 Input::Samples => PassResource::Texture(images.samples.ok_or_else(missing)?, &self.nearest),
+                Input::Peeled => PassResource::Texture(images.peeled.ok_or_else(missing)?, &self.nearest),
                 Input::OpaqueScene => PassResource::Texture(images.opaque_scene.unwrap_or(&self.blank), &self.linear),
                 Input::Depth => PassResource::Texture(images.depth.unwrap_or(&self.blank), &self.nearest),
                 Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
