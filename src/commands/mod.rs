@@ -22,6 +22,7 @@ mod probe;
 mod progress;
 mod render;
 mod signals;
+mod trace;
 mod view;
 
 use std::fmt::Display;
@@ -80,6 +81,8 @@ enum Command {
     Brdf(brdf::Args),
     /// Print the raw values of a pixel in all debug modes
     Probe(probe::Args),
+    /// Print what every statement of the shader computes at a pixel, and check it; for CI
+    Trace(trace::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
 }
@@ -140,6 +143,7 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Diff(args)) => diff::run(&args),
         Some(Command::Brdf(args)) => brdf::run(args),
         Some(Command::Probe(args)) => probe::run(args),
+        Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
     let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));

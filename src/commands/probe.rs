@@ -11,6 +11,7 @@ use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::frames::Frames;
+use super::common::parse::pixel;
 use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json, tell_left_out};
@@ -257,9 +258,4 @@ fn row(numbers: &[f32]) -> String {
 fn shown(x: f32) -> String {
     let plain = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
     if plain { format!("{x:>12.5}") } else { format!("{x:>12.4e}") }
-}
-
-fn pixel(text: &str) -> Result<(u32, u32), String> {
-    let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, for example 640,360".to_owned())
 }

@@ -10,6 +10,7 @@ mod reload;
 mod sequence;
 mod stages;
 mod thumbnails;
+mod trace;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

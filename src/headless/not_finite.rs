@@ -7,7 +7,8 @@ use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
 use crate::gpu::{Frames, Gpu};
 use crate::render::{PixelModes, Resources};
 use crate::settings::Settings;
-use crate::shader::{Compiler, FirstNotFinite, Mode, Source, TracedShaders};
+use crate::shader::trace::ListeningStage;
+use crate::shader::{Compiler, FirstNotFinite, Mode, Source, not_finite};
 
 /// Where to search: a pixel of a frame.
 pub struct Search<'a> {
@@ -46,7 +47,9 @@ pub fn first_not_finite(
     let target = TargetFormat::full(1);
     let inputs = |shaders| FrameInputs { settings: &settings, shaders, target, ..picture };
     let plain = FrameState::of_modes(&inputs(shaders), &[mode]);
-    let traced = TracedShaders::new(shaders, &plain.pipelines.stage, compiler, search.source)?;
+    let listener = not_finite::listener();
+    let stage = ListeningStage::new(shaders, &plain.pipelines.stage, (compiler, search.source), &listener)?;
+    let traced = stage.traced(&listener, None, Some)?;
     let check = || if (search.is_canceled)() { Err("canceled") } else { Ok(()) };
     check()?;
     let state = Arc::new(FrameState::of_modes(&inputs(&traced.shaders), &[mode]));

@@ -8,4 +8,5 @@ mod files;
 mod learn;
 mod probe;
 mod readme;
+mod trace;
 mod watch;

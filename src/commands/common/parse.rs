@@ -42,3 +42,9 @@ fn setting(path: &str, unit: &str, text: &str) -> Result<f32, String> {
     let number = text.trim().parse::<f32>().ok().filter(is_valid);
     number.ok_or_else(|| format!("expected a number, {}{unit}", valid.text()))
 }
+
+/// A pixel, counted from the upper left corner.
+pub fn pixel(text: &str) -> Result<(u32, u32), String> {
+    let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, for example 640,360".to_owned())
+}

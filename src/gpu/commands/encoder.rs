@@ -355,6 +355,11 @@ impl Encoder {
         self.order(scope, scope);
     }
 
+    /// SYNC: makes what shaders wrote to buffers visible to all later commands, and to the CPU after the fence.
+    pub fn buffers_written(&mut self) {
+        self.writes_done(SHADERS, vk::AccessFlags2::SHADER_STORAGE_WRITE);
+    }
+
     /// SYNC: makes earlier writes of a stage visible to all later commands, and to the CPU after the fence.
     pub(in crate::gpu) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
         use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};

@@ -97,7 +97,7 @@ impl Buffer {
         let Some(room) = self.size.checked_sub(offset) else { return };
         let _access = self.access.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: `offset` and `length` lie within the mapping, whose bytes have no invalid values. The lock keeps other threads from
-        // them, and no shader writes a buffer that the CPU writes.
+        // them, and no shader writes a buffer while the CPU writes it.
         fill(unsafe {
             let target = mapped.as_ptr().cast::<u8>().add(offset as usize);
             std::slice::from_raw_parts_mut(target, length.min(room as usize))

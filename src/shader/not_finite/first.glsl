@@ -1,4 +1,4 @@
-// Appended to a stage whose `main` was renamed. The module calls `specula_trace` with each value: see spirv/trace.rs.
+// Appended to a stage whose `main` was renamed. The module calls `specula_trace` with each value: see spirv/trace/.
 // Each: the place, and the classes of the value's components, two bits each: 0 finite, 1 NaN, 2 infinity, 3 minus infinity.
 uvec2 specula_first, specula_first_nan;
 

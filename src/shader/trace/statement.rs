@@ -49,7 +49,7 @@ fn statement(text: &str, place: &Place) -> (u32, String) {
     let fits = |tokens: &[Token<'_>]| match &place.purpose {
         Purpose::Store(name) => tokens.iter().any(|token| token.text == name),
         Purpose::Return => tokens.first().is_some_and(|token| token.text == "return"),
-        Purpose::Input(_) | Purpose::Use => true,
+        _ => true,
     };
     let found = pieces.iter().find(|bytes| fits(within(&code.tokens, bytes))).or(pieces.first());
     let line = code.start(place.line)..code.start(place.line + 1);

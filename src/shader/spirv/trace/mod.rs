@@ -1,0 +1,301 @@
+//! Instruments a module so that it logs the values that its statements compute.
+//!
+//! Before an instruction that uses a value, the module calls a function of its own text with the number of the log point and the bits of
+//! the value. The function decides what to do with them: keep the first that is not finite, or write all to a buffer.
+//!
+//! `floats.rs` instruments a module to find the first value that is not finite, `statements.rs` to show what every statement does.
+
+mod floats;
+mod instances;
+mod statements;
+
+use std::collections::BTreeSet;
+
+use foldhash::HashMap;
+
+use super::module::{Id, Instruction, Module, Type};
+use super::op::{Op, text};
+pub use instances::instances;
+use statements::Functions;
+
+/// Longer arrays are not logged.
+const MOST_ELEMENTS: u32 = 64;
+/// Statements that store or return a value of more vectors than this log nothing: the members of a large struct are stored one by one, and
+/// each log point costs compile time.
+const MOST_PARTS: usize = 24;
+
+/// Which values are logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Logged {
+    /// Floats, once each.
+    Floats,
+    /// All values, and what is done with them.
+    Statements,
+}
+
+/// How an instruction uses a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Stores it to the variable of this name, or a part of it.
+    Store(String),
+    /// Returns it from a function.
+    Return,
+    /// Reads it from the input of this name.
+    Input(String),
+    /// Passes it to a function, compares, converts or samples with it.
+    Use,
+    /// A function of this name begins. Without a value.
+    Enter(String),
+    /// The argument for the parameter of this name.
+    Argument(String),
+    /// A function ends. Without a value.
+    Leave,
+    /// Decides by it which statement is next.
+    Condition,
+    /// Discards the pixel. Without a value.
+    Discard,
+}
+
+/// A place whose values are logged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file, as the compiler knows it.
+    pub file: String,
+    /// From 1. Of an argument, the first line of the function's body that has code: glslang gives headers in included files no line.
+    pub line: u32,
+    /// How the value is used.
+    pub purpose: Purpose,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NumberKind {
+    /// `float`.
+    Float,
+    /// `int`.
+    Int,
+    /// `uint`.
+    Uint,
+    /// `bool`: 0 or 1.
+    Bool,
+}
+
+/// A number or a vector that a place logs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogPoint {
+    /// Index into [`Traced::places`].
+    pub place: usize,
+    /// Its place in a larger value, as `.color` or `[2]`; empty for a whole value.
+    pub part: String,
+    /// The type of its numbers.
+    pub kind: NumberKind,
+    /// How many numbers it has, 1 to 4; 0 for a place without a value.
+    pub count: u32,
+}
+
+/// An instrumented module.
+#[derive(Debug)]
+pub struct Traced {
+    /// The module.
+    pub words: Vec<u32>,
+    /// The places that log values.
+    pub places: Vec<Place>,
+    /// The numbers that the function gets, less 1, are indices into this.
+    pub points: Vec<LogPoint>,
+}
+
+/// Instruments a module with line information. `function` is the name of `void function(const in uint point, const in uvec4 bits)`, which
+/// gets the number of a log point from 1, and a value of up to four numbers, filled up by zeros. Functions whose names begin with that name
+/// log nothing; neither does the entry point for [`Logged::Statements`]. `only`: the files whose statements are logged, with the calls that
+/// lead there. `None` if the module has no such function.
+pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeSet<String>>) -> Option<Traced> {
+    let mut module = Module::parse(words)?;
+    let id = module.named(&format!("{function}(")).next()?;
+    let known = Functions::new(&module, function, logged, only);
+    let mut functions = std::mem::take(&mut module.functions);
+    let mut tracer = Tracer::new(&mut module, id, only);
+    for function in &mut functions {
+        function.head.retain(|i| !is_line(*i));
+        let is_silent = known.is_silent(function.id);
+        let joins = statements::joins(function);
+        for block in &mut function.blocks {
+            match logged {
+                _ if is_silent => block.body.retain(|i| !is_line(*i)),
+                Logged::Floats => block.body = tracer.floats(&block.body),
+                Logged::Statements => block.body = tracer.statements(&block.body, &joins),
+            }
+        }
+        if logged == Logged::Statements && !is_silent {
+            tracer.enter(function, &known);
+        }
+    }
+    let Tracer { places, points, .. } = tracer;
+    module.functions = functions;
+    // The passes that follow expect no lines.
+    module.globals.retain(|i| !is_line(*i));
+    module.debug.retain(|i| matches!(i.op, Op::Name | Op::MemberName));
+    Some(Traced { words: module.write(), places, points })
+}
+
+/// The module with other values of constants: each that has the first number gets the second.
+pub fn with_constants(words: &[u32], changes: &[(u32, u32)]) -> Option<Vec<u32>> {
+    let mut module = Module::parse(words)?;
+    for place in 0..module.globals.len() {
+        let i = module.globals[place];
+        if let (Op::Constant, [_, kind, id, number]) = (i.op, &module[i])
+            && let Some((_, to)) = changes.iter().find(|(from, _)| from == number)
+        {
+            let operands = [*kind, *id, *to];
+            module.globals[place] = module.make(Op::Constant, &operands);
+        }
+    }
+    Some(module.write())
+}
+
+fn is_line(i: Instruction) -> bool {
+    matches!(i.op, Op::Line | Op::NoLine)
+}
+
+struct Tracer<'a> {
+    module: &'a mut Module,
+    names: HashMap<Id, String>,
+    /// Names of the members of structs.
+    members: HashMap<(Id, u32), String>,
+    function: Id,
+    void: Id,
+    uint: Id,
+    /// The vectors of two, three and four.
+    vectors: [Id; 3],
+    zero: Id,
+    one: Id,
+    places: Vec<Place>,
+    points: Vec<LogPoint>,
+    only: Option<&'a BTreeSet<String>>,
+}
+
+impl<'a> Tracer<'a> {
+    fn new(module: &'a mut Module, function: Id, only: Option<&'a BTreeSet<String>>) -> Self {
+        let names = module.debug.iter().filter(|i| i.op == Op::Name).map(|i| &module[*i]);
+        let names = names.map(|words| (words[1], text(&words[2..]))).collect();
+        let members = module.debug.iter().filter(|i| i.op == Op::MemberName).map(|i| &module[*i]);
+        let members = members.map(|words| ((words[1], words[2]), text(&words[3..]))).collect();
+        let void = module.declare(Op::TypeVoid, &[]);
+        let uint = module.declare(Op::TypeInt, &[32, 0]);
+        let vectors = [2, 3, 4].map(|count| module.declare(Op::TypeVector, &[uint, count]));
+        let [zero, one] = [0, 1].map(|number| module.constant(uint, number));
+        let (places, points) = (Vec::new(), Vec::new());
+        Self { module, names, members, function, void, uint, vectors, zero, one, places, points, only }
+    }
+
+    /// The kind of the numbers of a scalar type.
+    fn kind(&self, scalar: Id) -> Option<NumberKind> {
+        match self.module.get_type(scalar)? {
+            Type::Float { bits: 32 } => Some(NumberKind::Float),
+            Type::Int { bits: 32, signed: true } => Some(NumberKind::Int),
+            Type::Int { bits: 32, signed: false } => Some(NumberKind::Uint),
+            Type::Bool => Some(NumberKind::Bool),
+            _ => None,
+        }
+    }
+
+    /// How many numbers and vectors of these kinds a value of a type has.
+    fn parts_of(&self, kind: Id, kinds: &[NumberKind]) -> usize {
+        match self.module.get_type(kind) {
+            Some(Type::Vector { of, .. }) => self.parts_of(of, kinds),
+            Some(Type::Matrix { column, count }) => self.parts_of(column, kinds) * count as usize,
+            Some(Type::Array { of, length }) => match self.module.number(length) {
+                Some(length) if length <= MOST_ELEMENTS => self.parts_of(of, kinds) * length as usize,
+                _ => 0,
+            },
+            Some(Type::Struct { members }) => members.iter().map(|member| self.parts_of(*member, kinds)).sum(),
+            _ => self.kind(kind).filter(|kind| kinds.contains(kind)).map_or(0, |_| 1),
+        }
+    }
+
+    /// The name of the variable that a pointer points into, and where it points there, as `.lights[2].color`.
+    fn stored(&self, pointer: Id) -> (String, String) {
+        let chain = [Op::AccessChain, Op::InBoundsAccessChain].map(|op| self.module.defined(op, pointer));
+        let Some(words) = chain.into_iter().flatten().next() else {
+            return (self.names.get(&pointer).cloned().unwrap_or_default(), String::new());
+        };
+        let (name, mut path) = self.stored(words[3]);
+        let mut kind = self.module.pointer(self.module.type_of(words[3])).map(|(_, to)| to);
+        for index in &words[4..] {
+            let known = self.module.number(*index);
+            let Some(of) = kind else { break };
+            path += &known.map_or_else(|| "[ ]".to_owned(), |index| self.part(of, index));
+            kind = match self.module.get_type(of) {
+                Some(Type::Struct { members }) => known.and_then(|index| members.get(index as usize)).copied(),
+                Some(Type::Array { of, .. } | Type::RuntimeArray { of } | Type::Vector { of, .. }) => Some(of),
+                Some(Type::Matrix { column, .. }) => Some(column),
+                _ => None,
+            };
+        }
+        (name, path)
+    }
+
+    /// A part of a value, as GLSL names it.
+    fn part(&self, kind: Id, index: u32) -> String {
+        match self.module.get_type(kind) {
+            Some(Type::Struct { .. }) => {
+                self.members.get(&(kind, index)).map(|name| format!(".{name}")).unwrap_or_default()
+            }
+            Some(Type::Vector { .. }) => format!(".{}", ["x", "y", "z", "w"].get(index as usize).unwrap_or(&"")),
+            _ => format!("[{index}]"),
+        }
+    }
+
+    /// Appends a call for each number and vector of these kinds in a value, to the last place. `path`: where the value is in a larger one.
+    fn log_parts(&mut self, out: &mut Vec<Instruction>, value: Id, kinds: &[NumberKind], path: String) {
+        let kind = self.module.type_of(value);
+        let parts: Vec<Id> = match self.module.get_type(kind) {
+            _ if self.parts_of(kind, kinds) == 0 => return,
+            Some(Type::Vector { count, of }) => {
+                let numbers = self.kind(of).map(|kind| (kind, count));
+                return numbers.into_iter().for_each(|numbers| self.log(out, Some(value), numbers, path.clone()));
+            }
+            Some(Type::Matrix { column, count }) => vec![column; count as usize],
+            Some(Type::Array { of, length }) => vec![of; self.module.number(length).unwrap_or(0) as usize],
+            Some(Type::Struct { members }) => members.to_vec(),
+            _ => {
+                let numbers = self.kind(kind).map(|kind| (kind, 1));
+                return numbers.into_iter().for_each(|numbers| self.log(out, Some(value), numbers, path.clone()));
+            }
+        };
+        for (at, part) in (0..).zip(parts) {
+            if self.parts_of(part, kinds) > 0 {
+                let path = path.clone() + &self.part(kind, at);
+                let part = self.module.emit(out, Op::CompositeExtract, part, &[value, at]);
+                self.log_parts(out, part, kinds, path);
+            }
+        }
+    }
+
+    /// Appends the call with a value of this many numbers, or without a value, to the last place.
+    fn log(&mut self, out: &mut Vec<Instruction>, value: Option<Id>, (kind, count): (NumberKind, u32), part: String) {
+        let m = &mut *self.module;
+        let bits_type = if count > 1 { self.vectors[count as usize - 2] } else { self.uint };
+        let mut bits = match (value, kind) {
+            (None, _) => self.zero,
+            (Some(value), NumberKind::Uint) => value,
+            (Some(value), NumberKind::Float | NumberKind::Int) => m.emit(out, Op::Bitcast, bits_type, &[value]),
+            (Some(value), NumberKind::Bool) => {
+                let [yes, no] = [self.one, self.zero].map(|number| match count {
+                    1 => number,
+                    _ => m.declare(Op::ConstantComposite, &[&[bits_type][..], &[number; 4][..count as usize]].concat()),
+                });
+                m.emit(out, Op::Select, bits_type, &[value, yes, no])
+            }
+        };
+        if count < 4 {
+            let parts = [&[bits][..], &[self.zero; 3][count.max(1) as usize - 1..]].concat();
+            bits = m.emit(out, Op::CompositeConstruct, self.vectors[2], &parts);
+        }
+        self.points.push(LogPoint { place: self.places.len() - 1, part, kind, count });
+        let point = m.constant(self.uint, self.points.len() as u32);
+        m.emit(out, Op::FunctionCall, self.void, &[self.function, point, bits]);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,199 @@
+//! Logs what statements do: numbers and conditions of all types where they are stored, returned or decided about, copies and constants too,
+//! the arguments of functions, discards, and where functions begin and end.
+
+use std::collections::BTreeSet;
+
+use foldhash::{HashMap, HashSet};
+
+use super::{Logged, MOST_PARTS, NumberKind, Place, Purpose, Tracer, is_line};
+use crate::shader::spirv::module::{Block, Function, Id, Instruction, Module, Type};
+use crate::shader::spirv::op::{Class, Op, text};
+use crate::shader::spirv::reach::file_of;
+
+/// glslang's name for the copy of an argument.
+const ARGUMENT: &str = "param";
+/// Bits of a loop's control.
+const UNROLL: u32 = 1;
+const DONT_UNROLL: u32 = 2;
+const ALL: [NumberKind; 4] = [NumberKind::Float, NumberKind::Int, NumberKind::Uint, NumberKind::Bool];
+
+/// What the functions of a module are like before they are instrumented.
+pub(super) struct Functions {
+    /// They log nothing.
+    silent: HashSet<Id>,
+    /// The first lines of their bodies.
+    first: HashMap<Id, Instruction>,
+    /// Callees, and the places of parameters that get a value from a caller: an `out` parameter gets none.
+    given: HashSet<(Id, usize)>,
+}
+
+impl Functions {
+    /// `function`: the one that gets the values. Without a file in `only`, and no call that leads to one, a function logs nothing.
+    pub(super) fn new(module: &Module, function: &str, logged: Logged, only: Option<&BTreeSet<String>>) -> Self {
+        let names = module.debug.iter().filter(|i| i.op == Op::Name).map(|i| &module[*i]);
+        let own = names.filter(|words| text(&words[2..]).starts_with(function)).map(|words| words[1]);
+        let mut silent: HashSet<Id> = own.collect();
+        if logged == Logged::Statements {
+            // Specialization takes branches by functions that only return a constant, and drops what they exclude.
+            silent.extend(module.functions.iter().filter(|of| returns_constant(module, of)).map(|of| of.id));
+            silent.extend(module.entry_function());
+            let leading = only.map(|files| leading_to(module, files));
+            let leads = |of: &&Function| leading.as_ref().is_none_or(|leading| leading.contains(&of.id));
+            silent.extend(module.functions.iter().filter(|of| !leads(of)).map(|of| of.id));
+        }
+        let first = |of: &Function| Some((of.id, of.body().find(|i| i.op == Op::Line)?));
+        Self { silent, first: module.functions.iter().filter_map(first).collect(), given: given(module) }
+    }
+
+    pub(super) fn is_silent(&self, function: Id) -> bool {
+        self.silent.contains(&function)
+    }
+}
+
+fn returns_constant(module: &Module, function: &Function) -> bool {
+    let mut body = function.body().filter(|i| !is_line(*i));
+    let constant = body.next().filter(|i| i.op == Op::ReturnValue).and_then(|i| module.definition(module[i][1]));
+    constant.is_some_and(|i| i.op.class() == Class::Constant)
+}
+
+/// The functions with lines of these files, and all that lead to them by calls.
+fn leading_to(module: &Module, files: &BTreeSet<String>) -> HashSet<Id> {
+    let is_there = |i: Instruction| file_of(module, &module[i]).is_some_and(|(file, _)| files.contains(&file));
+    let has_line = |function: &&Function| function.instructions().any(|i| i.op == Op::Line && is_there(i));
+    let mut found: HashSet<Id> = module.functions.iter().filter(has_line).map(|function| function.id).collect();
+    loop {
+        let calls = |function: &&Function| {
+            !found.contains(&function.id) && function.calls(module).any(|id| found.contains(&id))
+        };
+        let more: Vec<Id> = module.functions.iter().filter(calls).map(|function| function.id).collect();
+        if more.is_empty() {
+            return found;
+        }
+        found.extend(more);
+    }
+}
+
+/// See [`Functions::given`]. glslang passes copies, and stores to those of `in` and `inout` arguments before the call.
+fn given(module: &Module) -> HashSet<(Id, usize)> {
+    let stored: HashSet<Id> = module.code().filter(|i| i.op == Op::Store).map(|i| module[i][1]).collect();
+    let is_given = |argument: Id| module.defined(Op::Variable, argument).is_none() || stored.contains(&argument);
+    let calls = module.code().filter(|i| i.op == Op::FunctionCall).map(|i| &module[i]);
+    let arguments = calls.flat_map(|words| words[4..].iter().enumerate().map(|(at, id)| ((words[3], at), *id)));
+    arguments.filter(|(_, id)| is_given(*id)).map(|(parameter, _)| parameter).collect()
+}
+
+/// The blocks of a function that begin with a phi.
+pub(super) fn joins(function: &Function) -> HashSet<Id> {
+    let begins_with_phi = |block: &&Block| block.body.iter().find(|i| !is_line(**i)).is_some_and(|i| i.op == Op::Phi);
+    function.blocks.iter().filter(begins_with_phi).map(|block| block.label).collect()
+}
+
+fn is_merge(i: Instruction) -> bool {
+    matches!(i.op, Op::SelectionMerge | Op::LoopMerge)
+}
+
+impl Tracer<'_> {
+    /// The instructions of a block with calls between them, without lines. `joins`: blocks that begin with a phi. glslang evaluates `&&` and
+    /// `||` by a branch to such a block, which is no decision about statements.
+    pub(super) fn statements(&mut self, body: &[Instruction], joins: &HashSet<Id>) -> Vec<Instruction> {
+        let (mut out, mut line): (Vec<Instruction>, _) = (Vec::with_capacity(body.len()), None);
+        for (at, &i) in body.iter().enumerate() {
+            if is_line(i) {
+                line = (i.op == Op::Line).then_some(i);
+                continue;
+            }
+            // A merge instruction stands directly before its branch, which therefore logs before both.
+            if is_merge(i) {
+                let branch = body[at + 1..].iter().copied().find(|i| !is_line(*i));
+                let branch = branch.filter(|_| !joins.contains(&self.module[i][1]));
+                branch.into_iter().for_each(|branch| self.statement(&mut out, branch, line));
+                if i.op == Op::LoopMerge {
+                    // Copies of a body would each have to be compiled.
+                    self.module[i][3] = self.module[i][3] & !UNROLL | DONT_UNROLL;
+                }
+            } else if !out.last().is_some_and(|i| is_merge(*i)) {
+                self.statement(&mut out, i, line);
+            }
+            out.push(i);
+        }
+        out
+    }
+
+    /// Appends what an instruction does.
+    fn statement(&mut self, out: &mut Vec<Instruction>, i: Instruction, line: Option<Instruction>) {
+        let (purpose, value) = match (i.op, &self.module[i][1..]) {
+            (Op::Store, [pointer, value, ..]) => {
+                let (name, path) = self.stored(*pointer);
+                if name == ARGUMENT || name.is_empty() {
+                    return;
+                }
+                (Purpose::Store(name + &path), Some(*value))
+            }
+            (Op::ReturnValue, [value]) if self.is_short(self.module.type_of(*value)) => (Purpose::Return, Some(*value)),
+            (Op::ReturnValue | Op::Return, _) => (Purpose::Leave, None),
+            (Op::BranchConditional | Op::Switch, [condition, ..]) => (Purpose::Condition, Some(*condition)),
+            (Op::Kill | Op::TerminateInvocation | Op::DemoteToHelperInvocation, _) => (Purpose::Discard, None),
+            _ => return,
+        };
+        let file = line.and_then(|line| file_of(self.module, &self.module[line]));
+        match file.filter(|(file, _)| self.is_wanted(file)) {
+            Some((file, line)) => self.log_at(out, Place { file, line, purpose }, value),
+            // A call of a function in another file has an end, too.
+            None if matches!(i.op, Op::ReturnValue | Op::Return) => {
+                self.log_at(out, Place { file: String::new(), line: 0, purpose: Purpose::Leave }, None);
+            }
+            None => {}
+        }
+    }
+
+    /// Whether the statements of a file are logged.
+    fn is_wanted(&self, file: &str) -> bool {
+        self.only.is_none_or(|only| only.contains(file))
+    }
+
+    /// Whether values of a type are logged: they have numbers, and not too many.
+    fn is_short(&self, kind: Id) -> bool {
+        (1..=MOST_PARTS).contains(&self.parts_of(kind, &ALL))
+    }
+
+    /// Logs at the start of a function that it begins, and its arguments. Structs are left out: they were logged where they were made.
+    pub(super) fn enter(&mut self, function: &mut Function, known: &Functions) {
+        let name = self.names.get(&function.id).map(|name| name.split('(').next().unwrap_or_default().to_owned());
+        let first = known.first.get(&function.id).and_then(|line| file_of(self.module, &self.module[*line]));
+        let (file, line) = first.unwrap_or_default();
+        let Some(Block { body, .. }) = function.blocks.first_mut() else { return };
+        let mut out = Vec::new();
+        let place = |purpose| Place { file: file.clone(), line, purpose };
+        self.log_at(&mut out, place(Purpose::Enter(name.unwrap_or_default())), None);
+        let parameters = function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| self.module[*i][2]);
+        let parameters: Vec<(usize, Id)> = parameters.enumerate().collect();
+        for (at, parameter) in parameters {
+            if line == 0 || !self.is_wanted(&file) || !known.given.contains(&(function.id, at)) {
+                continue;
+            }
+            let name = self.names.get(&parameter).cloned().unwrap_or_default();
+            let kind = self.module.type_of(parameter);
+            let to = self.module.pointer(kind).map(|(_, to)| to);
+            let of = to.unwrap_or(kind);
+            if name.is_empty() || !self.is_short(of) || matches!(self.module.get_type(of), Some(Type::Struct { .. })) {
+                continue;
+            }
+            let value = to.map_or(parameter, |to| self.module.emit(&mut out, Op::Load, to, &[parameter]));
+            self.log_at(&mut out, place(Purpose::Argument(name)), Some(value));
+        }
+        let first = body.iter().position(|i| i.op != Op::Variable).unwrap_or(body.len());
+        body.splice(first..first, out);
+    }
+
+    /// Appends calls for a place, which has a value, or none. A value that is too long is left out.
+    fn log_at(&mut self, out: &mut Vec<Instruction>, place: Place, value: Option<Id>) {
+        if value.is_some_and(|value| !self.is_short(self.module.type_of(value))) {
+            return;
+        }
+        self.places.push(place);
+        match value {
+            Some(value) => self.log_parts(out, value, &ALL, String::new()),
+            None => self.log(out, None, (NumberKind::Bool, 0), String::new()),
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! What every statement of a stage computes at a pixel.
+//!
+//! The stage that draws the pixel is compiled once more with line information, and its module is instrumented (`spirv/trace/`), not its
+//! text: types are exact, and macros, `#if`, headers of loops and `out` arguments need no guessing. The module writes a log to a buffer by
+//! its address, which stands in it as a constant, so no contract changes. Only the fragments of the pixel write; the other pixels of its
+//! quad run along, so derivatives and mip levels are the picture's. Values are bits, never floats, on their way.
+//!
+//! The set of pipelines is that of the picture except for this stage (`PipelineSet::variant`), so light and tables are the picture's.
+//! The color with which the log of the visible fragment ends is compared with the picture's, bit by bit.
+
+mod assertion;
+mod calls;
+pub mod log;
+mod report;
+mod stage;
+mod statement;
+mod value;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::spirv::trace::Purpose;
+use super::{Compiler, PixelValue, ShaderSet, Source};
+pub use assertion::Assertion;
+use calls::Calls;
+pub use report::{Done, LineOfTrace, Once};
+pub use stage::{Listener, ListeningStage, TracedStage};
+pub use statement::Site;
+pub use value::TracedValue;
+
+/// Most log points of a module once all calls are inlined, unless a single file has more. Drivers inline every call, and each copy of a
+/// log point takes some 20 ms to compile on a software device.
+const MOST_INSTANCES: usize = 400;
+
+/// A stage whose log is written to a buffer. A module in which every statement of every file logs would take a driver minutes to compile,
+/// so several modules log a few files each.
+pub struct LoggingStage<'a> {
+    stage: ListeningStage<'a>,
+    listener: Listener,
+    address: u64,
+}
+
+impl<'a> LoggingStage<'a> {
+    /// Compiles the fragment stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn new(
+        shaders: &'a ShaderSet,
+        stage: &str,
+        tools: (&Compiler, &'a Source),
+        address: u64,
+    ) -> Result<Self, String> {
+        let listener = log::listener();
+        let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
+        Ok(Self { stage, listener, address })
+    }
+
+    /// Groups of files that a module each can log. `wanted` names files; if it is empty, all are logged that the stage keeps with one of
+    /// these lists of constants.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced, or that it has no statement of a wanted file.
+    pub fn groups(&self, wanted: &[&str], constants: &[&[(u32, u32)]]) -> Result<Vec<BTreeSet<String>>, String> {
+        let whole = self.stage.traced(&self.listener, None, Some)?;
+        let files: BTreeSet<&str> = whole.places().map(|place| place.file.as_str()).collect();
+        if let Some(unknown) = wanted.iter().find(|file| !files.contains(**file)) {
+            let list: Vec<&str> = files.into_iter().collect();
+            return Err(format!("no statement of {unknown} is in the stage, which has those of {}", list.join(", ")));
+        }
+        let mut instances: BTreeMap<String, usize> = wanted.iter().map(|file| ((*file).to_owned(), 0)).collect();
+        for constants in constants {
+            for (file, count) in whole.instances(self.listener.function, constants) {
+                if wanted.is_empty() || wanted.contains(&file.as_str()) {
+                    let most = instances.entry(file).or_default();
+                    *most = count.max(*most);
+                }
+            }
+        }
+        let (mut groups, mut used): (Vec<BTreeSet<String>>, usize) = (Vec::new(), 0);
+        for (file, count) in instances {
+            used += count;
+            match groups.last_mut().filter(|_| used <= MOST_INSTANCES) {
+                Some(group) => _ = group.insert(file),
+                None => {
+                    groups.push(BTreeSet::from([file]));
+                    used = count;
+                }
+            }
+        }
+        match groups.is_empty() {
+            true => Err("the stage has no statements that could be traced".to_owned()),
+            false => Ok(groups),
+        }
+    }
+
+    /// The stage with a log of what the statements of these files do.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn of(&self, files: &BTreeSet<String>) -> Result<TracedStage<'_>, String> {
+        let finish = |words: Vec<u32>| log::with_address(&words, self.address);
+        let traced = self.stage.traced(&self.listener, Some(files), finish)?;
+        let names = || files.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+        match traced.point_count() < log::MOST_POINTS as usize {
+            true => Ok(traced),
+            false => Err(format!("{} has too many statements to be traced", names())),
+        }
+    }
+}
+
+/// What happened at a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// The fragments, the nearest first.
+    pub fragments: Vec<Fragment>,
+    /// Fragments that were left out.
+    pub left_out: u32,
+    /// The color of the pixel in the picture: its bits.
+    pub picture: [u32; 4],
+    /// The same where the traced stage draws the picture.
+    pub redrawn: [u32; 4],
+    /// The text of the lines with statements that log.
+    code: BTreeMap<(String, u32), String>,
+}
+
+/// What one fragment did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fragment {
+    /// Depth: 1 near, 0 at infinity.
+    pub depth: f32,
+    /// The bits of its color; `None` if it was discarded.
+    pub color: Option<[u32; 4]>,
+    /// Its events, in the order of execution for each group of files.
+    pub events: Vec<Event>,
+    /// What it did once the log was full, and how often.
+    pub left_out: Vec<(Doing, u32)>,
+}
+
+/// What a statement does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doing {
+    /// The file, as the tree names it.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// Kind of what it does.
+    pub act: Act,
+    /// The variable or parameter that gets the value, with the part of it: `lights[2].color`; empty for others.
+    pub name: String,
+}
+
+/// Something that a statement did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// What the statement does.
+    pub doing: Doing,
+    /// The value; none for a discard.
+    pub value: Option<TracedValue>,
+    /// The calls that led to it, outermost first: `shade > add_light [2]`.
+    pub calls: Arc<str>,
+}
+
+/// The kinds of what statements do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Act {
+    /// Its function gets an argument.
+    Argument,
+    /// Stores a value.
+    Store,
+    /// Decides what is next.
+    Condition,
+    /// Returns a value.
+    Return,
+    /// Discards the fragment.
+    Discard,
+}
+
+impl Trace {
+    /// The trace of a log that `stage` has written. `picture` and `redrawn`: see the members.
+    pub fn new(stage: &TracedStage<'_>, words: &[u32], picture: &PixelValue, redrawn: &PixelValue) -> Self {
+        let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
+        let (logged, left_out) = log::decode(words);
+        let fragment = |logged: log::LoggedFragment| {
+            let mut calls = Calls::default();
+            let events = logged.events.iter().filter_map(|(number, bits)| event(stage, *number, *bits, &mut calls));
+            let events = events.collect();
+            let more = logged.left_out.iter().filter_map(|(number, count)| Some((doing(stage, *number)?, *count)));
+            let left_out = more.collect();
+            // As the pixel is read: without flags in alpha.
+            let color = logged.color.map(|color| bits(&PixelValue::decode(color.map(f32::from_bits))));
+            Fragment { depth: logged.depth, color, events, left_out }
+        };
+        let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
+        // A device may draw them in any order.
+        fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color)));
+        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(_) | Purpose::Leave);
+        let places = stage.places().filter(|place| is_shown(&place.purpose));
+        let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
+        let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
+        Self { fragments, left_out, picture: bits(picture), redrawn: bits(redrawn), code: code.collect() }
+    }
+
+    /// The fragment that is seen: the nearest one with the color of the picture, or else the nearest one that was not discarded. `None`
+    /// where nothing was drawn.
+    pub fn visible(&self) -> Option<usize> {
+        let kept = || self.fragments.iter().enumerate().filter(|(_, fragment)| fragment.color.is_some());
+        let found = kept().find(|(_, fragment)| fragment.color == Some(self.picture)).or_else(|| kept().next());
+        found.map(|(index, _)| index)
+    }
+
+    /// Adds what the statements of other files did, from another draw of the pixel.
+    ///
+    /// # Errors
+    /// A message: that draw had other fragments.
+    pub fn add(&mut self, other: Self) -> Result<(), String> {
+        let same = |(a, b): (&Fragment, &Fragment)| (a.depth.to_bits(), a.color) == (b.depth.to_bits(), b.color);
+        if self.fragments.len() != other.fragments.len() || !self.fragments.iter().zip(&other.fragments).all(same) {
+            return Err(
+                "the pixel changes from one draw to the next, so only one file can be traced: name it with --file"
+                    .to_owned(),
+            );
+        }
+        for (fragment, more) in self.fragments.iter_mut().zip(other.fragments) {
+            fragment.events.extend(more.events);
+            fragment.left_out.extend(more.left_out);
+        }
+        self.code.extend(other.code);
+        if other.redrawn != self.picture {
+            self.redrawn = other.redrawn;
+        }
+        Ok(())
+    }
+
+    /// Whether a fragment ends with the color of the picture, bit by bit.
+    pub fn is_proven(&self, fragment: usize) -> bool {
+        self.fragments.get(fragment).is_some_and(|fragment| fragment.color == Some(self.picture))
+    }
+}
+
+/// What the statement of a log point does. `None` for the begin and the end of a function.
+fn doing(stage: &TracedStage<'_>, number: u32) -> Option<Doing> {
+    let point = stage.point(number)?;
+    let place = stage.place(point);
+    let (act, name) = match &place.purpose {
+        Purpose::Argument(name) => (Act::Argument, name.as_str()),
+        Purpose::Store(name) => (Act::Store, name.as_str()),
+        Purpose::Condition => (Act::Condition, ""),
+        Purpose::Return => (Act::Return, ""),
+        Purpose::Discard => (Act::Discard, ""),
+        Purpose::Enter(_) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
+    };
+    Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
+}
+
+/// An event of a log. `None` for the begin and the end of a function, which change `calls`.
+fn event(stage: &TracedStage<'_>, number: u32, bits: [u32; 4], calls: &mut Calls) -> Option<Event> {
+    let point = stage.point(number)?;
+    let (path, count) = (calls.path(), point.count as usize);
+    match &stage.place(point).purpose {
+        Purpose::Enter(name) => calls.enter(name),
+        Purpose::Leave => calls.leave(),
+        Purpose::Return if stage.is_last_of_place(number) => calls.leave(),
+        _ => {}
+    }
+    let value = (count > 0).then(|| TracedValue::new(point.kind, &bits[..count]));
+    Some(Event { doing: doing(stage, number)?, value, calls: path })
+}

@@ -1,0 +1,256 @@
+//! A trace by lines of its sources, as text and JSON.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
+
+/// Values that are kept of each place from the begin, and from the end.
+const MOST_KEPT: usize = 16;
+
+/// A line of a source file, with what its statements did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineOfTrace {
+    /// The file, as the tree names it.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// The line itself, without the space around it.
+    pub code: String,
+    /// What was done, in order.
+    pub done: Vec<Done>,
+}
+
+/// What a statement did, once or more often.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Done {
+    /// What it was.
+    pub act: Act,
+    /// The variable or parameter; empty for others.
+    pub name: String,
+    /// How often.
+    pub count: usize,
+    /// How often after the log was full: those values are not kept.
+    pub left_out: usize,
+    /// The first times.
+    pub first: Vec<Once>,
+    /// The last times, as far as they are not among the first.
+    pub last: Vec<Once>,
+}
+
+/// One time that a statement did something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Once {
+    /// The value; none for a discard.
+    pub value: Option<TracedValue>,
+    /// The calls that led to it.
+    pub calls: Arc<str>,
+}
+
+impl Trace {
+    /// The lines of a fragment, file by file in the order in which they were reached.
+    pub fn lines(&self, fragment: usize) -> Vec<LineOfTrace> {
+        let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
+        let mut files: Vec<&str> = Vec::new();
+        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
+        let events = fragment.events.iter().map(|event| (&event.doing, Ok(event)));
+        let left_out = fragment.left_out.iter().map(|(doing, count)| (doing, Err(*count)));
+        for (doing, event) in events.chain(left_out) {
+            if !files.contains(&doing.file.as_str()) {
+                files.push(&doing.file);
+            }
+            let done = done_of(lines.entry((doing.file.as_str(), doing.line)).or_default(), doing);
+            match event {
+                Ok(event) => done.add(event),
+                Err(count) => {
+                    done.count += count as usize;
+                    done.left_out += count as usize;
+                }
+            }
+        }
+        let line = |((file, line), done): ((&str, u32), Vec<Done>)| {
+            let code = self.code.get(&(file.to_owned(), line)).cloned().unwrap_or_default();
+            LineOfTrace { file: file.to_owned(), line, code, done }
+        };
+        let mut lines: Vec<LineOfTrace> = lines.into_iter().map(line).collect();
+        lines.sort_by_key(|line| (files.iter().position(|file| *file == line.file), line.line));
+        lines
+    }
+
+    /// The lines with statements that a fragment did not reach, by file.
+    pub fn not_reached(&self, fragment: usize) -> BTreeMap<&str, Vec<u32>> {
+        let Some(fragment) = self.fragments.get(fragment) else { return BTreeMap::new() };
+        let events = fragment.events.iter().map(|event| &event.doing);
+        let all = events.chain(fragment.left_out.iter().map(|(doing, _)| doing));
+        let reached: BTreeSet<(&str, u32)> = all.map(|doing| (doing.file.as_str(), doing.line)).collect();
+        let mut found: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
+        for (file, line) in self.code.keys().map(|(file, line)| (file.as_str(), *line)) {
+            if !reached.contains(&(file, line)) {
+                found.entry(file).or_default().push(line);
+            }
+        }
+        found
+    }
+
+    /// The trace of a fragment for programs.
+    pub fn json(&self, fragment: usize) -> Value {
+        let of = |(index, found): (usize, &Fragment)| {
+            let left_out: u32 = found.left_out.iter().map(|(_, count)| count).sum();
+            json!({ "depth": found.depth, "color": found.color.map(floats), "discarded": found.color.is_none(),
+                "visible": self.visible() == Some(index), "left_out": left_out })
+        };
+        let color = self.fragments.get(fragment).and_then(|fragment| fragment.color);
+        let proof = json!({ "equal": self.is_proven(fragment), "ulp": color.map(|color| ulps(color, self.picture)),
+            "traced": color.map(floats), "picture": floats(self.picture),
+            "redrawn": floats(self.redrawn) });
+        json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
+            "fragment": fragment, "proof": proof,
+            "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
+            "not_reached": self.not_reached(fragment) })
+    }
+
+    /// How the color of a fragment compares with the picture's, in words.
+    pub fn proof_text(&self, fragment: usize) -> String {
+        let color = self.fragments.get(fragment).and_then(|fragment| fragment.color);
+        let Some(color) = color else { return "discarded".to_owned() };
+        if color == self.picture {
+            return "equal to the picture".to_owned();
+        }
+        if self.visible() != Some(fragment) {
+            return "hidden, or blended over".to_owned();
+        }
+        let why = match self.redrawn == self.picture {
+            true => "a pass after the model changes it, or other surfaces are blended with it",
+            false => "the driver computes the traced stage in another order, or passes read earlier frames",
+        };
+        format!("{} ulp from the picture: {why}", ulps(color, self.picture))
+    }
+}
+
+fn floats(bits: [u32; 4]) -> Value {
+    Value::Array(bits.map(|bits| TracedValue::float(f32::from_bits(bits)).json()).to_vec())
+}
+
+/// The largest distance of two numbers in steps of floats.
+fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
+    let place = |bits: u32| {
+        let magnitude = i64::from(bits & 0x7fff_ffff);
+        if bits >> 31 == 0 { magnitude } else { -magnitude }
+    };
+    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
+}
+
+/// The entry of what a statement does, among those of its line.
+fn done_of<'a>(all: &'a mut Vec<Done>, doing: &Doing) -> &'a mut Done {
+    let known = all.iter().position(|done| (done.act, &done.name) == (doing.act, &doing.name));
+    let at = known.unwrap_or_else(|| {
+        let (act, name) = (doing.act, doing.name.clone());
+        all.push(Done { act, name, count: 0, left_out: 0, first: Vec::new(), last: Vec::new() });
+        all.len() - 1
+    });
+    &mut all[at]
+}
+
+impl LineOfTrace {
+    fn json(&self) -> Value {
+        let once = |once: &Once| json!({ "value": once.value.map(|value| value.json()), "calls": *once.calls });
+        let done = |done: &Done| {
+            let kind = done.first.first().and_then(|once| once.value).map(|value| value.type_name());
+            json!({ "act": done.act, "name": done.name, "type": kind, "count": done.count, "left_out": done.left_out,
+                "first": done.first.iter().map(once).collect::<Vec<_>>(), "last": done.last.iter().map(once).collect::<Vec<_>>() })
+        };
+        json!({ "file": self.file, "line": self.line, "code": self.code,
+            "done": self.done.iter().map(done).collect::<Vec<_>>() })
+    }
+
+    /// What the statements did, on one line.
+    pub fn text(&self) -> String {
+        self.done.iter().map(Done::text).collect::<Vec<_>>().join("   ")
+    }
+}
+
+impl Done {
+    fn add(&mut self, event: &Event) {
+        let once = Once { value: event.value, calls: event.calls.clone() };
+        self.count += 1;
+        if self.first.len() < MOST_KEPT {
+            return self.first.push(once);
+        }
+        if self.last.len() == MOST_KEPT {
+            self.last.remove(0);
+        }
+        self.last.push(once);
+    }
+
+    /// As `alpha2 = 0.0625 ×3`, `alpha2 = 0.0625, 0.25, 1 ×3` or, of more than three values, `i = 0, 1, …, 39 ×40`.
+    pub fn text(&self) -> String {
+        let values = self.first.iter().chain(&self.last).filter_map(|once| once.value);
+        let mut texts: Vec<String> = values.map(|value| value.text()).collect();
+        texts.dedup();
+        let values = match texts.as_slice() {
+            [first, second, _, .., last] => format!("{first}, {second}, …, {last}"),
+            few => few.join(", "),
+        };
+        let times = if self.count > 1 { format!(" ×{}", self.count) } else { String::new() };
+        let left_out = match self.left_out {
+            0 => String::new(),
+            count => format!(" (the last {count} not kept)"),
+        };
+        let values = format!("{values}{times}{left_out}");
+        match self.act {
+            Act::Store | Act::Argument => format!("{} = {values}", self.name),
+            Act::Return => format!("return{} {values}", self.name),
+            Act::Condition => format!("? {values}"),
+            Act::Discard => format!("discard{values}"),
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub(in crate::shader::trace) fn event(line: u32, act: Act, name: &str, numbers: &[f32]) -> Event {
+        let value = match numbers {
+            [] => None,
+            [number] => Some(TracedValue::float(*number)),
+            numbers => Some(TracedValue::floats(numbers)),
+        };
+        Event { doing: Doing { file: "a.glsl".into(), line, act, name: name.into() }, value, calls: "f".into() }
+    }
+
+    fn trace(events: Vec<Event>, left_out: Vec<(Doing, u32)>) -> Trace {
+        let code = [3, 5, 7, 9].map(|line| (("a.glsl".to_owned(), line), format!("line {line};")));
+        let fragment = Fragment { depth: 0.5, color: Some([0; 4]), events, left_out };
+        Trace { fragments: vec![fragment], left_out: 0, picture: [0; 4], redrawn: [0; 4], code: code.into() }
+    }
+
+    #[test]
+    fn events_are_gathered_by_line() {
+        let mut events = vec![event(9, Act::Return, "", &[2.0]), event(3, Act::Store, "n", &[0.0, 1.0, 0.5])];
+        events.extend((0..40).map(|round| event(5, Act::Store, "i", &[round as f32])));
+        let full = (event(5, Act::Store, "i", &[]).doing, 7);
+        let trace = trace(events, vec![full]);
+        let lines = trace.lines(0);
+        let texts: Vec<(u32, String)> = lines.iter().map(|line| (line.line, line.text())).collect();
+        assert_eq!(texts[0], (3, "n = (0, 1, 0.5)".to_owned()));
+        assert_eq!(texts[1], (5, "i = 0, 1, …, 39 ×47 (the last 7 not kept)".to_owned()));
+        assert_eq!(texts[2], (9, "return 2".to_owned()));
+        let done = &lines[1].done[0];
+        let ends = [done.first[0].value, done.first[15].value, done.last[0].value, done.last[15].value];
+        assert_eq!(ends.map(|value| value.unwrap().text()), ["0", "15", "24", "39"]);
+        assert_eq!(trace.not_reached(0), BTreeMap::from([("a.glsl", vec![7])]));
+    }
+
+    #[test]
+    fn the_proof_counts_steps_of_floats() {
+        let mut trace = trace(Vec::new(), Vec::new());
+        assert_eq!((trace.is_proven(0), trace.proof_text(0).as_str()), (true, "equal to the picture"));
+        trace.picture = [1.0, 0.0, 0.0, 0.0].map(f32::to_bits);
+        trace.fragments[0].color = Some([1.0 + f32::EPSILON * 2.0, 0.0, -0.0, 0.0].map(f32::to_bits));
+        assert!(!trace.is_proven(0) && trace.proof_text(0).starts_with("2 ulp from the picture"));
+        assert_eq!(ulps([0x8000_0001; 4], [1; 4]), 2);
+    }
+}

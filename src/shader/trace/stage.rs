@@ -1,0 +1,167 @@
+//! A fragment stage that logs what it computes, in a set of shaders that is otherwise the same.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use super::statement::{self, Site};
+use crate::shader::contract::Texts;
+use crate::shader::glsl::syntax::{Function, functions};
+use crate::shader::glsl::{Code, code, color_of, main_of};
+use crate::shader::library::Stage;
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::trace::{LogPoint, Logged, Place, Purpose, Traced, instances, trace};
+use crate::shader::{Compiler, ShaderSet, Source, StageKind, specialize};
+
+/// A text that is appended to a stage, and the values that it gets.
+pub struct Listener {
+    /// GLSL that is appended. `SPECULA_COLOR` is the name of the color that the stage writes; its own `main` is `specula_main`.
+    pub text: String,
+    /// Lines that are put behind `#version`; may be empty.
+    pub extensions: &'static str,
+    /// The function of the text that gets the values.
+    pub function: &'static str,
+    /// Which values it gets.
+    pub logged: Logged,
+}
+
+/// A fragment stage that has compiled with a listener.
+pub struct ListeningStage<'a> {
+    shaders: &'a ShaderSet,
+    stage: Arc<Stage>,
+    snapshot: Snapshot<'a>,
+    words: Vec<u32>,
+}
+
+impl<'a> ListeningStage<'a> {
+    /// Compiles the fragment stage `stage` of `shaders` once more. `source` gives files their names.
+    ///
+    /// # Errors
+    /// A message why the stage cannot be traced.
+    pub fn new(
+        shaders: &'a ShaderSet,
+        stage: &str,
+        (compiler, source): (&Compiler, &'a Source),
+        listener: &Listener,
+    ) -> Result<Self, String> {
+        let path = TreePath::from(stage);
+        let before = shaders.stages.get(stage).filter(|before| before.kind == StageKind::Fragment);
+        let before = before.ok_or_else(|| format!("{stage} is no fragment stage that has compiled"))?;
+        let texts = shaders.texts.iter().map(|(path, text)| (path.clone(), Ok(text.clone()))).collect();
+        let snapshot = Snapshot::holding(source, texts);
+        let text = snapshot.read(&path).map_err(|error| error.to_string())?;
+        let text = listening(&text, listener).map_err(|lack| format!("{stage} {lack}"))?;
+        let over = snapshot.over(BTreeMap::from([(path.clone(), Ok(text.into()))]));
+        let words = compiler.compile_with_lines(&over, &path);
+        let words = words.ok_or_else(|| format!("{stage} does not compile with the text that traces its values"))?;
+        Ok(Self { shaders, stage: before.clone(), snapshot, words })
+    }
+
+    /// Its module, instrumented, after `finish`. `only`: the files whose statements are logged.
+    ///
+    /// # Errors
+    /// A message why it cannot be traced.
+    pub fn traced(
+        &self,
+        listener: &Listener,
+        only: Option<&BTreeSet<String>>,
+        finish: impl FnOnce(Vec<u32>) -> Option<Vec<u32>>,
+    ) -> Result<TracedStage<'_>, String> {
+        let lacks = || format!("the values of {} cannot be traced", self.stage.path);
+        let mut traced = trace(&self.words, listener.function, listener.logged, only).ok_or_else(lacks)?;
+        let words = finish(std::mem::take(&mut traced.words)).ok_or_else(lacks)?;
+        self.move_arguments(&mut traced.places);
+        let mut shaders = self.shaders.clone();
+        shaders.stages.insert(self.stage.path.to_string(), Arc::new(self.stage.with_module(words)));
+        Ok(TracedStage { shaders: Arc::new(shaders), of: self, traced })
+    }
+
+    /// Moves arguments to the headers of their functions.
+    fn move_arguments(&self, places: &mut [Place]) {
+        let mut headers: HashMap<String, Vec<RangeInclusive<u32>>> = HashMap::new();
+        for place in places.iter_mut().filter(|place| matches!(place.purpose, Purpose::Argument(_))) {
+            let functions = headers.entry(place.file.clone()).or_insert_with_key(|file| {
+                let text = self.snapshot.read(&TreePath::from(file.as_str())).unwrap_or_default();
+                let code = Code::new(&text);
+                let lines = |of: &Function| code.number_at(of.head.start)..=code.number_at(of.body.bytes.end);
+                functions(&code.tokens).iter().map(lines).collect()
+            });
+            let around = functions.iter().find(|lines| lines.contains(&place.line));
+            place.line = around.map_or(place.line, |lines| *lines.start());
+        }
+    }
+}
+
+/// An instrumented stage and its set.
+pub struct TracedStage<'a> {
+    /// The set.
+    pub shaders: Arc<ShaderSet>,
+    of: &'a ListeningStage<'a>,
+    traced: Traced,
+}
+
+impl TracedStage<'_> {
+    /// The log point with a number that the module has given, from 1.
+    pub fn point(&self, number: u32) -> Option<&LogPoint> {
+        self.traced.points.get((number as usize).checked_sub(1)?)
+    }
+
+    /// How many log points there are.
+    pub(super) fn point_count(&self) -> usize {
+        self.traced.points.len()
+    }
+
+    /// Whether a log point is the last one of its place.
+    pub(super) fn is_last_of_place(&self, number: u32) -> bool {
+        let place = |number: u32| self.point(number).map(|point| point.place);
+        place(number) != place(number + 1)
+    }
+
+    /// The places that log values, in the order of the module.
+    pub(super) fn places(&self) -> impl Iterator<Item = &Place> {
+        self.traced.places.iter().filter(|place| place.line > 0)
+    }
+
+    /// How often the log points of each file stand in the module, specialized with these constants, once all calls are inlined.
+    pub(super) fn instances(&self, function: &str, constants: &[(u32, u32)]) -> BTreeMap<String, usize> {
+        let stage = self.shaders.stages.get(self.of.stage.path.as_str());
+        let words = stage.map(|stage| specialize(&stage.spirv, constants)).unwrap_or_default();
+        instances(&words, function, &self.traced.places, &self.traced.points)
+    }
+
+    /// The place of a log point.
+    pub fn place(&self, point: &LogPoint) -> &Place {
+        &self.traced.places[point.place]
+    }
+
+    /// A line of a file of the tree, without the space around it; empty if there is none.
+    pub(super) fn line(&self, file: &str, line: u32) -> String {
+        let text = self.of.snapshot.read(&TreePath::from(file)).unwrap_or_default();
+        let at = (line as usize).checked_sub(1);
+        at.and_then(|at| text.lines().nth(at)).unwrap_or_default().trim().to_owned()
+    }
+
+    /// The statement of a log point, by its number.
+    pub fn site_of(&self, number: u32) -> Option<Site> {
+        let place = self.place(self.point(number)?);
+        let ListeningStage { stage, snapshot, .. } = self.of;
+        Some(statement::site(place, Texts { snapshot, stage: &stage.path, dependencies: &stage.dependencies }))
+    }
+}
+
+/// The text of a stage that listens. No line moves.
+fn listening(text: &str, listener: &Listener) -> Result<String, &'static str> {
+    let main = main_of(&code(text)).ok_or("has no main()")?;
+    let color = color_of(text).ok_or("has no `out vec4` color")?;
+    let (before, after) = (&text[..main.start], &text[main.end..]);
+    let before = match (listener.extensions, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?)))
+    {
+        ("", _) | (_, None) => before.to_owned(),
+        (extensions, Some(end)) => {
+            let next = before[..=end].lines().count() + 1;
+            format!("{}{extensions}\n#line {next}\n{}", &before[..=end], &before[end + 1..])
+        }
+    };
+    Ok(format!("{before}specula_main{after}\n{}", listener.text.replace("SPECULA_COLOR", &color)))
+}
