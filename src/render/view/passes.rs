@@ -127,7 +127,7 @@ impl Passes<'_> {
         let resolve = hdr.resolve.filter(|_| weigh.is_none());
         let peeling = self.peeling.filter(|_| !sorted.blended.is_empty());
         let last = Attachments { clear, resolve, resolve_depth, keeps_depth, ..hdr };
-        self.begin(encoder, &if peeling.is_some() { self.to_go_on(clear) } else { last });
+        self.begin(encoder, &if peeling.is_some() { self.in_parts(clear) } else { last });
         if !has_opaque {
             self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::model_key);
             self.added(encoder, false);
@@ -156,7 +156,7 @@ impl Passes<'_> {
     }
 
     /// Attachments of the HDR target for a part of its draws.
-    fn to_go_on(&self, clear: Option<[f32; 4]>) -> Attachments<'_> {
+    fn in_parts(&self, clear: Option<[f32; 4]>) -> Attachments<'_> {
         Attachments { clear, resolve: None, keeps_contents: true, ..self.hdr() }
     }
 
@@ -174,7 +174,7 @@ impl Passes<'_> {
         encoder.transition(depth, Use::Depth, Use::Depth);
         self.peel(encoder, sorted, peeling, |encoder, to| {
             let (depth, clear_depth) = (Some(to.depth), to.clear_depth);
-            self.begin(encoder, &Attachments { depth, clear_depth, ..self.to_go_on(None) });
+            self.begin(encoder, &Attachments { depth, clear_depth, ..self.in_parts(None) });
         });
         encoder.transition(color, Use::Color, Use::Color);
         encoder.transition(depth, Use::Depth, Use::Depth);
