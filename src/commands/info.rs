@@ -87,7 +87,7 @@ fn print_model(model: &Model) {
     out!("\nModel {}", escape(&model.name));
     out!("  size        {width:.3} x {height:.3} x {depth:.3} m, center {x:.3}, {y:.3}, {z:.3}");
     out!("  scenes      {}", count(model.contents.scenes));
-    out!("  nodes       {}", model.nodes.len());
+    out!("  nodes       {}", nodes(model));
     out!("  meshes      {}", count(model.contents.meshes));
     out!("  primitives  {}", model.primitives.len());
     out!("  instances   {}", model.instances.len());
@@ -109,7 +109,11 @@ fn print_model(model: &Model) {
     out!("  animations  {}", named(&model.contents.animations));
     for (number, clip) in model.motion.clips.iter().enumerate() {
         let name = if clip.name.is_empty() { number.to_string() } else { escape(&clip.name) };
-        out!("    {name}: {:.3} s, {}", clip.duration_s, plural(clip.channels.len(), "channel"));
+        let switches = match clip.switched_nodes() {
+            0 => String::new(),
+            count => format!(", shows and hides {}", plural(count, "node")),
+        };
+        out!("    {name}: {:.3} s, {}{switches}", clip.duration_s, plural(clip.channels.len(), "channel"));
     }
     out!("  skins       {}", count(model.contents.skins));
     for skin in &model.motion.rig.skins {
@@ -127,6 +131,29 @@ fn print_model(model: &Model) {
         let space = if is_srgb(model, number) { "sRGB" } else { "linear" };
         out!("    {:>5} x {:<5} {name}: {uses} ({} {space})", image.width, image.height, image.form);
     }
+}
+
+/// The number of nodes, and how many of them the file hides.
+fn nodes(model: &Model) -> String {
+    let [switched, left_out] = hidden_nodes(model);
+    let mut text = model.nodes.len().to_string();
+    if switched > 0 {
+        text += &format!(", {switched} hidden until an animation shows {}", if switched == 1 { "it" } else { "them" });
+    }
+    if left_out > 0 {
+        text += &format!(", {left_out} hidden and left out");
+    }
+    text
+}
+
+/// How many nodes hide themselves until a clip shows them, and how many are left out, since they or nodes above them are hidden in all clips.
+fn hidden_nodes(model: &Model) -> [usize; 2] {
+    let is_left_out = |at: usize| model.nodes.get(at).is_some_and(|node| node.is_hidden);
+    let rig = model.motion.rig.nodes.iter().enumerate();
+    [
+        rig.filter(|(at, node)| node.is_hidden && !is_left_out(*at)).count(),
+        model.nodes.iter().filter(|node| node.is_hidden).count(),
+    ]
 }
 
 /// Bytes on the device: of vertices and indices, and of textures with their mip levels.
@@ -184,10 +211,12 @@ fn summary(model: &Model) -> serde_json::Value {
 
 fn parts(model: &Model) -> serde_json::Value {
     let (vertices, indices) = counts(model);
+    let [switched, left_out] = hidden_nodes(model);
     json!({
         "model": model.name,
         "scenes": model.contents.scenes,
         "nodes": model.nodes.len(),
+        "hidden_nodes": { "switched": switched, "left_out": left_out },
         "meshes": model.contents.meshes,
         "animations": model.contents.animations.len(),
         "clips": model.contents.animations,
@@ -221,8 +250,10 @@ fn plural(count: usize, noun: &str) -> String {
 
 /// The parts of a model that move: clips, skins, morph targets and cameras.
 fn motion(model: &Model) -> serde_json::Value {
-    let clip =
-        |clip: &Clip| json!({ "name": clip.name, "duration_s": clip.duration_s, "channels": clip.channels.len() });
+    let clip = |clip: &Clip| {
+        json!({ "name": clip.name, "duration_s": clip.duration_s, "channels": clip.channels.len(),
+            "switched_nodes": clip.switched_nodes() })
+    };
     let skin = |skin: &Skin| json!({ "name": skin.name, "index": skin.index, "joints": skin.joints.len() });
     json!({
         "clips": model.motion.clips.iter().map(clip).collect::<Vec<_>>(),

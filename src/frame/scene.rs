@@ -77,7 +77,7 @@ pub struct Scene {
     is_animated: bool,
     /// Whether it changes as the clock goes on. A clip that is not repeated ends.
     is_playing: bool,
-    /// Whether each instance is drawn. `None` draws all.
+    /// Whether the settings let each instance be drawn. `None`: all. The pose may hide more.
     visible: Option<Arc<[bool]>>,
     /// The materials that differ from those of the model, by index; empty if none does.
     changed: Arc<[Option<Material>]>,
@@ -175,10 +175,11 @@ impl Scene {
         scene.collected()
     }
 
-    /// The scene with the kinds of its materials.
+    /// The scene with the kinds of its materials, also of what a pose hides: so no pipeline is missing when a clip shows it.
     fn collected(mut self) -> Self {
         let replacement = self.replacement();
-        let drawn = self.instances().map(|instance| self.appearance(instance, replacement.as_ref()).variant);
+        let drawn =
+            self.wanted_instances().map(|(_, instance)| self.appearance(instance, replacement.as_ref()).variant);
         let materials = drawn.collect();
         self.materials = Arc::new(materials);
         self
@@ -204,7 +205,7 @@ impl Scene {
         self.is_playing
     }
 
-    /// Whether both draw the same primitives with the same materials, wherever they are.
+    /// Whether both draw the same primitives with the same materials, wherever they are, as far as their poses do not hide them.
     pub fn has_same_draws(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.loaded, &other.loaded)
             && (Arc::ptr_eq(&self.look, &other.look) || self.look == other.look)
@@ -229,6 +230,11 @@ impl Scene {
 
     /// Whether an instance is drawn.
     pub fn is_visible(&self, instance: usize) -> bool {
+        self.is_wanted(instance) && !self.model.pose.hidden.instance(instance)
+    }
+
+    /// Whether the settings let an instance be drawn.
+    pub fn is_wanted(&self, instance: usize) -> bool {
         self.visible.as_ref().is_none_or(|visible| visible.get(instance) == Some(&true))
     }
 
@@ -258,13 +264,14 @@ impl Scene {
     }
 
     /// The instances that are drawn.
-    pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
-        self.numbered_instances().map(|(_, instance)| instance)
+    pub(crate) fn visible_instances(&self) -> impl Iterator<Item = &Instance> {
+        let visible = self.model.instances.iter().enumerate().filter(|(index, _)| self.is_visible(*index));
+        visible.map(|(_, instance)| instance)
     }
 
-    /// The instances that are drawn, with their indices.
-    pub(crate) fn numbered_instances(&self) -> impl Iterator<Item = (usize, &Instance)> {
-        self.model.instances.iter().enumerate().filter(|(index, _)| self.is_visible(*index))
+    /// The instances that are drawn in some pose, with their indices.
+    pub(crate) fn wanted_instances(&self) -> impl Iterator<Item = (usize, &Instance)> {
+        self.model.instances.iter().enumerate().filter(|(index, _)| self.is_wanted(*index))
     }
 
     /// The material that replaces all of the model's, if there is one.

@@ -24,17 +24,20 @@ impl Headless {
         Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
     }
 
-    /// Why a picture that is transparent where nothing is drawn shows nothing of the model, although there is one.
+    /// Why a picture shows nothing of the model, although there is one. A background that is drawn covers all pixels, so the answer is `None` then.
     ///
     /// # Errors
     /// As [`Headless::frame_state`].
     pub fn unseen_model(&self, picture: &Capture) -> Result<Option<&'static str>, HeadlessError> {
         let state = self.frame_state()?;
-        let is_empty = picture.rgba8.chunks_exact(4).all(|pixel| pixel[3] == 0);
+        let is_empty = picture.raw.iter().all(|pixel| pixel[3] == 0.0);
         let (true, true, Some(scene)) = (is_empty, state.pipelines.draws_model, &state.scene) else { return Ok(None) };
         let model = scene.model();
         if model.visible(&self.session.settings.scene).is_some_and(|visible| !visible.contains(&true)) {
             return Ok(Some("all of its parts are hidden"));
+        }
+        if (0..model.instances.len()).all(|instance| !scene.is_visible(instance)) {
+            return Ok(Some("at this time, the file hides all of its parts (KHR_node_visibility)"));
         }
         let at = state.camera.clip_from_world() * model.bounds.center().extend(1.0);
         let is_in_view = at.w > 0.0 && at.x.abs().max(at.y.abs()) <= at.w;

@@ -24,12 +24,21 @@ pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light
     let mut lights: Vec<Light> = match settings.source {
         LightSource::None => return Vec::new(),
         LightSource::Orbit => settings.orbit.iter().map(|light| orbit(light, settings.spin * time_s, model)).collect(),
-        LightSource::Model => model.lights.iter().map(|light| punctual(light, settings.cutoff)).collect(),
+        LightSource::Model => of_model(model, settings.cutoff),
     };
     if settings.rect.enabled {
         lights.push(rectangle(&settings.rect, model));
     }
     lights
+}
+
+/// The lights of a model. Those that are hidden stay in their place, and are dark.
+fn of_model(model: &Model, cutoff: f32) -> Vec<Light> {
+    let light = |(index, light)| match model.pose.hidden.light(index) {
+        true => Light { intensity: [0.0; 3], ..punctual(light, cutoff) },
+        false => punctual(light, cutoff),
+    };
+    model.lights.iter().enumerate().map(light).collect()
 }
 
 /// The number of lights that [`lights`] returns for a model with `in_model` lights of its own.

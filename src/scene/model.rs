@@ -187,6 +187,8 @@ pub struct Node {
     pub light: Option<usize>,
     /// Index of its camera in `Model::cameras`.
     pub camera: Option<usize>,
+    /// Whether its meshes and lights are left out, since the file hides it or a node above it, and no clip shows it.
+    pub is_hidden: bool,
 }
 
 /// A primitive placed in the world.

@@ -59,7 +59,8 @@ impl Model {
     #[must_use]
     pub fn placed(&self, transform: Mat4) -> Self {
         let mut model = self.at(&[], &[], &Some(transform).into());
-        if model.pose.joints.is_empty() && model.pose.weights.is_empty() {
+        let pose = &model.pose;
+        if pose.joints.is_empty() && pose.weights.is_empty() && pose.hidden.is_empty() {
             model.bounds = model.instance_bounds();
         }
         model

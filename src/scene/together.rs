@@ -85,6 +85,7 @@ impl Offsets {
             Target::Translation(node) => Target::Translation(node + self.rig_nodes),
             Target::Rotation(node) => Target::Rotation(node + self.rig_nodes),
             Target::Scale(node) => Target::Scale(node + self.rig_nodes),
+            Target::Visible(node) => Target::Visible(node + self.rig_nodes),
             Target::Weights(first) => Target::Weights(first + self.weights),
             Target::Values(index, first) => Target::Values(index + self.values, first),
         }
@@ -152,6 +153,7 @@ impl Together {
             mesh: node.mesh.clone(),
             light: node.light.map(|light| light + offsets.lights),
             camera: node.camera.map(|camera| camera + offsets.cameras),
+            is_hidden: node.is_hidden,
         }));
     }
 
@@ -225,6 +227,7 @@ impl Together {
             rest: root,
             parent_from_node: root.matrix(),
             world_from_node: root.matrix(),
+            is_hidden: false,
             weights: self.weights.len()..self.weights.len(),
         });
         if model.motion.rig.nodes.is_empty() {
@@ -333,9 +336,15 @@ fn follow_root(rig: &mut Rig, root: usize, model: &Model) {
         let weights = rig.nodes[root].weights.clone();
         let rest = super::motion::Transform::from_matrix(root_from_node);
         let index = rig.nodes[root].index;
-        let node =
-            RigNode { index, parent: Some(root), rest, parent_from_node: root_from_node, world_from_node, weights };
-        rig.nodes.push(node);
+        rig.nodes.push(RigNode {
+            index,
+            parent: Some(root),
+            rest,
+            parent_from_node: root_from_node,
+            world_from_node,
+            is_hidden: false,
+            weights,
+        });
         rig.nodes.len() - 1
     };
     let lights: Vec<(usize, usize)> = (0..)

@@ -10,3 +10,4 @@ mod look;
 mod materials;
 mod textures;
 mod upload;
+mod visibility;

@@ -28,7 +28,7 @@ impl Geometry {
         let model = scene.model();
         let replacement = scene.replacement();
         let (mut positions, mut corners) = (Vec::new(), Vec::new());
-        for instance in scene.instances() {
+        for instance in scene.visible_instances() {
             let appearance = scene.appearance(instance, replacement.as_ref());
             if appearance.variant.class != PrimitiveClass::Triangles {
                 continue;

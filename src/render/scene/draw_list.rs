@@ -32,9 +32,11 @@ pub(crate) struct DrawList {
     commands: Mutex<Vec<(u32, Arc<Commands>)>>,
 }
 
-/// The lists of a scene. They depend on which draws a pose mirrors, and on nothing else of it.
+/// The lists of a scene. They depend on which draws a pose mirrors and hides, and on nothing else of it.
 pub(crate) struct DrawLists {
     pub(super) mirrored: Vec<bool>,
+    /// Whether each draw is left out; empty if none is.
+    pub(super) hidden: Vec<bool>,
     /// For commands that the device reads.
     buffers: Option<Arc<BufferPool>>,
     grouped: OnceLock<DrawList>,
@@ -55,14 +57,19 @@ impl Run {
 }
 
 impl DrawLists {
-    pub(super) fn new(mirrored: Vec<bool>, buffers: Option<Arc<BufferPool>>) -> Self {
-        Self { mirrored, buffers, grouped: OnceLock::new(), ordered: OnceLock::new() }
+    pub(super) fn new(mirrored: Vec<bool>, hidden: Vec<bool>, buffers: Option<Arc<BufferPool>>) -> Self {
+        Self { mirrored, hidden, buffers, grouped: OnceLock::new(), ordered: OnceLock::new() }
     }
 
     /// Whether two draws share all state.
     pub(super) fn share(&self, draws: &[GpuDraw], [a, b]: [u32; 2]) -> bool {
         let [a, b] = [a as usize, b as usize];
         self.mirrored[a] == self.mirrored[b] && draws[a].shares_state(&draws[b])
+    }
+
+    /// Whether a draw is left out.
+    pub(super) fn hides(&self, draw: u32) -> bool {
+        self.hidden.get(draw as usize) == Some(&true)
     }
 
     /// The draws in the order of the scene.
@@ -96,7 +103,7 @@ impl DrawLists {
 impl DrawList {
     fn new(draws: &[GpuDraw], lists: &DrawLists, order: impl IntoIterator<Item = u32>) -> Self {
         let (mut runs, mut list) = (Vec::new(), Vec::with_capacity(draws.len()));
-        for number in order {
+        for number in order.into_iter().filter(|number| !lists.hides(*number)) {
             let draw = &draws[number as usize];
             let shares = |other: u32| lists.share(draws, [other, number]);
             Run::add(&mut runs, number, draw.index_count, list.len() as u32, shares);

@@ -116,7 +116,7 @@ impl GpuModel {
             let draw = draw(&self.model, instance, &self.ranges[instance.primitive], addresses, &appearance, set);
             Some(GpuDraw { instance: index, ..draw })
         };
-        let draws = scene.numbered_instances().filter_map(draw).collect();
+        let draws = scene.wanted_instances().filter_map(draw).collect();
         let Self { vertices, indices, deformables, .. } = self;
         let (vertices, indices, deformables) = (vertices.clone(), indices.clone(), deformables.clone());
         Ok(Arc::new(GpuScene {
@@ -156,12 +156,12 @@ pub struct GpuScene {
 }
 
 impl GpuScene {
-    /// The lists of the draws, of which a pose mirrors some.
-    fn lists(&self, mirrored: Vec<bool>) -> Arc<DrawLists> {
+    /// The lists of the draws, of which a pose mirrors and hides some.
+    fn lists(&self, mirrored: Vec<bool>, hidden: Vec<bool>) -> Arc<DrawLists> {
         let mut lists = self.lists.lock().unwrap_or_else(PoisonError::into_inner);
         match &*lists {
-            Some(known) if known.mirrored == mirrored => known.clone(),
-            _ => lists.insert(Arc::new(DrawLists::new(mirrored, self.buffers.clone()))).clone(),
+            Some(known) if known.mirrored == mirrored && known.hidden == hidden => known.clone(),
+            _ => lists.insert(Arc::new(DrawLists::new(mirrored, hidden, self.buffers.clone()))).clone(),
         }
     }
 }

@@ -103,7 +103,12 @@ impl PlacedScene {
         let placements: Vec<Placement> = draws.map(|draw| posed.placement(scene, draw, address)).collect();
         let mut spheres = Spheres::with_capacity(placements.len());
         placements.iter().for_each(|placement| spheres.push(placement.center_ws, placement.radius));
-        let lists = scene.lists(placements.iter().map(|placement| placement.is_mirrored).collect());
+        let hides = &posed.model.pose.hidden;
+        let hidden = match hides.is_empty() {
+            true => Vec::new(),
+            false => scene.draws.iter().map(|draw| hides.instance(draw.instance)).collect(),
+        };
+        let lists = scene.lists(placements.iter().map(|placement| placement.is_mirrored).collect(), hidden);
         let pushes: Vec<Draw> = placements.into_iter().map(|placement| placement.push).collect();
         let order = Mutex::new((0..pushes.len() as u32).collect());
         Self { scene: scene.clone(), posed, before: None, pushes, spheres, lists, records: None, order }
@@ -175,9 +180,10 @@ impl PlacedScene {
         &self.lists
     }
 
-    /// All draws, and what their stages read.
+    /// All draws that the pose does not hide, and what their stages read.
     pub(crate) fn draws(&self) -> impl Iterator<Item = (&GpuDraw, &Draw)> {
-        self.scene.draws.iter().zip(&self.pushes)
+        let numbered = (0..).zip(self.scene.draws.iter().zip(&self.pushes));
+        numbered.filter(|(number, _)| !self.lists.hides(*number)).map(|(_, draw)| draw)
     }
 
     pub(super) fn spheres(&self) -> &Spheres {

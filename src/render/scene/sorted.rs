@@ -73,6 +73,7 @@ impl PlacedScene {
                 scratch.beyond.resize(scratch.distances.len(), false);
             }
         }
+        scratch.beyond.iter_mut().zip(&self.lists().hidden).for_each(|(beyond, is_hidden)| *beyond |= is_hidden);
         let commands = std::mem::take(&mut scratch.commands);
         let mut sorted = SortedDraws { commands, ..SortedDraws::default() };
         sorted.commands.clear();

@@ -35,7 +35,7 @@ use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
 use self::motion::raw::Raw;
-use self::motion::{animations, skins};
+use self::motion::{animations, pointers, skins};
 use super::background;
 use super::error::Problem;
 use super::load_options::{Caller, Canceled, LoadOptions, TakeEarly};
@@ -89,7 +89,7 @@ fn build(
     warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
     let reader = Reader { root: &root, buffers: &buffers };
     let environment = environment::read(&root, &buffers, &mut files, scene, &mut warnings);
-    let mut scene = nodes::walk(&root, scene)?;
+    let mut scene = nodes::walk(&root, scene, &pointers::switched_nodes(&raw.animations))?;
     let weights = skins::attach(reader, &raw, &mut scene)?;
     let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut scene.warnings);
     scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;

@@ -62,8 +62,9 @@ struct Hierarchy {
     parents: Vec<usize>,
 }
 
-/// Walks the chosen scene, or else the default scene, or the first scene, or all nodes without a parent.
-pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> {
+/// Walks the chosen scene, or else the default scene, or the first scene, or all nodes without a parent. Meshes and lights of hidden nodes are left
+/// out, unless a clip may show them: `switched` are the nodes whose visibility clips change. Cameras are never hidden.
+pub fn walk(root: &json::Root, chosen: Option<usize>, switched: &HashSet<usize>) -> Result<Scene, Problem> {
     let mut scene = Scene::default();
     let hierarchy = Hierarchy::new(root, &mut scene.warnings)?;
     let chosen = chosen.and_then(|index| root.scenes.get(index));
@@ -75,15 +76,15 @@ pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> 
         (_, None) => hierarchy.tops(),
     };
     // An explicit stack, since files may nest deeper than the thread's stack allows.
-    let root_of = |node| (node, None, DMat4::IDENTITY);
-    let mut stack: Vec<(usize, Option<usize>, DMat4)> = start.into_iter().rev().map(root_of).collect();
+    let root_of = |node| (node, None, DMat4::IDENTITY, false);
+    let mut stack: Vec<(usize, Option<usize>, DMat4, bool)> = start.into_iter().rev().map(root_of).collect();
     let mut hidden = 0;
-    while let Some((index, parent, world_from_parent)) = stack.pop() {
+    while let Some((index, parent, world_from_parent, is_below_hidden)) = stack.pop() {
         let node = &root.nodes[index];
-        if is_hidden(node) {
-            hidden += 1;
-            continue;
-        }
+        let hides = is_hidden(node);
+        let is_first = hides && !is_below_hidden && !switched.contains(&index);
+        let is_hidden = is_below_hidden || is_first;
+        hidden += usize::from(is_first);
         let place = place("nodes", index, node.name.as_deref());
         let (rest, parent_from_node) = local_transform(node, &place, &mut scene.warnings)?;
         let world_from_object = world_from_parent * parent_from_node;
@@ -91,7 +92,8 @@ pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> 
             return Err(Problem::invalid(place, "a finite world transform", "one that overflows"));
         }
         let at = scene.nodes.len();
-        scene.nodes.push(Node { index, name: node.name.clone().unwrap_or_default(), parent, ..Node::default() });
+        let name = node.name.clone().unwrap_or_default();
+        scene.nodes.push(Node { index, name, parent, is_hidden, ..Node::default() });
         let weights = 0..0;
         scene.rig.nodes.push(RigNode {
             index,
@@ -99,11 +101,12 @@ pub fn walk(root: &json::Root, chosen: Option<usize>) -> Result<Scene, Problem> 
             rest,
             parent_from_node,
             world_from_node: world_from_object,
+            is_hidden: hides,
             weights,
         });
         scene.add(root, node, (index, at), &world_from_object, &place)?;
         let children = hierarchy.children[index].iter().rev();
-        stack.extend(children.map(|child| (*child, Some(at), world_from_object)));
+        stack.extend(children.map(|child| (*child, Some(at), world_from_object, is_hidden)));
     }
     if hidden > 0 {
         scene.warnings.push(format!("{VISIBILITY} hides {hidden} nodes with all below them: they are not shown."));
@@ -259,7 +262,8 @@ impl Scene {
         place: &str,
     ) -> Result<(), Problem> {
         let name: Arc<str> = node.name.as_deref().unwrap_or_default().into();
-        if let Some(mesh) = node.mesh {
+        let is_shown = !self.last_node().is_hidden;
+        if let Some(mesh) = node.mesh.filter(|_| is_shown) {
             let named = get(&root.meshes, mesh, place, "meshes")?.name.clone().unwrap_or_default();
             self.last_node().mesh = Some(named);
             self.meshes.push(PlacedMesh {
@@ -283,7 +287,8 @@ impl Scene {
             self.cameras.push((camera, world.w_axis.truncate()));
             self.rig.cameras.push((at, source));
         }
-        if let Some(light) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
+        let extensions = node.extensions.as_ref().filter(|_| is_shown);
+        if let Some(light) = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
             let lights: &[punctual::Light] = root.as_ref();
             let source = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
             let light_index = light.light.value();

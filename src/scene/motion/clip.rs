@@ -1,5 +1,6 @@
 //! Clips: animations of a file, and what they move.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::curve::Curve;
@@ -16,6 +17,17 @@ pub struct Clip {
     pub duration_s: f32,
     /// Where the model is while it plays.
     pub extent: Extent,
+}
+
+impl Clip {
+    /// How many nodes it shows and hides.
+    pub fn switched_nodes(&self) -> usize {
+        let node = |channel: &Channel| match channel.target {
+            Target::Visible(node) => Some(node),
+            _ => None,
+        };
+        self.channels.iter().filter_map(node).collect::<BTreeSet<usize>>().len()
+    }
 }
 
 /// A curve, and what follows it.
@@ -36,6 +48,8 @@ pub enum Target {
     Rotation(usize),
     /// Scale of a node.
     Scale(usize),
+    /// Whether a node is visible: another value than 0 shows it, as far as the nodes above it are visible.
+    Visible(usize),
     /// Weights of morph targets: as many as the curve has, from this index into `Pose::weights` on.
     Weights(usize),
     /// Numbers of an entry of `Motion::values`, from the given one on.

@@ -49,6 +49,16 @@ impl Curve {
         self.width
     }
 
+    /// How values between two keys follow from theirs.
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// Whether a key has another number than 0.
+    pub fn is_ever_nonzero(&self) -> bool {
+        self.values.iter().any(|number| *number != 0.0)
+    }
+
     /// Number of keys.
     pub fn keys(&self) -> usize {
         self.times.len()

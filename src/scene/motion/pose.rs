@@ -3,6 +3,7 @@
 use glam::Mat4;
 
 use super::clip::Clip;
+use super::hidden::Hidden;
 use super::property::Values;
 use super::rig::Rig;
 use crate::scene::objects::{Camera, Light};
@@ -48,6 +49,8 @@ pub struct Pose {
     pub cameras: Vec<Camera>,
     /// `Motion::values`, as they are at the moment.
     pub values: Vec<Values>,
+    /// What is not shown.
+    pub hidden: Hidden,
 }
 
 impl Pose {

@@ -36,6 +36,8 @@ pub struct RigNode {
     pub parent_from_node: DMat4,
     /// World from node in the file's own pose; finite.
     pub world_from_node: DMat4,
+    /// Whether the file hides it, and so all below it (KHR_node_visibility), until a clip shows it.
+    pub is_hidden: bool,
     /// Its morph weights in `Pose::weights`.
     pub weights: Range<usize>,
 }
@@ -63,6 +65,11 @@ pub struct Placement {
 }
 
 impl Rig {
+    /// Whether the file hides each node itself.
+    pub fn hidden_nodes(&self) -> Vec<bool> {
+        self.nodes.iter().map(|node| node.is_hidden).collect()
+    }
+
     /// The lights of the model that are this one of the file.
     pub fn lights_of(&self, index: usize) -> impl Iterator<Item = usize> {
         (0..).zip(&self.lights).filter(move |(_, (_, source))| *source == index).map(|(light, _)| light)

@@ -5,9 +5,10 @@ use std::collections::HashSet;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::pose::SWITCHES;
 use crate::scene::members::Places;
 use crate::scene::model::{Bounds, Model, Primitive};
-use crate::scene::motion::{Extent, Playing, Pose};
+use crate::scene::motion::{Extent, Hidden, Playing, Pose, Target};
 use crate::scene::outline::{MOST_INSTANCES, hull, used_vertices};
 
 /// Moments of a clip that are looked at.
@@ -30,7 +31,9 @@ enum Points {
 impl Extent {
     /// The extent of a model in its own pose.
     pub fn at_rest(model: &Model) -> Self {
-        Self::during(model, &points(model, MOST_VERTICES), &[model.rest_pose()])
+        let pose = model.rest_pose();
+        let hidden = pose.hidden.clone();
+        Self::during(model, &points(model, MOST_VERTICES), &[pose], &hidden)
     }
 
     /// The extent of a model while a clip plays.
@@ -62,12 +65,15 @@ impl Extent {
             model.pose_with(&playing.iter().map(at).collect::<Vec<_>>(), held, places)
         };
         let poses: Vec<Pose> = (0..moments).into_par_iter().map(pose).collect();
-        Self::during(model, &points(model, most / moments), &poses)
+        Self::during(model, &points(model, most / moments), &poses, &hidden_throughout(model, playing))
     }
 
-    fn during(model: &Model, points: &[Points], poses: &[Pose]) -> Self {
+    /// The extent in these poses of all but what is hidden; of all if everything is hidden.
+    fn during(model: &Model, points: &[Points], poses: &[Pose], hidden: &Hidden) -> Self {
+        let has_some = (0..model.instances.len()).any(|instance| !hidden.instance(instance));
+        let hidden = if has_some { hidden } else { &Hidden::default() };
         let moment = |pose: &Pose| {
-            let placed = placed(model, points, pose);
+            let placed = placed(model, points, pose, hidden);
             let mut bounds = Bounds::default();
             placed.iter().for_each(|point| bounds.include(*point));
             Self { bounds, outline: hull(&placed).into() }
@@ -76,6 +82,20 @@ impl Extent {
         let all = Self::of_all(&moments.iter().collect::<Vec<_>>());
         Self { outline: hull(&all.outline).into(), ..all }
     }
+}
+
+/// What is hidden during the whole of these clips. A node counts as shown also if it and a node above it are visible at different times only.
+fn hidden_throughout(model: &Model, playing: &[Playing]) -> Hidden {
+    let rig = &model.motion.rig;
+    let mut nodes = rig.hidden_nodes();
+    for Playing { clip, .. } in playing.iter().filter(|playing| playing.weight >= SWITCHES) {
+        for channel in &model.motion.clips[*clip].channels {
+            if let Target::Visible(at) = channel.target {
+                nodes[at] = !channel.curve.is_ever_nonzero();
+            }
+        }
+    }
+    Hidden::new(rig, nodes)
 }
 
 /// Vertices of all instances that joints or morph targets move.
@@ -101,10 +121,13 @@ fn points(model: &Model, most: usize) -> Vec<Points> {
     model.primitives.par_iter().enumerate().map(of).collect()
 }
 
-/// World positions of the points of all instances in a pose.
-fn placed(model: &Model, points: &[Points], pose: &Pose) -> Vec<Vec3> {
+/// World positions of the points of all instances in a pose, but those that are hidden.
+fn placed(model: &Model, points: &[Points], pose: &Pose, hidden: &Hidden) -> Vec<Vec3> {
     let mut placed = Vec::new();
-    for (instance, world) in model.instances.iter().zip(&pose.instances) {
+    for (index, (instance, world)) in model.instances.iter().zip(&pose.instances).enumerate() {
+        if hidden.instance(index) {
+            continue;
+        }
         let primitive = &model.primitives[instance.primitive];
         match (&points[instance.primitive], &primitive.deformation) {
             (Points::Deformed(indices), Some(deformation)) => {

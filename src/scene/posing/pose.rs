@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3, Mat4};
 use super::values::{move_camera, move_light};
 use crate::scene::members::Places;
 use crate::scene::model::{Camera, Instance, Light, Model};
-use crate::scene::motion::{Channel, Extent, Playing, Pose, Rig, Skin, Target, Transform, Values, slerp};
+use crate::scene::motion::{Channel, Extent, Hidden, Playing, Pose, Rig, Skin, Target, Transform, Values, slerp};
 
 /// The nodes at one moment.
 struct Nodes {
@@ -64,13 +64,14 @@ impl Model {
             nodes: vec![None; rig.nodes.len()],
             weights: self.pose.weights.clone(),
             values: self.motion.values.clone(),
+            hidden: rig.hidden_nodes(),
         };
         for Playing { clip, weight, time_s } in playing {
             let channels = self.motion.clips.get(*clip).into_iter().flat_map(|clip| &clip.channels);
             channels.for_each(|channel| moved.apply(channel, f64::from(*weight), *time_s, rig));
         }
         places.roots.iter().for_each(|(root, transform)| moved.nodes[*root] = Some(*transform));
-        let Moved { nodes, mut weights, values } = moved;
+        let Moved { nodes, mut weights, values, hidden } = moved;
         held.iter().for_each(|(index, weight)| weights[*index] = *weight);
         let nodes = Nodes::new(rig, &nodes);
         let transform = place.unwrap_or(Mat4::IDENTITY);
@@ -119,6 +120,7 @@ impl Model {
             lights: self.lights.iter().enumerate().map(light).collect(),
             cameras: self.cameras.iter().enumerate().map(camera).collect(),
             values,
+            hidden: Hidden::new(rig, hidden),
         }
     }
 
@@ -159,13 +161,18 @@ impl Model {
     }
 }
 
-/// The nodes, weights and values as the clips so far have moved them.
+/// The nodes, weights, values and visibilities as the clips so far have moved them.
 struct Moved {
     /// The transforms of the nodes of the rig that are not as they are in the file.
     nodes: Vec<Option<Transform>>,
     weights: Vec<f32>,
     values: Vec<Values>,
+    /// Whether each node of the rig hides itself.
+    hidden: Vec<bool>,
 }
+
+/// The weight from which on a clip shows and hides nodes.
+pub(super) const SWITCHES: f32 = 0.5;
 
 impl Moved {
     /// Moves what a channel moves.
@@ -189,6 +196,8 @@ impl Moved {
                 let mix = |from| if weight == 1.0 { to } else { slerp(from, to, weight) };
                 node(at, &|transform| transform.rotation = mix(transform.rotation));
             }
+            Target::Visible(at) if weight >= f64::from(SWITCHES) => self.hidden[at] = curve.numbers(time_s) == [0.0],
+            Target::Visible(_) => {}
             Target::Weights(first) => {
                 for (number, to) in self.weights[first..].iter_mut().zip(curve.numbers(time_s)) {
                     *number += ((to - f64::from(*number)) * weight) as f32;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::scene::model::Model;
-use crate::scene::motion::Extent;
+use crate::scene::motion::{Extent, Hidden};
 use crate::scene::outline::outline;
 
 impl Model {
@@ -12,7 +12,8 @@ impl Model {
     pub fn settled(mut self) -> Self {
         let is_deformed =
             self.instances.iter().any(|instance| instance.first_joint.or(instance.first_weight).is_some());
-        let extent = if is_deformed {
+        let rig = &self.motion.rig;
+        let extent = if is_deformed || !Hidden::new(rig, rig.hidden_nodes()).is_empty() {
             Extent::at_rest(&self)
         } else {
             Extent { bounds: self.instance_bounds(), outline: outline(&self).into() }

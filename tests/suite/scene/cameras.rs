@@ -153,4 +153,6 @@ fn a_picture_without_the_model_says_why() {
     let lost = format!("{hook}\n    vertex.position *= sqrt(-1.0 - abs(vertex.position.x));");
     tree.write("user/vertex.glsl", &tree.edited("user/vertex.glsl", hook, &lost));
     render(&[]).expect(0, &[note, "make them NaN (`user_vertex`)"]);
+    // Also before a color.
+    render(&["--background", "#1b1d21"]).expect(0, &[note, "make them NaN (`user_vertex`)"]);
 }

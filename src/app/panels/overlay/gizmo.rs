@@ -171,7 +171,8 @@ pub(super) fn show(egui: &egui::Context, state: &State, gizmo: &mut Gizmo, rect:
         shown.push(LightId::Rectangle);
     }
     let mut chosen = None;
-    for index in marks(lights.source, model.lights.len(), selected) {
+    let marks = marks(lights.source, model.lights.len(), selected);
+    for index in marks.into_iter().filter(|index| !model.pose.hidden.light(*index)) {
         let (light, of) = (&model.lights[index], LightId::Model(index));
         if mark(egui, &painter, &frame, light, of, of == selected) {
             chosen = Some(of);

@@ -149,6 +149,7 @@ impl Clips<'_> {
             (None, None) => Ok(Vec::new()),
             (Some(pointer), _) => match pointers::resolve(pointer, self.reader.root, self.rig) {
                 Some(Pointed::Nodes(nodes, path)) => self.nodes(sampler, (&nodes, &path), place),
+                Some(Pointed::Visible(node)) => self.visible(sampler, node, place),
                 Some(Pointed::Weight(nodes, target)) => self.weight(sampler, (&nodes, target), place),
                 Some(Pointed::Values(values, first, width)) => {
                     let curve = self.curve(sampler, width, place)?;
@@ -190,6 +191,17 @@ impl Clips<'_> {
             channels.push(Channel { target, curve: self.curve(sampler, width, place)? });
         }
         Ok(channels)
+    }
+
+    /// The channels of the visibility of a node of the file.
+    fn visible(&mut self, sampler: (&RawAnimation, usize), node: usize, place: &str) -> Result<Vec<Channel>, Problem> {
+        let nodes = self.shown(&[node], place)?;
+        let curve = self.curve(sampler, 1, place)?;
+        if curve.interpolation() != Interpolation::Step {
+            let found = format!("{:?}", curve.interpolation()).to_uppercase();
+            return Err(Problem::invalid(place, "the interpolation STEP, since a node is visible or not", found));
+        }
+        Ok(nodes.into_iter().map(|at| Channel { target: Target::Visible(at), curve: curve.clone() }).collect())
     }
 
     /// The channels of one morph weight of nodes of the file.

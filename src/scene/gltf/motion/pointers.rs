@@ -1,5 +1,7 @@
 //! Resolves the pointers of KHR_animation_pointer to what the model has.
 
+use std::collections::HashSet;
+
 use gltf::json;
 use serde_json::Value;
 
@@ -10,10 +12,15 @@ use crate::settings::Factor;
 /// The extension's name.
 pub const EXTENSION: &str = "KHR_animation_pointer";
 
+/// The place of the visibility of a node, below the node.
+const VISIBLE: &str = "extensions/KHR_node_visibility/visible";
+
 /// The property that a pointer names.
 pub enum Pointed {
     /// A property of a node, as the `path` of a channel names it; or of all nodes that show a mesh, if these have no weights of their own.
     Nodes(Vec<usize>, String),
+    /// Whether a node is visible.
+    Visible(usize),
     /// One morph weight of such nodes.
     Weight(Vec<usize>, usize),
     /// Numbers of properties, from the given one on, and how many.
@@ -126,6 +133,17 @@ const TEXTURES: &[(&str, u32)] = &[
 const TRANSFORM: &[(&str, usize, &[f64])] =
     &[("offset", 0, &[0.0; 2]), ("rotation", 2, &[0.0]), ("scale", 3, &[1.0; 2])];
 
+/// The nodes whose visibility animations change.
+pub fn switched_nodes(animations: &[Value]) -> HashSet<usize> {
+    let at = format!("/target/extensions/{EXTENSION}/pointer");
+    let channels = animations.iter().filter_map(|animation| animation.get("channels")?.as_array()).flatten();
+    let node = |channel: &Value| {
+        let (node, path) = channel.pointer(&at)?.as_str()?.strip_prefix("/nodes/")?.split_once('/')?;
+        node.parse().ok().filter(|_| path == VISIBLE)
+    };
+    channels.filter_map(node).collect()
+}
+
 /// Resolves a pointer; `None` if the model has no such thing.
 pub fn resolve(pointer: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
     let (kind, rest) = pointer.strip_prefix('/')?.split_once('/')?;
@@ -138,6 +156,7 @@ pub fn resolve(pointer: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
     };
     let index: usize = index.parse().ok()?;
     match kind {
+        "nodes" if path == VISIBLE => Some(Pointed::Visible(index)),
         "nodes" => nodes(vec![index], path),
         "meshes" => {
             let shows =

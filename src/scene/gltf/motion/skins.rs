@@ -153,7 +153,15 @@ impl Nodes {
             if !world_from_node.as_mat4().is_finite() {
                 return Err(Problem::invalid(place, "a finite world transform", "one that overflows"));
             }
-            rig.nodes.push(RigNode { index, parent: at, rest, parent_from_node, world_from_node, weights: 0..0 });
+            rig.nodes.push(RigNode {
+                index,
+                parent: at,
+                rest,
+                parent_from_node,
+                world_from_node,
+                is_hidden: false,
+                weights: 0..0,
+            });
             at = Some(rig.nodes.len() - 1);
             self.known.insert(index, rig.nodes.len() - 1);
         }

@@ -14,6 +14,7 @@ mod nodes;
 mod opened;
 mod placeholders;
 mod together;
+mod visibility;
 
 use serde_json::{Value, json};
 

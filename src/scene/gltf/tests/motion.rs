@@ -67,7 +67,7 @@ fn at(model: &Model, time_s: f64) -> Model {
 }
 
 /// Adds an animation with a channel for each target, all with these times.
-fn animate(builder: &mut Builder, times: &[f32], channels: &[(Value, &str, &str, &[f32])]) {
+pub(super) fn animate(builder: &mut Builder, times: &[f32], channels: &[(Value, &str, &str, &[f32])]) {
     let input = builder.accessor("SCALAR", F32, times.len(), bytemuck::cast_slice(times));
     let mut animation = json!({ "name": "clip", "samplers": [], "channels": [] });
     for (number, (target, interpolation, kind, values)) in channels.iter().enumerate() {
