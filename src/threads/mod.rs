@@ -30,6 +30,8 @@
 //!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
 //!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
 //!   the file dialog.
+//! - **The panel Scene** has a thread make the rows of a model with many nodes (`later.rs`), and says that they are coming until it asks and they are
+//!   there.
 //! - **Watchers** only send paths, under the names that they were given.
 //!
 //! All results are messages, which wake the window; so are the requests of screen readers, which AccessKit's thread
@@ -40,6 +42,7 @@ pub(crate) mod baker;
 pub(crate) mod checker;
 pub(crate) mod finder;
 mod gate;
+pub(crate) mod later;
 pub(crate) mod loader;
 pub(crate) mod measurer;
 mod message;

@@ -3,7 +3,7 @@
 
 use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
-use super::scene::tree::textures;
+use super::scene::rows::textures;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};

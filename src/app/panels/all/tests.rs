@@ -12,7 +12,7 @@ use crate::app::gallery::Thumbnails;
 use crate::app::readings::Readings;
 use crate::app::state::State;
 use crate::render::BakeReport;
-use crate::scene::built_in;
+use crate::scene::{self, built_in};
 use crate::settings::Settings;
 use crate::shader::{Diagnostic, ShaderSet, Source};
 
@@ -241,4 +241,27 @@ fn the_palette_asks_for_a_number() {
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     assert!(!harness.state().panels.palette.is_open(), "Escape closes the palette, whose list would take all keys");
+}
+
+#[test]
+fn the_panel_scene_says_that_a_large_model_is_being_listed() {
+    let mut harness = window();
+    let mut model = built_in("shader-ball").unwrap().unwrap();
+    let first = model.nodes.iter().map(|node| node.index + 1).max().unwrap();
+    let node = |index| scene::Node { index, name: format!("part {index}"), ..scene::Node::default() };
+    let nodes = model.nodes.iter().cloned().chain((first..).map(node)).take(100_000);
+    model.nodes = nodes.collect::<Vec<_>>().into();
+    let state = harness.state_mut();
+    state.state.session.set_model(&Arc::new(model));
+    state.panels.layout.open(Panel("Scene"));
+    harness.run_steps(1);
+    let listing = "Listing 100,000 nodes…";
+    assert!(texts(&harness).contains_key(listing), "{:?}", texts(&harness));
+    while texts(&harness).contains_key(listing) {
+        harness.run_steps(1);
+    }
+    harness.run_steps(2);
+    let after = texts(&harness);
+    assert!(after.keys().any(|text| text.contains("Nodes 100000")), "{after:?}");
+    assert!(asked(&mut harness).is_empty());
 }

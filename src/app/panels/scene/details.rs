@@ -3,8 +3,8 @@
 use egui::{Button, Label, RichText, Ui};
 
 use super::material;
+use super::rows::kind;
 use super::title::title;
-use super::tree::kind;
 use crate::app::command::camera::LOOK_THROUGH;
 use crate::app::command::layout::OPEN_PANEL;
 use crate::app::command::scene::{HIDE, ISOLATE, SELECT};

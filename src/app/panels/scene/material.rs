@@ -2,8 +2,8 @@
 
 use egui::{Button, RichText, Ui};
 
+use super::rows::textures;
 use super::title::title;
-use super::tree::textures;
 use crate::app::command::layout::OPEN_PANEL;
 use crate::app::command::scene::SELECT;
 use crate::app::command::spec::Command;

@@ -3,8 +3,11 @@
 mod details;
 pub(super) mod material;
 mod row;
+pub(super) mod rows;
 mod title;
-pub(super) mod tree;
+mod tree;
+
+use std::time::Duration;
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -19,9 +22,10 @@ use crate::app::state::arrangement::Panel;
 use crate::app::state::selection::Selected;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::QUIET;
+use crate::app::widgets::theme::{ERROR, QUIET};
 use crate::frame::Scene;
-use tree::Tree;
+use rows::with_commas;
+use tree::{Listed, Tree};
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -31,6 +35,9 @@ pub(super) static PANEL: PanelSpec =
 
 /// Height of the part about the selection at first, points.
 const DETAILS: f32 = 300.0;
+
+/// Time between two looks whether the rows are there.
+const POLL: Duration = Duration::from_millis(16);
 
 /// State of the panel between frames.
 #[derive(Default)]
@@ -74,11 +81,24 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
             commands.push(SHOW_ALL.with(()));
         }
     });
+    match own.tree.list(scene.loaded()) {
+        Listed::Ready => {}
+        Listed::Coming => {
+            let nodes = with_commas(scene.loaded().nodes.len());
+            ui.label(RichText::new(format!("Listing {nodes} nodes…")).color(QUIET));
+            return ui.ctx().request_repaint_after(POLL);
+        }
+        Listed::Failed(why) => {
+            let text = format!("Specula could not list the parts of this model. This is a bug: {why}");
+            ui.label(RichText::new(text).color(ERROR));
+            return;
+        }
+    }
     if own.follows {
         own.tree.reveal(scene, selected);
     }
     own.tree.update(scene, &own.search);
-    let rows = own.tree.rows().len();
+    let rows = own.tree.len();
     if rows == 0 {
         Words::new(&own.search).no_match(ui, "part of the scene");
         return;
@@ -98,7 +118,8 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
         for at in range {
             let Some(row) = own.tree.row(at) else { continue };
             let shown = row::RowState {
-                is_drawn: row.item.is_none_or(|item| own.tree.is_drawn(item)),
+                is_wanted: row.item.is_none_or(|item| own.tree.is_wanted(item)),
+                is_visible: row.item.is_none_or(|item| own.tree.is_visible(item)),
                 is_selected: row.item.is_some() && row.item == chosen_part,
                 is_found: !own.search.is_empty(),
             };

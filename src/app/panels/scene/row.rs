@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
-use super::tree::TreeRow;
+use super::rows::TreeRow;
 use crate::app::state::selection::Selected;
 use crate::app::widgets::elide;
 use crate::app::widgets::spoken;
@@ -26,7 +26,10 @@ pub(super) enum Action {
 
 /// How a row is shown.
 pub(super) struct RowState {
-    pub(super) is_drawn: bool,
+    /// Whether the settings let it be drawn.
+    pub(super) is_wanted: bool,
+    /// Whether it is drawn: the file and its clips hide nodes, too.
+    pub(super) is_visible: bool,
     pub(super) is_selected: bool,
     /// Whether it is a search result, which is shown without a level.
     pub(super) is_found: bool,
@@ -34,7 +37,7 @@ pub(super) struct RowState {
 
 /// Shows a row.
 pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Action> {
-    let RowState { is_drawn, is_selected, is_found } = *state;
+    let RowState { is_wanted, is_visible, is_selected, is_found } = *state;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let label = format!("{} {}", row.name, row.detail);
     response.widget_info(|| {
@@ -60,17 +63,17 @@ pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Actio
         right -= SWITCH;
         let place = Rect::from_min_max(pos2(right, rect.top()), rect.right_bottom());
         let switch = ui.interact(place, response.id.with("shown"), Sense::click());
-        dot(ui.painter(), place.center(), is_drawn, &switch, quiet);
+        dot(ui.painter(), place.center(), is_wanted, &switch, quiet);
         let text =
-            if is_drawn { "Hide it (Ctrl+H hides the selection)" } else { "Draw it again (Alt+H draws everything)" };
-        spoken::button(&switch, &format!("{} {}", if is_drawn { "Hide" } else { "Draw" }, row.name));
+            if is_wanted { "Hide it (Ctrl+H hides the selection)" } else { "Draw it again (Alt+H draws everything)" };
+        spoken::button(&switch, &format!("{} {}", if is_wanted { "Hide" } else { "Draw" }, row.name));
         if switch.on_hover_text(text).clicked() {
-            action = Some(Action::Show(key.clone(), !is_drawn));
+            action = Some(Action::Show(key.clone(), !is_wanted));
         }
     }
     let painter = ui.painter();
     let detail = painter.text(pos2(right, middle), Align2::RIGHT_CENTER, &row.detail, small, quiet);
-    let color = match (row.item, is_drawn, is_selected) {
+    let color = match (row.item, is_visible, is_selected) {
         (None, ..) => QUIET.color(),
         (_, false, _) => QUIET.color(),
         (.., true) => STRONG.color(),
@@ -84,7 +87,7 @@ pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Actio
         return action;
     }
     let (clicked, double, at) = (response.clicked(), response.double_clicked(), response.interact_pointer_pos());
-    response.on_hover_text(hover(row));
+    response.on_hover_text(hover(row, is_wanted && !is_visible));
     let folds = row.is_folded.is_some() && at.is_some_and(|at| row.item.is_none() || at.x < x);
     match row.item {
         _ if clicked && folds => Some(Action::Toggle),
@@ -94,8 +97,8 @@ pub(super) fn show(ui: &mut Ui, row: &TreeRow, state: &RowState) -> Option<Actio
     }
 }
 
-/// The hover text of a row.
-fn hover(row: &TreeRow) -> String {
+/// The hover text of a row. `is_hidden`: the file or a clip hides the part.
+fn hover(row: &TreeRow, is_hidden: bool) -> String {
     let about = match row.item {
         None => "Click to fold or unfold",
         Some(Selected::Camera(_)) => "Click to look through this camera; R frames the model again",
@@ -103,7 +106,8 @@ fn hover(row: &TreeRow) -> String {
         Some(Selected::Light(_)) => "Click to see its handle in the picture",
         _ => "Click to select; / isolates it",
     };
-    format!("{}\n{about}", row.name)
+    let hidden = if is_hidden { "\nNot drawn now: the file or a clip hides it (KHR_node_visibility)" } else { "" };
+    format!("{}\n{about}{hidden}", row.name)
 }
 
 fn arrow(painter: &egui::Painter, at: Pos2, is_folded: bool) {

@@ -1,100 +1,156 @@
-//! The rows of the tree: nodes with their primitives, materials, textures, cameras and lights.
+//! The tree: which rows of the model are shown, and which of them are drawn.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::app::state::selection::{LightId, Selected, name_or};
-use crate::app::widgets::plural;
+use super::rows::{Group, Listing, TreeRow};
+use crate::app::state::selection::{LightId, Selected};
 use crate::app::widgets::search::Words;
 use crate::frame::Scene;
-use crate::scene::{Instance, LightKind, Model, TextureSource};
+use crate::scene::Model;
+use crate::threads::later::Later;
 
-/// A list of parts of one kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Group {
-    Nodes,
-    Materials,
-    Textures,
-    Cameras,
-    Lights,
-}
-
-/// A row of the tree.
-#[derive(Clone, Debug)]
-pub(super) struct TreeRow {
-    pub(super) depth: usize,
-    pub(super) name: String,
-    /// Counts and sizes, at the right.
-    pub(super) detail: String,
-    /// Item that the row selects; `None` for the title of a group.
-    pub(super) item: Option<Selected>,
-    group: Group,
-    /// Whether rows below it can be folded away; `Some(true)` if they are.
-    pub(super) is_folded: Option<bool>,
-    /// The name by which settings hide it.
-    pub(super) key: Option<String>,
-}
+/// Most nodes, instances and materials of a model whose rows are made within a frame: a row takes some microseconds.
+const AT_ONCE: usize = 500;
 
 /// The rows that are shown, and which are folded.
 #[derive(Default)]
 pub(super) struct Tree {
     folded: HashSet<(Group, Option<Selected>)>,
-    /// All rows of the model, of which a large one has many.
-    all: Vec<TreeRow>,
-    /// Those that are shown, as indices.
+    /// All rows, of this model or of one that shares its parts.
+    listing: Option<Listing>,
+    /// The rows that a thread makes of a model, or why it could not.
+    coming: Option<(Arc<Model>, Result<Later<Listing>, String>)>,
+    /// The rows that are shown, as indices.
     shown: Vec<usize>,
-    /// The scene of the last frame, and whether each of its nodes, or something below it, is drawn.
-    drawn: Option<(Scene, Vec<bool>)>,
+    drawn: Option<Drawn>,
     /// Whether folding has changed since the shown rows were chosen.
     is_changed: bool,
     /// Inputs of the shown rows: the model and the search text.
     made_of: Option<(Arc<Model>, String)>,
-    /// The part that stands for each instance of the model.
-    parts: Option<(Arc<Model>, Vec<Selected>)>,
+}
+
+/// Whether the rows of a model are there.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Listed {
+    Ready,
+    /// A thread makes them.
+    Coming,
+    Failed(String),
+}
+
+/// What is drawn of the scene of the last frame.
+struct Drawn {
+    scene: Scene,
+    /// Whether the settings let each node, or something below it, be drawn.
+    wanted: Vec<bool>,
+    /// Whether it is drawn: the file and its clips hide nodes, too.
+    visible: Vec<bool>,
+}
+
+impl Drawn {
+    fn new(scene: &Scene, listing: &Listing) -> Self {
+        let of = |is: fn(&Scene, usize) -> bool| listing.drawn_nodes(|instance| is(scene, instance));
+        Self { scene: scene.clone(), wanted: of(Scene::is_wanted), visible: of(Scene::is_visible) }
+    }
+
+    fn is_of(&self, scene: &Scene) -> bool {
+        self.scene.has_same_draws(scene) && self.scene.pose().hidden == scene.pose().hidden
+    }
 }
 
 impl Tree {
-    /// The rows that are shown.
-    pub(super) fn rows(&self) -> impl ExactSizeIterator<Item = &TreeRow> {
-        self.shown.iter().map(|index| &self.all[*index])
+    /// The number of rows that are shown.
+    pub(super) fn len(&self) -> usize {
+        self.shown.len()
     }
 
     /// A row that is shown.
     pub(super) fn row(&self, at: usize) -> Option<&TreeRow> {
-        self.shown.get(at).map(|index| &self.all[*index])
+        self.listing.as_ref()?.rows.get(*self.shown.get(at)?)
+    }
+
+    /// Whether the rows of a model are there. If not, a thread makes those of a large model, so that no frame waits for them.
+    pub(super) fn list(&mut self, model: &Arc<Model>) -> Listed {
+        if self.listing.as_ref().is_some_and(|listing| Arc::ptr_eq(&listing.model, model)) {
+            return Listed::Ready;
+        }
+        if model.nodes.len() + model.instances.len() + model.materials.len() <= AT_ONCE {
+            self.take(Listing::new(model));
+            return Listed::Ready;
+        }
+        if self.coming.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, model)) {
+            let of = model.clone();
+            self.coming = Some((model.clone(), Ok(Later::start("specula-rows", move || Listing::new(&of)))));
+        }
+        let result = match &self.coming {
+            Some((_, Ok(later))) => later.get(),
+            Some((_, Err(why))) => Some(Err(why.clone())),
+            None => None,
+        };
+        match result {
+            Some(Ok(listing)) => self.take(listing),
+            Some(Err(why)) => {
+                self.coming = Some((model.clone(), Err(why.clone())));
+                return Listed::Failed(why);
+            }
+            // The same model without its textures: its rows stay until then.
+            None if self.listing.as_ref().is_some_and(|listing| listing.is_of_parts_of(model)) => {}
+            None => return Listed::Coming,
+        }
+        Listed::Ready
+    }
+
+    /// Shows other rows from now on.
+    fn take(&mut self, listing: Listing) {
+        self.coming = None;
+        if let Some(before) = self.listing.replace(listing) {
+            if self.listing.as_ref().is_some_and(|now| !now.is_of_parts_of(&before.model)) {
+                self.folded.clear();
+            }
+            // To free a large model takes longer than a frame.
+            rayon::spawn(move || drop(before));
+        }
+        (self.made_of, self.drawn) = (None, None);
+        self.shown.clear();
+    }
+
+    /// Whether the settings let a part be drawn, or something below it.
+    pub(super) fn is_wanted(&self, item: Selected) -> bool {
+        self.drawn.as_ref().is_none_or(|drawn| match item {
+            Selected::Node(node) => drawn.wanted.get(node) != Some(&false),
+            Selected::Instance(instance) => drawn.scene.is_wanted(instance),
+            _ => true,
+        })
     }
 
     /// Whether a part is drawn, or something below it.
-    pub(super) fn is_drawn(&self, item: Selected) -> bool {
-        let Some((scene, nodes)) = &self.drawn else { return true };
-        match item {
-            Selected::Node(node) => nodes.get(node) != Some(&false),
-            Selected::Instance(instance) => scene.is_visible(instance),
+    pub(super) fn is_visible(&self, item: Selected) -> bool {
+        self.drawn.as_ref().is_none_or(|drawn| match item {
+            Selected::Node(node) => drawn.visible.get(node) != Some(&false),
+            Selected::Instance(instance) => drawn.scene.is_visible(instance),
+            Selected::Light(LightId::Model(light)) => !drawn.scene.pose().hidden.light(light),
             _ => true,
-        }
+        })
     }
 
-    /// Makes the rows again if the model or the search differs.
+    /// Chooses the rows that are shown again, if the scene or the search differs. Does nothing before they are listed.
     pub(super) fn update(&mut self, scene: &Scene, search: &str) {
-        if self.drawn.as_ref().is_none_or(|(before, _)| !before.has_same_draws(scene)) {
-            self.drawn = Some((scene.clone(), drawn_nodes(scene)));
+        let Some(listing) = &self.listing else { return };
+        if self.drawn.as_ref().is_none_or(|drawn| !drawn.is_of(scene)) {
+            self.drawn = Some(Drawn::new(scene, listing));
         }
         let model = scene.loaded();
-        self.know(model);
         let is_same = |(made, text): &(Arc<Model>, String)| Arc::ptr_eq(made, model) && text == search;
         if !std::mem::take(&mut self.is_changed) && self.made_of.as_ref().is_some_and(is_same) {
             return;
-        }
-        if self.made_of.as_ref().is_none_or(|(made, _)| !Arc::ptr_eq(made, model)) {
-            self.folded.clear();
-            self.all = rows(model);
         }
         let words = Words::new(search);
         match words.is_empty() {
             true => self.unfold(),
             false => {
-                let has = |index: &usize| self.all[*index].item.is_some() && words.are_in(&self.all[*index].name);
-                self.shown = (0..self.all.len()).filter(has).collect();
+                let has = |row: &TreeRow| row.item.is_some() && words.are_in(&row.name);
+                self.shown = (0..).zip(&listing.rows).filter(|(_, row)| has(row)).map(|(index, _)| index).collect();
             }
         }
         self.made_of = Some((model.clone(), search.to_owned()));
@@ -104,7 +160,7 @@ impl Tree {
     fn unfold(&mut self) {
         let mut below = None;
         self.shown.clear();
-        for (index, row) in self.all.iter_mut().enumerate() {
+        for (index, row) in self.listing.iter_mut().flat_map(|listing| &mut listing.rows).enumerate() {
             if below.is_some_and(|depth| row.depth > depth) {
                 continue;
             }
@@ -127,7 +183,6 @@ impl Tree {
 
     /// Unfolds what hides a selection.
     pub(super) fn reveal(&mut self, scene: &Scene, selected: Selected) {
-        self.know(scene.loaded());
         let Some(part) = self.part_of(selected) else { return };
         let mut node = match part {
             Selected::Node(node) => Some(node),
@@ -143,18 +198,11 @@ impl Tree {
         self.is_changed |= self.folded.len() != before;
     }
 
-    /// Finds the part that stands for each instance, unless it is known.
-    fn know(&mut self, model: &Arc<Model>) {
-        if self.parts.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, model)) {
-            self.parts = Some((model.clone(), parts(model)));
-        }
-    }
-
     /// The part whose row stands for a selection.
     pub(super) fn part_of(&self, selected: Selected) -> Option<Selected> {
         match selected {
             Selected::Nothing => None,
-            Selected::Instance(index) => self.parts.as_ref().and_then(|(_, parts)| parts.get(index)).copied(),
+            Selected::Instance(index) => self.listing.as_ref().and_then(|listing| listing.parts.get(index)).copied(),
             other => Some(other),
         }
     }
@@ -162,202 +210,22 @@ impl Tree {
     /// The index of the row of a selection.
     pub(super) fn place(&self, selected: Selected) -> Option<usize> {
         let part = self.part_of(selected)?;
-        self.rows().position(|row| row.item == Some(part))
+        (0..self.len()).find(|at| self.row(*at).is_some_and(|row| row.item == Some(part)))
     }
-}
-
-/// The place of each node in the model, by its index in the file.
-struct NodePlaces(Vec<Option<usize>>);
-
-impl NodePlaces {
-    fn new(model: &Model) -> Self {
-        let mut places = vec![None; model.nodes.iter().map(|node| node.index + 1).max().unwrap_or(0)];
-        model.nodes.iter().enumerate().for_each(|(at, node)| places[node.index] = Some(at));
-        Self(places)
-    }
-
-    /// The place of the node of an instance.
-    fn of(&self, instance: &Instance) -> Option<usize> {
-        self.0.get(instance.node).copied().flatten()
-    }
-}
-
-/// The part that stands for each instance: a primitive that is alone in its node has no row of its own.
-fn parts(model: &Model) -> Vec<Selected> {
-    let (places, mut counts) = (NodePlaces::new(model), vec![0; model.nodes.len()]);
-    model.instances.iter().filter_map(|instance| places.of(instance)).for_each(|node| counts[node] += 1);
-    let part = |(index, instance): (usize, &Instance)| match places.of(instance) {
-        Some(node) if counts[node] == 1 => Selected::Node(node),
-        _ => Selected::Instance(index),
-    };
-    model.instances.iter().enumerate().map(part).collect()
-}
-
-/// Whether each node, or something below it, is drawn; true for nodes with nothing to draw.
-fn drawn_nodes(scene: &Scene) -> Vec<bool> {
-    let model = scene.model();
-    let places = NodePlaces::new(model);
-    // Whether there is something to draw, and whether it is drawn.
-    let mut nodes = vec![(false, false); model.nodes.len()];
-    for (index, instance) in model.instances.iter().enumerate() {
-        if let Some(at) = places.of(instance) {
-            nodes[at].0 = true;
-            nodes[at].1 |= scene.is_visible(index);
-        }
-    }
-    // Children come after their parents.
-    for (at, node) in model.nodes.iter().enumerate().rev() {
-        if let Some(parent) = node.parent {
-            let (has, is) = nodes[at];
-            nodes[parent].0 |= has;
-            nodes[parent].1 |= is;
-        }
-    }
-    nodes.into_iter().map(|(has, is)| is || !has).collect()
-}
-
-/// All rows of a model.
-fn rows(model: &Model) -> Vec<TreeRow> {
-    let (mut rows, material_keys) = (Vec::new(), model.material_keys());
-    nodes(model, &material_keys, &mut rows);
-    let mut uses = vec![0; model.materials.len()];
-    for primitive in model.primitives.iter() {
-        uses.get_mut(primitive.default_material).into_iter().for_each(|uses: &mut usize| *uses += 1);
-    }
-    let materials = uses
-        .iter()
-        .enumerate()
-        .skip(1)
-        .map(|(index, used)| (material_keys[index].clone(), plural(*used, "primitive"), Selected::Material(index)));
-    group(&mut rows, Group::Materials, "Materials", materials.collect());
-    let textures = textures(model).into_keys().map(|source| {
-        let image = source.image(model);
-        let (name, size) = image
-            .map_or_else(Default::default, |image| (image.name.clone(), format!("{} × {}", image.width, image.height)));
-        let size = if model.awaits_textures { "decoding".to_owned() } else { size };
-        (name_or(&name, || "texture".to_owned()), size, Selected::Texture(source))
-    });
-    group(&mut rows, Group::Textures, "Textures", textures.collect());
-    let cameras = model.cameras.iter().enumerate().map(|(index, camera)| {
-        let name = name_or(&camera.name, || format!("camera {index}"));
-        (name, camera.lens.to_string(), Selected::Camera(index))
-    });
-    group(&mut rows, Group::Cameras, "Cameras", cameras.collect());
-    let mut lights: Vec<(String, String, Selected)> = (0..3)
-        .map(|light| (format!("Light {}", light + 1), "orbit".to_owned(), Selected::Light(LightId::Orbit(light))))
-        .collect();
-    lights.push(("Rectangle".to_owned(), "area".to_owned(), Selected::Light(LightId::Rectangle)));
-    lights.extend(model.lights.iter().enumerate().map(|(index, light)| {
-        let name = name_or(&light.name, || format!("light {index} of the file"));
-        (name, kind(light.kind).to_owned(), Selected::Light(LightId::Model(index)))
-    }));
-    group(&mut rows, Group::Lights, "Lights", lights);
-    rows
-}
-
-/// The name of a kind of light.
-pub(super) fn kind(kind: LightKind) -> &'static str {
-    match kind {
-        LightKind::Directional => "directional",
-        LightKind::Point => "point",
-        LightKind::Spot { .. } => "spot",
-    }
-}
-
-/// The title of a group, and its rows.
-fn group(rows: &mut Vec<TreeRow>, group: Group, title: &str, items: Vec<(String, String, Selected)>) {
-    if items.is_empty() {
-        return;
-    }
-    rows.push(title_of(group, title, items.len()));
-    rows.extend(items.into_iter().map(|(name, detail, item)| TreeRow {
-        depth: 1,
-        name,
-        detail,
-        item: Some(item),
-        group,
-        is_folded: None,
-        key: None,
-    }));
-}
-
-fn title_of(group: Group, title: &str, count: usize) -> TreeRow {
-    let (name, detail) = (title.to_owned(), count.to_string());
-    TreeRow { depth: 0, name, detail, item: None, group, is_folded: Some(false), key: None }
-}
-
-/// The nodes, each with the primitives of its mesh if there are several.
-fn nodes(model: &Model, material_keys: &[String], rows: &mut Vec<TreeRow>) {
-    let node_of = |instance: &usize| model.instances[*instance].node;
-    let mut by_node: Vec<usize> = (0..model.instances.len()).collect();
-    by_node.sort_by_key(node_of);
-    let (group, keys) = (Group::Nodes, model.node_keys());
-    rows.push(title_of(group, "Nodes", model.nodes.len()));
-    let mut depths = Vec::with_capacity(model.nodes.len());
-    for (at, node) in model.nodes.iter().enumerate() {
-        let depth = node.parent.map_or(1, |parent| depths[parent] + 1);
-        depths.push(depth);
-        let first = by_node.partition_point(|instance| node_of(instance) < node.index);
-        let instances = by_node[first..].chunk_by(|a, b| node_of(a) == node_of(b)).next().unwrap_or_default();
-        let instances = if instances.first().map(node_of) == Some(node.index) { instances } else { &[] };
-        let triangles = |instance: &usize| model.primitives[model.instances[*instance].primitive].indices.len() / 3;
-        let total: usize = instances.iter().map(triangles).sum();
-        let has_children = model.nodes.get(at + 1).is_some_and(|next| next.parent == Some(at));
-        let detail = match (instances, node.camera, node.light) {
-            ([], Some(_), _) => "camera".to_owned(),
-            ([], _, Some(_)) => "light".to_owned(),
-            ([], ..) => String::new(),
-            _ => thousands(total),
-        };
-        let item = Some(Selected::Node(at));
-        let name = name_or(&node.name, || {
-            node.mesh.clone().filter(|mesh| !mesh.is_empty()).unwrap_or_else(|| format!("node {}", node.index))
-        });
-        let is_folded = (has_children || instances.len() > 1).then_some(false);
-        rows.push(TreeRow { depth, name, detail, item, group, is_folded, key: keys.get(at).cloned() });
-        for instance in instances.iter().filter(|_| instances.len() > 1) {
-            let primitive = &model.primitives[model.instances[*instance].primitive];
-            rows.push(TreeRow {
-                depth: depth + 1,
-                name: format!("{} · {}", primitive.name, material_keys[primitive.default_material]),
-                detail: thousands(triangles(instance)),
-                item: Some(Selected::Instance(*instance)),
-                group,
-                is_folded: None,
-                key: Some(primitive.name.clone()),
-            });
-        }
-    }
-}
-
-/// A count with its unit, short: `12.3k tris`.
-fn thousands(triangles: usize) -> String {
-    match triangles {
-        0..1000 => format!("{triangles} tris"),
-        1000..1_000_000 => format!("{:.1}k tris", triangles as f64 / 1e3),
-        _ => format!("{:.1}M tris", triangles as f64 / 1e6),
-    }
-}
-
-/// The textures of the materials, each with the materials and slots that read it.
-pub(in crate::app) fn textures(model: &Model) -> BTreeMap<TextureSource, Vec<(usize, usize)>> {
-    let mut textures: BTreeMap<TextureSource, Vec<(usize, usize)>> = BTreeMap::new();
-    for (index, material) in model.materials.iter().enumerate() {
-        for slot in (0..material.textures.len()).filter(|slot| material.textures[*slot].is_some()) {
-            textures.entry(TextureSource::of(model, material, slot)).or_default().push((index, slot));
-        }
-    }
-    textures
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BUILT_IN, built_in};
+    use crate::scene::{BUILT_IN, Node, built_in};
     use crate::settings::Settings;
 
     fn scene(name: &str) -> Scene {
         Scene::new(&Arc::new(built_in(name).unwrap().unwrap()), &Settings::default())
+    }
+
+    fn rows(tree: &Tree) -> impl Iterator<Item = &TreeRow> {
+        (0..tree.len()).filter_map(|at| tree.row(at))
     }
 
     #[test]
@@ -365,8 +233,9 @@ mod tests {
         for name in BUILT_IN {
             let (scene, mut tree) = (scene(name), Tree::default());
             let model = scene.model();
+            assert_eq!(tree.list(model), Listed::Ready);
             tree.update(&scene, "");
-            let has = |tree: &Tree, item| tree.rows().any(|row| row.item == Some(item));
+            let has = |tree: &Tree, item| rows(tree).any(|row| row.item == Some(item));
             assert!((0..model.nodes.len()).all(|node| has(&tree, Selected::Node(node))), "{name}");
             assert!((1..model.materials.len()).all(|material| has(&tree, Selected::Material(material))), "{name}");
             assert!((0..model.lights.len()).all(|light| has(&tree, Selected::Light(LightId::Model(light)))), "{name}");
@@ -377,20 +246,69 @@ mod tests {
             tree.update(&scene, &material.to_uppercase());
             assert!(has(&tree, Selected::Material(1)), "{name}: {material}");
             tree.update(&scene, "no part has this name");
-            assert!(tree.rows().len() == 0);
+            assert_eq!(tree.len(), 0);
         }
     }
 
     #[test]
     fn folded_rows_unfold_for_a_selection() {
         let (scene, mut tree) = (scene(BUILT_IN[0]), Tree::default());
+        assert_eq!(tree.list(scene.model()), Listed::Ready);
         tree.update(&scene, "");
-        let all = tree.rows().len();
+        let all = tree.len();
         tree.toggle(0);
         tree.update(&scene, "");
-        assert!(tree.rows().len() < all && tree.place(Selected::Instance(0)).is_none());
+        assert!(tree.len() < all && tree.place(Selected::Instance(0)).is_none());
         tree.reveal(&scene, Selected::Instance(0));
         tree.update(&scene, "");
         assert!(tree.place(Selected::Instance(0)).is_some());
+    }
+
+    /// A model with many nodes above the parts of a small one, whose rows a thread makes.
+    fn large(nodes: usize) -> Model {
+        let mut model = built_in(BUILT_IN[0]).unwrap().unwrap();
+        let first = model.nodes.iter().map(|node| node.index + 1).max().unwrap();
+        let node = |index: usize| Node { index: first + index, name: format!("node {index}"), ..Node::default() };
+        model.nodes = model.nodes.iter().cloned().chain((0..nodes).map(node)).collect::<Vec<_>>().into();
+        model
+    }
+
+    #[test]
+    fn a_thread_lists_a_large_model() {
+        let model = Arc::new(large(20_000));
+        let (scene, mut tree) = (Scene::new(&model, &Settings::default()), Tree::default());
+        let wait = |tree: &mut Tree, model: &Arc<Model>| {
+            while tree.list(model) == Listed::Coming {
+                std::thread::yield_now();
+            }
+            assert_eq!(tree.list(model), Listed::Ready);
+        };
+        assert_eq!(tree.list(&model), Listed::Coming, "the frame made the rows itself");
+        tree.update(&scene, "");
+        assert_eq!((tree.len(), tree.place(Selected::Node(0))), (0, None));
+        wait(&mut tree, &model);
+        tree.update(&scene, "");
+        let items: HashSet<Selected> = rows(&tree).filter_map(|row| row.item).collect();
+        assert!((0..model.nodes.len()).all(|node| items.contains(&Selected::Node(node))));
+        // The same parts with other textures keep their rows, and what is folded, until theirs are there.
+        tree.toggle(0);
+        tree.update(&scene, "");
+        let folded = tree.len();
+        let whole = Arc::new(Model { awaits_textures: true, ..(*model).clone() });
+        let scene = Scene::new(&whole, &Settings::default());
+        assert_eq!(tree.list(&whole), Listed::Ready);
+        tree.update(&scene, "");
+        assert_eq!(tree.len(), folded);
+        while tree.coming.is_some() {
+            assert_eq!(tree.list(&whole), Listed::Ready);
+        }
+        tree.update(&scene, "");
+        assert_eq!(tree.len(), folded);
+        // Another model's rows replace them.
+        let other = Arc::new(large(10_000));
+        assert_eq!(tree.list(&other), Listed::Coming);
+        wait(&mut tree, &other);
+        tree.update(&Scene::new(&other, &Settings::default()), "");
+        assert!(tree.len() > 10_000 && tree.len() < 20_000);
     }
 }
