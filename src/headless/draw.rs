@@ -74,7 +74,10 @@ impl Headless {
         if frame.state.display.is_measured() {
             readback = self.draw_frame(frame, Redraw::ToneMap, View::read_back)?;
         }
-        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+        let readback = readback.ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))?;
+        let capture = readback.finish();
+        self.not_finite.add(&capture, &self.session.settings.mode);
+        Ok(capture)
     }
 
     /// Warnings about loops that were cut short since the last call, though they end.

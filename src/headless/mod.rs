@@ -5,6 +5,7 @@ mod error;
 mod hints;
 mod inspect;
 mod not_finite;
+mod not_finite_pictures;
 mod pixel;
 mod reload;
 mod sequence;
@@ -28,6 +29,7 @@ use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 pub use draw::Step;
 pub use error::HeadlessError;
 pub use not_finite::{Search, first_not_finite};
+pub use not_finite_pictures::{NotFinitePicture, NotFinitePictures};
 pub use sequence::Sequence;
 pub use thumbnails::Thumbnail;
 
@@ -49,6 +51,8 @@ pub struct Headless {
     upload_ms: f64,
     /// See [`Headless::take_cut_short`].
     cut_short: Vec<Diagnostic>,
+    /// See [`Headless::take_not_finite`].
+    not_finite: NotFinitePictures,
 }
 
 impl Headless {
@@ -162,6 +166,7 @@ impl Headless {
             is_linear: false,
             upload_ms: 0.0,
             cut_short: Vec::new(),
+            not_finite: NotFinitePictures::default(),
         };
         this.target()?;
         this.set_model(model)?;

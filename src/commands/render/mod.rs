@@ -25,7 +25,7 @@ use super::progress::Progress;
 use super::{Failure, print_diagnostics, tell_left_out};
 pub use args::Args;
 use modes::Modes;
-use warnings::Warnings;
+use warnings::{Warnings, warn_of_not_finite};
 use watch::{Changes, Watch};
 
 /// Runs the command.
@@ -87,6 +87,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         }
     }
     warn_of_bakes(&headless);
+    warn_of_not_finite(&mut headless, &args);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     complete(&mut headless, &args, watch.is_some())?;
     warnings.tell(&headless.shaders().warnings);
@@ -175,6 +176,7 @@ fn again(
             }
         }
         warn_of_bakes(headless);
+        warn_of_not_finite(headless, args);
     }
     if let Outcome::Ready(set) = &reload.outcome {
         warnings.tell(&set.shaders.warnings);

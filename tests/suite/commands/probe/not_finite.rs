@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::support::line_of;
-use crate::support::process::Finished;
+use crate::support::process::{Finished, run};
 
 /// Probes a pixel of the model with a tree in which `from` is replaced by `to` in a file. Returns the result and the new text.
 fn edited(directory: &Path, file: &str, (from, to): (&str, &str), more: &[&str]) -> (Finished, String) {
@@ -95,4 +95,34 @@ fn a_value_of_a_pass_is_told_to_be_made_elsewhere() {
     let found = super::probe(directory.path(), &["--shaders", "tree", "--at", "50,30", "--mode", "final", "--json"]);
     let first = found.expect(0, &[]).json()["not_finite"].clone();
     assert!(first["message"].as_str().unwrap().contains("passes after the model"), "{first}");
+}
+
+/// `render` warns of such pixels, and names one that `probe` takes.
+#[test]
+fn render_warns_of_pixels_that_are_not_finite() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let view = ["--size", "96x64", "--env", "none"];
+    let render = |more: &[&str]| run(here, &[&["render", "sphere-grid", "--out", "a.png"], &view[..], more].concat());
+    let warning = "NaN or infinite";
+    let good = render(&[]);
+    assert!(!good.expect(0, &[]).stderr.contains(warning), "{good:#?}");
+    let broken = ("s.roughness = saturate(s.roughness * roughness_scale);", "s.roughness = sqrt(-1.0 - s.roughness);");
+    edited(here, "user.glsl", broken, &["--mode", "final"]);
+    let bad = render(&["--shaders", "tree"]);
+    bad.expect(0, &["pixels are NaN or infinite, such as"]);
+    assert_eq!((bad.stdout.as_str(), bad.stderr.matches(warning).count()), ("", 1), "{bad:#?}");
+    let at = bad.stderr.split("specula probe --at ").nth(1).unwrap().split('`').next().unwrap();
+    let probe = [&["probe", "sphere-grid", "--shaders", "tree", "--mode", "final", "--at", at], &view[..]].concat();
+    let found = run(here, &probe);
+    assert!(found.expect(0, &[]).stdout.contains("first NaN in final: "), "{found:#?}");
+    // Several pictures are told of at once, and a light that is nowhere, too.
+    let modes = render(&["--shaders", "tree", "--mode", "final,roughness,depth"]);
+    modes.expect(0, &["2 of 3 pictures have pixels that are NaN or infinite. The first, of the mode final, has"]);
+    assert_eq!(modes.stderr.matches(warning).count(), 1, "{modes:#?}");
+    let sheet = render(&["--shaders", "tree", "--sheet", "depth,final", "--tile", "40x30"]);
+    sheet.expect(
+        0,
+        &["1 of 2 pictures have pixels that are NaN or infinite. The first, of the mode final", "--size 40x30`"],
+    );
 }
