@@ -1,4 +1,4 @@
-"""The corner of a room, with balls, under 80 lights: 64 colored points among the balls, 16 spots from above."""
+"""The corner of a room, with balls, under 160 lights: 144 colored points among the balls, 16 spots from above."""
 
 import colorsys
 
@@ -72,13 +72,13 @@ def balls(scene):
 
 
 def points(scene):
-    """4 x 4 x 4 between the balls and above them; each level has its part of the color circle."""
+    """6 x 6 x 4 between the balls and above them; each level has its part of the color circle."""
     for level, height in enumerate((0.45, 1.7, 3.1, 4.6)):
-        for row in range(4):
-            for column in range(4):
-                hue = (level * 4 + (column + 2 * row) % 4) / 16.0
-                place = [(column - 1.5) * STEP * 1.5, height, (row - 1.5) * STEP * 1.5]
-                scene.light("point", place, colorsys.hsv_to_rgb(hue, 0.85, 1.0), 3.0, 6.0)
+        for row in range(6):
+            for column in range(6):
+                hue = (level * 9 + (column + 2 * row) % 9) / 36.0
+                place = [(column - 2.5) * STEP * 0.9, height, (row - 2.5) * STEP * 0.9]
+                scene.light("point", place, colorsys.hsv_to_rgb(hue, 0.85, 1.0), 1.6, 4.5)
 
 
 def spots(scene):
