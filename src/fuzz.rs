@@ -184,31 +184,81 @@ fn as_file(extension: &str, data: &[u8], read: impl FnOnce(&Path)) {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+    use std::io::{Cursor, Write as _};
+
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
     use super::*;
     use crate::damaged;
 
-    /// Files of all other targets are damaged beside their readers.
-    #[test]
-    fn damaged_accessors_and_images_cause_no_panic() {
+    /// A target under its name in `tests/fuzz`, how many damaged files it gets in each run, and the whole files.
+    type Target = (&'static str, fn(&[u8]), usize, Vec<Vec<u8>>);
+
+    const MODEL: &[u8] = include_bytes!("../assets/variants.glb");
+
+    fn targets() -> [Target; 10] {
         let words: [u16; 12] = [0, 96, 12, 0, 2, 0, 0, 0, 2, 16, 0, 3];
         let mut sparse: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         sparse.extend((0..400_u32).map(|byte| (byte % 3) as u8));
-        damaged::each(300, &[&sparse], accessors);
-        let uastc = include_bytes!("../tests/textures/uastc.ktx2");
-        let etc1s = include_bytes!("../tests/textures/etc1s.ktx2");
-        damaged::each(300, &[uastc, etc1s], image);
-        damaged::each(100, &[&[&[0, 0, 2, 9][..], &[0xa0; 80]].concat()], meshopt);
+        let draco = [&b"DRACO\x02\x02\x01\x01\0\0"[..], &[3; 60]].concat();
+        let images =
+            [&include_bytes!("../tests/textures/uastc.ktx2")[..], include_bytes!("../tests/textures/etc1s.ktx2")];
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        archive.start_file("a.glb", SimpleFileOptions::default()).unwrap();
+        archive.write_all(MODEL).unwrap();
+        let hdr = [&b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n"[..], &[9, 8, 7, 129].repeat(32)].concat();
+        let shader = "//@pass a to=picture\n//@texture noise \"noise.png\" repeat\nuniform sampler2D noise;\n\
+            const uint A = 1u; //@mode a \"A\"\nvoid main() {}\n";
+        let table = "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
+        [
+            ("gltf", gltf, 60, vec![MODEL.to_vec()]),
+            ("accessors", accessors, 300, vec![sparse]),
+            ("draco", super::draco, 200, vec![draco]),
+            ("meshopt", meshopt, 100, vec![[&[0, 0, 2, 9][..], &[0xa0; 80]].concat()]),
+            ("image", image, 300, images.map(<[u8]>::to_vec).to_vec()),
+            ("archive", super::archive, 60, vec![archive.finish().unwrap().into_inner()]),
+            ("environment", environment, 100, vec![hdr]),
+            ("measured", measured, 3, vec![vec![1; 64]]),
+            ("annotations", annotations, 100, vec![shader.into()]),
+            ("cube", cube, 100, vec![table.into()]),
+        ]
+    }
+
+    /// As libFuzzer would, but without looking for new paths. More files are damaged beside their readers.
+    #[test]
+    fn damaged_files_cause_no_panic_in_any_target() {
+        for (_, target, few, files) in targets() {
+            let files: Vec<&[u8]> = files.iter().map(Vec::as_slice).collect();
+            files.iter().for_each(|file| target(file));
+            damaged::each(few, &files, target);
+        }
     }
 
     #[test]
-    fn every_target_takes_its_files_and_nothing() {
-        let targets: [fn(&[u8]); 10] =
-            [gltf, accessors, draco, meshopt, image, archive, environment, measured, annotations, cube];
-        for target in targets {
+    fn every_target_takes_nothing_and_what_is_no_file() {
+        for (_, target, ..) in targets() {
             target(&[]);
             target(b"glTF\x02\0\0\0 and what is not glTF, in some more bytes than a header has");
         }
-        // A stream that decodes: the target reaches the decoder.
-        image(include_bytes!("../tests/textures/uastc.ktx2"));
+    }
+
+    /// The package has a target for each function of this file, and a program for each target.
+    #[test]
+    fn the_package_of_libfuzzer_has_these_targets() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz");
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let names: BTreeSet<String> = targets().iter().map(|(name, ..)| (*name).to_owned()).collect();
+        for name in &names {
+            let text = std::fs::read_to_string(folder.join(format!("targets/{name}.rs"))).unwrap();
+            assert!(text.contains(&format!("fuzz_target!(|data: &[u8]| specula::fuzz::{name}(data))")), "{text}");
+            assert!(manifest.contains(&format!("name = \"{name}\"\npath = \"targets/{name}.rs\"")), "{name}");
+        }
+        let files = std::fs::read_dir(folder.join("targets")).unwrap();
+        let files = files.map(|file| file.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned());
+        assert_eq!(files.collect::<BTreeSet<String>>(), names);
+        let functions = include_str!("fuzz.rs").split("mod tests").next().unwrap();
+        assert_eq!(functions.matches("\npub fn ").count(), names.len());
     }
 }
