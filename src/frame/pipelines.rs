@@ -14,7 +14,7 @@ use super::material_variant::{MaterialVariant, shared_features};
 use super::stages::DEFORM;
 use super::{Scene, SharedMode};
 use crate::gpu::{Specialization, fault, vk};
-use crate::interface::{self, FEW_LIGHTS, TONEMAP_OFF, UNROLLED_LIGHTS};
+use crate::interface::{self, ALPHA_BLEND, FEW_LIGHTS, TONEMAP_OFF, UNROLLED_LIGHTS};
 use crate::scene::{Model, light_count};
 use crate::settings::Settings;
 use crate::shader::annotation::pass::MODEL;
@@ -202,7 +202,9 @@ impl PipelineRequest {
             peeling: Peeling::default(),
             modes: Vec::new(),
         };
-        Self { peeling: Peeling::new(settings.view.blend_layers, shaders, &request), ..request }
+        let peels = request.draw == DrawAs::Surfaces && request.materials.iter().any(|m| m.alpha == ALPHA_BLEND);
+        let layers = if peels { settings.view.blend_layers } else { 0 };
+        Self { peeling: Peeling::new(layers, shaders, request.model_pass()), ..request }
     }
 
     /// The same for an environment that has this many suns.

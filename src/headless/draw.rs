@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Headless, HeadlessError};
+use super::{Headless, HeadlessError, NotFinitePictures};
 use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, ProvideError, Redraw, View};
@@ -78,6 +78,11 @@ impl Headless {
         let capture = readback.finish();
         self.not_finite.add(&capture, &self.session.settings.mode);
         Ok(capture)
+    }
+
+    /// The pixels with NaN or infinity in the pictures that were read back since the last call.
+    pub fn take_not_finite(&mut self) -> NotFinitePictures {
+        std::mem::take(&mut self.not_finite)
     }
 
     /// Warnings about loops that were cut short since the last call, though they end.

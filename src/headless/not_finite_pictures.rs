@@ -1,6 +1,5 @@
 //! Counts the pixels with NaN or infinity in the pictures that are read back: the readback knows each.
 
-use super::Headless;
 use crate::render::Capture;
 
 /// The pixels with NaN or infinity in several pictures.
@@ -43,13 +42,6 @@ impl NotFinitePictures {
         let middle = bad.nth(count / 2).unwrap_or_default();
         let at = (middle % capture.width.max(1), middle / capture.width.max(1));
         self.first = Some(NotFinitePicture { mode: mode.to_owned(), size: (capture.width, capture.height), count, at });
-    }
-}
-
-impl Headless {
-    /// The pixels with NaN or infinity in the pictures that were read back since the last call.
-    pub fn take_not_finite(&mut self) -> NotFinitePictures {
-        std::mem::take(&mut self.not_finite)
     }
 }
 

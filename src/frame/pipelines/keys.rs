@@ -33,12 +33,7 @@ impl PipelineRequest {
     }
 
     /// The key of a pipeline that draws a material to the multisampled HDR target.
-    pub(super) fn key_with_model(
-        &self,
-        pass: &Arc<GraphPass>,
-        material: MaterialVariant,
-        raster: Raster,
-    ) -> PipelineKey {
+    fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
         PipelineKey {
             pass: KeyPass(pass.clone()),
             raster,
@@ -75,6 +70,26 @@ impl PipelineRequest {
         let rest =
             key.specialization.iter().map(|(id, value)| (*id, if *id == SPEC_MODE { EDGES_MODE } else { *value }));
         Some(PipelineKey { specialization: own.into_iter().chain(rest).collect(), modes: Vec::new(), ..key })
+    }
+
+    /// The pass that finds the layers of blended surfaces.
+    pub(crate) fn peel_pass(&self) -> Option<&Arc<GraphPass>> {
+        self.peeling.pass.as_ref()
+    }
+
+    /// The pipeline that draws the depth of a blended material's next layer.
+    pub(crate) fn peel_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
+        let pass =
+            self.peel_pass().filter(|pass| material.alpha == interface::ALPHA_BLEND && material.is_taken_by(pass))?;
+        let key = self.key_with_model(pass, material, Raster::Depth);
+        let samples = (SPEC_SAMPLES, self.target.samples);
+        let specialization = std::iter::once(samples).chain(key.specialization).collect();
+        Some(PipelineKey { specialization, modes: Vec::new(), ..key })
+    }
+
+    /// The pipelines that draw the depth of the next layer.
+    pub(crate) fn peel_keys(&self) -> impl Iterator<Item = PipelineKey> {
+        self.materials.iter().filter_map(|material| self.peel_key(*material))
     }
 
     /// The pipeline that draws a material into the opaque scene color.

@@ -257,8 +257,11 @@ impl Pipeline {
         // Depth is reversed, so a positive bias is towards the eye.
         let is_biased = desc.raster == Raster::Edges;
         let raster = raster.depth_bias_enable(is_biased).depth_bias_constant_factor(64.0).depth_bias_slope_factor(1.5);
+        let runs_for_samples = desc.raster == Raster::Depth && desc.samples > 1 && gpu.optional_stages().sample_shading;
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples));
+            .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples))
+            .sample_shading_enable(runs_for_samples)
+            .min_sample_shading(1.0);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(desc.depth && desc.raster != Raster::Added)
             .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines | Raster::Depth));

@@ -22,6 +22,7 @@ mod model_draws;
 mod motion;
 mod moved_vertices;
 mod passes;
+mod peel_images;
 mod peeling;
 mod pixel_modes;
 mod range_sample;
@@ -51,7 +52,7 @@ use scan::Scan;
 
 use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
 use motion::Motion;
-use peeling::PeelImages;
+use peel_images::PeelImages;
 
 use super::bound_frame::BoundFrame;
 use super::scene::PlacedScene;

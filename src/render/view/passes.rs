@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use super::declared::PassSets;
 use super::model_draws::{Draws, ModelDraws, instances};
-use super::peeling::PeelImages;
+use super::peel_images::PeelImages;
 use super::targets::{ColorTarget, Targets};
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};

@@ -9,54 +9,16 @@
 //! Surfaces at the depth of an opaque one, such as decals, come first. What lies in front of the last layer comes last, in
 //! the order of its primitives.
 
-use std::sync::Arc;
-
-use super::declared::{DeclaredPasses, FrameImages, PassContext, PassSets};
+use super::declared::PassSets;
 use super::model_draws::{Draws, instances};
 use super::passes::Passes;
-use super::targets::Targets;
+use super::peel_images::{PeelImages, PeelTarget};
 use crate::frame::PipelineRequest;
-use crate::gpu::{Encoder, GpuError, Image, Use, vk};
+use crate::gpu::{Encoder, Use, vk};
 use crate::render::scene::SortedDraws;
 
 /// Depth of the near plane.
 const NEAR: f32 = 1.0;
-
-/// The depth images of the last layer and the next one, and the sets to read them.
-pub(super) struct PeelImages<'a> {
-    layers: &'a [Arc<Image>; 2],
-    /// To read the depth of the opaque scene, and that of each image.
-    sets: [PassSets; 3],
-}
-
-impl<'a> PeelImages<'a> {
-    /// Those of a frame; `None` if it does not sort blended surfaces in each pixel.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub(super) fn new(
-        declared: &mut DeclaredPasses,
-        context: &PassContext<'_>,
-        targets: &'a Targets,
-    ) -> Result<Option<Self>, GpuError> {
-        let Some(layers) = &targets.peeled else { return Ok(None) };
-        let mut sets = |image: &Arc<Image>| {
-            let images = FrameImages { peeled: Some(image), ..FrameImages::default() };
-            declared.sets_of(context, &images, context.frame.state.pipelines.peel_keys())
-        };
-        let sets = [sets(&targets.depth)?, sets(&layers[0])?, sets(&layers[1])?];
-        Ok(Some(Self { layers, sets }))
-    }
-}
-
-/// The depth target of a part of the draws.
-pub(super) struct PeelTarget<'a> {
-    pub(super) depth: &'a Arc<Image>,
-    /// Clears it to this value; `None` keeps its content.
-    pub(super) clear_depth: Option<f32>,
-    /// Whether the draws write color; otherwise they have the first color target alone.
-    pub(super) is_shaded: bool,
-}
 
 impl Passes<'_> {
     /// Draws the blended surfaces, layer by layer. `begin` begins rendering to the color targets and a depth target; both, and the depth

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::capture::PixelReadback;
 use super::declared::{FrameImages, PassContext};
 use super::passes::Passes;
-use super::peeling::PeelImages;
+use super::peel_images::PeelImages;
 use super::targets::ColorTarget;
 use super::targets::{TargetDesc, Targets};
 use super::{BoundFrame, View};

@@ -13,14 +13,17 @@ use crate::threads::later::Later;
 /// Most nodes, instances and materials of a model whose rows are made within a frame: a row takes some microseconds.
 const AT_ONCE: usize = 500;
 
+/// The rows that a thread makes, or why it could not.
+type Coming = Result<Later<Listing>, String>;
+
 /// The rows that are shown, and which are folded.
 #[derive(Default)]
 pub(super) struct Tree {
     folded: HashSet<(Group, Option<Selected>)>,
     /// All rows, of this model or of one that shares its parts.
     listing: Option<Listing>,
-    /// The rows that a thread makes of a model, or why it could not.
-    coming: Option<(Arc<Model>, Result<Later<Listing>, String>)>,
+    /// The model whose rows a thread makes.
+    coming: Option<(Arc<Model>, Coming)>,
     /// The rows that are shown, as indices.
     shown: Vec<usize>,
     drawn: Option<Drawn>,

@@ -3,7 +3,8 @@
 
 use foldhash::{HashSet, HashSetExt};
 
-use super::{NumberKind, Place, Purpose, Tracer, is_line};
+use super::functions::is_line;
+use super::{NumberKind, Place, Purpose, Tracer};
 use crate::shader::spirv::enums::storage;
 use crate::shader::spirv::module::{Id, Instruction, Type};
 use crate::shader::spirv::op::{Class, Op};

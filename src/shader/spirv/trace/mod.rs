@@ -6,6 +6,7 @@
 //! `floats.rs` instruments a module to find the first value that is not finite, `statements.rs` to show what every statement does.
 
 mod floats;
+mod functions;
 mod instances;
 mod statements;
 
@@ -15,23 +16,15 @@ use foldhash::HashMap;
 
 use super::module::{Id, Instruction, Module, Type};
 use super::op::{Op, text};
+pub use functions::Logged;
+use functions::{Functions, is_line, joins};
 pub use instances::instances;
-use statements::Functions;
 
 /// Longer arrays are not logged.
 const MOST_ELEMENTS: u32 = 64;
 /// Statements that store or return a value of more vectors than this log nothing: the members of a large struct are stored one by one, and
 /// each log point costs compile time.
 const MOST_PARTS: usize = 24;
-
-/// Which values are logged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Logged {
-    /// Floats, once each.
-    Floats,
-    /// All values, and what is done with them.
-    Statements,
-}
 
 /// How an instruction uses a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,7 +110,7 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
     for function in &mut functions {
         function.head.retain(|i| !is_line(*i));
         let is_silent = known.is_silent(function.id);
-        let joins = statements::joins(function);
+        let joins = joins(function);
         for block in &mut function.blocks {
             match logged {
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
@@ -150,10 +143,6 @@ pub fn with_constants(words: &[u32], changes: &[(u32, u32)]) -> Option<Vec<u32>>
         }
     }
     Some(module.write())
-}
-
-fn is_line(i: Instruction) -> bool {
-    matches!(i.op, Op::Line | Op::NoLine)
 }
 
 struct Tracer<'a> {

@@ -107,7 +107,8 @@ fn render_warns_of_pixels_that_are_not_finite() {
     let warning = "NaN or infinite";
     let good = render(&[]);
     assert!(!good.expect(0, &[]).stderr.contains(warning), "{good:#?}");
-    let broken = ("s.roughness = saturate(s.roughness * roughness_scale);", "s.roughness = sqrt(-1.0 - s.roughness);");
+    let broken =
+        ("s.roughness = saturate(s.roughness * roughness_scale);", "s.base_color.r = sqrt(-1.0 - s.roughness);");
     edited(here, "user.glsl", broken, &["--mode", "final"]);
     let bad = render(&["--shaders", "tree"]);
     bad.expect(0, &["pixels are NaN or infinite, such as"]);
@@ -117,7 +118,7 @@ fn render_warns_of_pixels_that_are_not_finite() {
     let found = run(here, &probe);
     assert!(found.expect(0, &[]).stdout.contains("first NaN in final: "), "{found:#?}");
     // Several pictures are told of at once, and a light that is nowhere, too.
-    let modes = render(&["--shaders", "tree", "--mode", "final,roughness,depth"]);
+    let modes = render(&["--shaders", "tree", "--mode", "final,base-color,depth"]);
     modes.expect(0, &["2 of 3 pictures have pixels that are NaN or infinite. The first, of the mode final, has"]);
     assert_eq!(modes.stderr.matches(warning).count(), 1, "{modes:#?}");
     let sheet = render(&["--shaders", "tree", "--sheet", "depth,final", "--tile", "40x30"]);
