@@ -113,7 +113,7 @@ fn info_lists_what_moves() {
     let directory = tempfile::tempdir().unwrap();
     write_model(directory.path());
     let info = run(directory.path(), &["info", "moving.glb", "--json"]).json();
-    let clip = |name: &str| json!({ "name": name, "duration_s": 1.0, "channels": 1 });
+    let clip = |name: &str| json!({ "name": name, "duration_s": 1.0, "channels": 1, "switched_nodes": 0 });
     let expected = json!({ "clips": [clip("go"), clip("jump")], "skins": [], "targets": [], "cameras": [] });
     assert_eq!(info["model"]["motion"], expected);
     let text = run(directory.path(), &["info", "moving.glb"]).stdout;

@@ -139,11 +139,12 @@ fn a_model_at_the_end_of_the_world_looks_like_one_at_the_origin() {
 fn a_picture_without_the_model_says_why() {
     let tree = Tree::new();
     let here = tree.beside("");
-    let render = |more: &[&str]| {
+    let before = |background: &str, more: &[&str]| {
         let first =
-            ["render", "sphere-grid", "--env", "none", "--size", "48x32", "--background", "none", "--out", "a.png"];
+            ["render", "sphere-grid", "--env", "none", "--size", "48x32", "--background", background, "--out", "a.png"];
         run(&here, &[&first, more].concat())
     };
+    let render = |more: &[&str]| before("none", more);
     let note = "nothing of the model is in the picture";
     assert!(!render(&[]).expect(0, &[]).stderr.contains(note));
     render(&["--eye", "0,0,9", "--target", "0,0,99"]).expect(0, &[note, "the camera looks past it"]);
@@ -154,5 +155,5 @@ fn a_picture_without_the_model_says_why() {
     tree.write("user/vertex.glsl", &tree.edited("user/vertex.glsl", hook, &lost));
     render(&[]).expect(0, &[note, "make them NaN (`user_vertex`)"]);
     // Also before a color.
-    render(&["--background", "#1b1d21"]).expect(0, &[note, "make them NaN (`user_vertex`)"]);
+    before("#1b1d21", &[]).expect(0, &[note, "make them NaN (`user_vertex`)"]);
 }
