@@ -132,6 +132,22 @@ pub fn warn(message: impl Display) {
     print_error(format_args!("specula: warning: {}", escape_lines(&message.to_string())));
 }
 
+/// A number with commas between thousands. Whole numbers have no decimals, others two.
+pub fn grouped(value: f64) -> String {
+    if value.fract() != 0.0 && value.abs() < 1e4 {
+        return format!("{value:.2}");
+    }
+    let digits = format!("{:.0}", value.abs());
+    let mut out = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    if value < 0.0 { format!("-{out}") } else { out }
+}
+
 /// The candidate most similar to what was typed, ignoring case; the first of several equally similar ones. `None` if none is
 /// similar enough.
 pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -171,6 +187,12 @@ pub fn either<T: Display>(items: &[T]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thousands_are_grouped() {
+        let numbers = [0.0, 999.0, 1000.0, -1_234_567.0, 2.5];
+        assert_eq!(numbers.map(grouped), ["0", "999", "1,000", "-1,234,567", "2.50"]);
+    }
 
     #[test]
     fn control_characters_are_escaped() {

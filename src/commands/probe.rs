@@ -11,7 +11,7 @@ use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::frames::Frames;
-use super::common::parse::pixel;
+use super::common::parse::{inside, pixel};
 use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json, tell_left_out};
@@ -55,15 +55,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.take_files(&mut args.models)?;
     let mut slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
-    let (width, height) = args.common.size();
-    if x >= width || y >= height {
-        let message = format!(
-            "--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {},{}",
-            width - 1,
-            height - 1
-        );
-        return Err(Failure::Usage(message));
-    }
+    inside(args.at, args.common.size())?;
     let sequence = args.frames.sequence()?;
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;

@@ -7,7 +7,7 @@ use specula::headless::Headless;
 use specula::shader::trace::{Assertion, Trace};
 
 use super::common::frames::Frames;
-use super::common::parse::pixel;
+use super::common::parse::{inside, pixel};
 use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json};
@@ -56,14 +56,7 @@ pub struct Args {
 pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.take_files(&mut args.models)?;
     let (x, y) = args.at;
-    let (width, height) = args.common.size();
-    if x >= width || y >= height {
-        return Err(Failure::Usage(format!(
-            "--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {},{}",
-            width - 1,
-            height - 1
-        )));
-    }
+    inside(args.at, args.common.size())?;
     let sequence = args.frames.sequence()?;
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;

@@ -12,8 +12,8 @@ use crate::shader::trace::{LoggingStage, Trace, TracedStage, log};
 use crate::shader::{Mode, PixelValue};
 
 impl Headless {
-    /// What the statements of `files` of the tree compute that draw a mode at a pixel, counted from the upper left corner; those of all files,
-    /// if there are none. The pixel is drawn once without a log, and once with a log for each group of files.
+    /// Traces the statements of `files` of the tree that draw a mode at a pixel, counted from the upper left corner; without files, those of
+    /// all. The pixel is drawn once without a log, and once with a log for each group of files.
     ///
     /// # Errors
     /// As [`Headless::render`]; no stage of the model draws the mode, the stage has no such file, or the model does not cover the pixel.

@@ -20,6 +20,7 @@ pub const PUSH_CONSTANT_SIZE: u32 = 128;
 
 /// The largest variable of an invocation, bytes.
 pub const LARGEST_VARIABLE: u64 = 256 << 10;
+
 /// Size in bytes of the author's parameter block `Params`, whose members have `//@ui` annotations.
 pub const PARAMS_SIZE: u32 = 4096;
 

@@ -14,7 +14,7 @@ pub use limits::beyond_limits;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
 pub use set::{InPipeline, PipelineSet, StageReport};
-pub use statistics_change::{Figure, all_statistics, figures, grouped};
+pub use statistics_change::{Figure, all_statistics, figures};
 pub use textures::PassTextures;
 #[cfg(any(test, fuzzing))]
 pub(crate) use textures::decode_table;

@@ -2,6 +2,7 @@
 
 use super::StageReport;
 use crate::gpu::{Executable, Statistic};
+use crate::message::grouped;
 
 /// A number of a stage.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,22 +128,6 @@ impl StatisticKind {
     }
 }
 
-/// A number with commas between thousands. Whole numbers have no decimals, others two.
-pub fn grouped(value: f64) -> String {
-    if value.fract() != 0.0 && value.abs() < 1e4 {
-        return format!("{value:.2}");
-    }
-    let digits = format!("{:.0}", value.abs());
-    let mut out = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    if value < 0.0 { format!("-{out}") } else { out }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::InPipeline;
@@ -203,11 +188,5 @@ mod tests {
             (all[0].0.as_str(), texts(&all[0].1)),
             ("Fragment", vec!["48 SGPRs +8".into(), "0.75 Occupancy".into()])
         );
-    }
-
-    #[test]
-    fn thousands_are_grouped() {
-        let numbers = [0.0, 999.0, 1000.0, -1_234_567.0, 2.5];
-        assert_eq!(numbers.map(grouped), ["0", "999", "1,000", "-1,234,567", "2.50"]);
     }
 }

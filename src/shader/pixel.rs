@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::{Mode, Numbers};
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
+use crate::message::grouped;
 
 /// Most samples per pixel for which the average still separates coverage and flags.
 const MOST_SAMPLES: f32 = 8.0;
@@ -136,7 +137,7 @@ impl PixelValue {
             "level" => (format!("level {number:.1}"), 10),
             "layers" if number.round() == 1.0 => ("1 layer".to_owned(), 12),
             "layers" => (format!("{number:.0} layers"), 12),
-            "log2 texels/m" => (format!("{} texels/m", grouped(number.exp2())), 22),
+            "log2 texels/m" => (format!("{} texels/m", grouped(f64::from(number.exp2().min(1e9).round()))), 22),
             _ => return None,
         };
         let text = match self {
@@ -146,19 +147,6 @@ impl PixelValue {
         };
         Some(format!("{text:>width$}"))
     }
-}
-
-/// A number of texels per meter, with commas between thousands.
-fn grouped(number: f32) -> String {
-    let digits = format!("{:.0}", number.min(1e9));
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// A number in [`NUMBER_WIDTH`] characters, with six significant digits. Uses powers of ten if fewer than three would be left.

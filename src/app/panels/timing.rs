@@ -13,7 +13,7 @@ use crate::app::state::State;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{GOOD, QUIET, Tone, WARNING};
 use crate::gpu::MemoryUse;
-use crate::pipeline::grouped;
+use crate::message::grouped;
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =

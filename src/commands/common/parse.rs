@@ -2,6 +2,8 @@
 
 use specula::settings::Valid;
 
+use crate::commands::Failure;
+
 /// Three finite numbers, as `0,1.5,3`.
 pub fn vector(text: &str) -> Result<[f32; 3], String> {
     let numbers: Option<Vec<f32>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
@@ -47,4 +49,16 @@ fn setting(path: &str, unit: &str, text: &str) -> Result<f32, String> {
 pub fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
     numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, for example 640,360".to_owned())
+}
+
+/// Checks that a picture of this width and height has the pixel of `--at`.
+///
+/// # Errors
+/// It has not.
+pub fn inside((x, y): (u32, u32), (width, height): (u32, u32)) -> Result<(), Failure> {
+    if x < width && y < height {
+        return Ok(());
+    }
+    let last = format!("{},{}", width - 1, height - 1);
+    Err(Failure::Usage(format!("--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {last}")))
 }

@@ -257,14 +257,8 @@ impl Pipeline {
         // Depth is reversed, so a positive bias is towards the eye.
         let is_biased = desc.raster == Raster::Edges;
         let raster = raster.depth_bias_enable(is_biased).depth_bias_constant_factor(64.0).depth_bias_slope_factor(1.5);
-        let runs_for_samples = desc.raster == Raster::Depth && desc.samples > 1 && gpu.optional_stages().sample_shading;
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples))
-            .sample_shading_enable(runs_for_samples)
-            .min_sample_shading(1.0);
-        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(desc.depth && desc.raster != Raster::Added)
-            .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines | Raster::Depth));
+        let multisample = multisampling(gpu, desc);
+        let depth = depth_test(desc);
         let written = if desc.raster == Raster::Depth { Default::default() } else { vk::ColorComponentFlags::RGBA };
         let attachment = blending(desc.raster).color_write_mask(written);
         let attachments = vec![attachment; desc.colors.len()];
@@ -322,6 +316,21 @@ impl Pipeline {
         tracing::debug!("`{name}`: {:?} ms, stages {times:?} ms, cached: {is_cached}", feedback_ms(&whole));
         Ok((raw, CompileInfo::new(stages, start.elapsed().as_secs_f64() * 1e3, is_cached)))
     }
+}
+
+/// A stage that finds a layer reads the depth of each sample. NVIDIA gives it that of the pixel's center unless the state asks for samples.
+fn multisampling(gpu: &Gpu, desc: &PipelineDesc<'_>) -> vk::PipelineMultisampleStateCreateInfo<'static> {
+    let runs_for_samples = desc.raster == Raster::Depth && desc.samples > 1 && gpu.optional_stages().sample_shading;
+    vk::PipelineMultisampleStateCreateInfo::default()
+        .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples))
+        .sample_shading_enable(runs_for_samples)
+        .min_sample_shading(1.0)
+}
+
+fn depth_test(desc: &PipelineDesc<'_>) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+    vk::PipelineDepthStencilStateCreateInfo::default()
+        .depth_test_enable(desc.depth && desc.raster != Raster::Added)
+        .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines | Raster::Depth))
 }
 
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {

@@ -1,4 +1,4 @@
-//! What nodes hide (KHR_node_visibility).
+//! The parts of a model that nodes hide (KHR_node_visibility).
 
 use super::rig::Rig;
 
@@ -12,7 +12,7 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// What is hidden while these nodes of the rig hide themselves.
+    /// The parts that are hidden while these nodes of the rig hide themselves.
     pub fn new(rig: &Rig, mut nodes: Vec<bool>) -> Self {
         if !nodes.contains(&true) {
             return Self::default();

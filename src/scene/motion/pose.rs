@@ -49,7 +49,7 @@ pub struct Pose {
     pub cameras: Vec<Camera>,
     /// `Motion::values`, as they are at the moment.
     pub values: Vec<Values>,
-    /// What is not shown.
+    /// The parts that are not shown.
     pub hidden: Hidden,
 }
 

@@ -84,7 +84,7 @@ impl Extent {
     }
 }
 
-/// What is hidden during the whole of these clips. A node counts as shown also if it and a node above it are visible at different times only.
+/// The parts that are hidden during the whole of these clips. A node counts as shown also if it and a node above it are visible at different times only.
 fn hidden_throughout(model: &Model, playing: &[Playing]) -> Hidden {
     let rig = &model.motion.rig;
     let mut nodes = rig.hidden_nodes();

@@ -24,7 +24,7 @@ use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::theme::{ERROR, QUIET};
 use crate::frame::Scene;
-use rows::with_commas;
+use crate::message::grouped;
 use tree::{Listed, Tree};
 
 /// How the rest of the window finds the panel.
@@ -84,7 +84,7 @@ fn show(ui: &mut Ui, (state, scene): (&State, &Scene), own: &mut SceneState, com
     match own.tree.list(scene.loaded()) {
         Listed::Ready => {}
         Listed::Coming => {
-            let nodes = with_commas(scene.loaded().nodes.len());
+            let nodes = grouped(scene.loaded().nodes.len() as f64);
             ui.label(RichText::new(format!("Listing {nodes} nodes…")).color(QUIET));
             return ui.ctx().request_repaint_after(POLL);
         }

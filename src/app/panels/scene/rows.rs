@@ -239,16 +239,3 @@ pub(in crate::app) fn textures(model: &Model) -> BTreeMap<TextureSource, Vec<(us
     }
     textures
 }
-
-/// A count with commas: `100,000`.
-pub(super) fn with_commas(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}

@@ -42,7 +42,7 @@ pub(super) enum Listed {
     Failed(String),
 }
 
-/// What is drawn of the scene of the last frame.
+/// The nodes of the last frame's scene that are drawn.
 struct Drawn {
     scene: Scene,
     /// Whether the settings let each node, or something below it, be drawn.

@@ -12,7 +12,8 @@ use crate::app::widgets::check_box;
 use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{ERROR, GOOD, QUIET, WARNING, small_font};
-use crate::pipeline::{Figure, all_statistics, grouped};
+use crate::message::grouped;
+use crate::pipeline::{Figure, all_statistics};
 
 /// A list narrower than this has two lines for each stage, in points.
 const ONE_LINE: f32 = 520.0;

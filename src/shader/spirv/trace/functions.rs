@@ -1,4 +1,4 @@
-//! What the functions of a module are like before they are instrumented: which of them log, and where they begin.
+//! The functions of a module before they are instrumented: which of them log, and where they begin.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ pub enum Logged {
     Statements,
 }
 
-/// What the functions of a module are like before they are instrumented.
+/// The functions of a module before they are instrumented.
 pub(super) struct Functions {
     /// They log nothing.
     silent: HashSet<Id>,
