@@ -105,7 +105,8 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
     let count = trace.fragments.len();
     match wanted {
         Some(wanted) if wanted >= count => {
-            Err(Failure::Usage(format!("--fragment {wanted}: the pixel has {count} fragments; the first is 0")))
+            let all = if count == 1 { "1 fragment".to_owned() } else { format!("{count} fragments") };
+            Err(Failure::Usage(format!("--fragment {wanted}: the pixel has {all}; the first is 0")))
         }
         Some(wanted) => Ok(wanted),
         None => trace.visible().ok_or_else(|| {

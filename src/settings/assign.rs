@@ -295,7 +295,7 @@ mod tests {
             ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),
             ("view.ev=", "view.ev has no value; it takes a number, -30 to 30"),
             ("view.msaa=-1", "view.msaa cannot be '-1'; it takes a whole number, 0 or more"),
-            ("view=1", "view cannot be '1'; it is a group of settings: background, bounces,"),
+            ("view=1", "view cannot be '1'; it is a group of settings: background, blend_layers, bounces,"),
             ("lights.orbit=1", "lights.orbit cannot be '1'; it is a list of settings, as lights.orbit.0"),
             ("lights.rect.enabled=yes", "lights.rect.enabled cannot be 'yes'; it takes true or false"),
             ("material.base_color=0.9,0.1", "cannot be '0.9,0.1'; it takes 3 numbers, as 0.9,0.1,0.1"),

@@ -234,7 +234,8 @@ fn what_cannot_be_traced_is_said() {
     ball(&["--at", "50,30", "--file", "common/absent.glsl"])
         .expect(2, &["no statement of common/absent.glsl is in the stage", "brdf/ndf.glsl"]);
     ball(&["--at", "50,30", "--mode", "path-traced"]).expect(2, &["no stage of the model draws the mode path-traced"]);
-    ball(&["--at", "50,30", "--fragment", "7", "--file", "user.glsl"]).expect(2, &["fragments; the first is 0"]);
+    ball(&["--at", "50,30", "--fragment", "7", "--file", "user.glsl"])
+        .expect(2, &["the pixel has 1 fragment; the first is 0"]);
     trace(directory.path(), &["toy.glsl", "--at", "50,30"]).expect(2, &["toys compute cannot be traced"]);
 }
 
