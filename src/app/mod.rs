@@ -169,10 +169,12 @@ impl App {
     /// Goes on with what is drawn between frames, until a frame is due.
     fn go_on(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        match open.drawing.go_on(&mut open.state, &mut open.engine) {
+        let next = open.drawing.go_on(&mut open.state, &mut open.engine);
+        let record = open.engine.recorder.rest();
+        match next {
             Ok(Next::Frame) => open.window.request_redraw(),
-            Ok(Next::After(wait)) => event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + wait)),
-            Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
+            Ok(Next::After(wait)) => event_loop.set_control_flow(within(record.into_iter().chain([wait]).min())),
+            Ok(Next::Event) => event_loop.set_control_flow(within(record)),
             Err(error) => self.end(event_loop, Err(error.into())),
         }
     }
@@ -209,6 +211,11 @@ impl App {
         }
         event_loop.exit();
     }
+}
+
+/// Waits for events; at most this long if there is something to do then.
+fn within(wait: Option<Duration>) -> ControlFlow {
+    wait.map_or(ControlFlow::Wait, |wait| ControlFlow::WaitUntil(Instant::now() + wait.min(Duration::from_secs(3600))))
 }
 
 /// Ends the process, unless it ends before. Closing waits for threads that use the device, and these for files, which may be on a file system
@@ -303,14 +310,14 @@ impl App {
                 }
                 let drawn = open.drawing.draw(&open.window, &mut open.state, &mut open.engine);
                 match drawn {
-                    Ok(again) => event_loop.set_control_flow(match again {
-                        Some(wait) if wait.is_zero() => {
-                            open.window.request_redraw();
-                            ControlFlow::Wait
-                        }
-                        Some(wait) => ControlFlow::WaitUntil(Instant::now() + wait.min(Duration::from_secs(3600))),
-                        None => ControlFlow::Wait,
-                    }),
+                    Ok(Some(Duration::ZERO)) => {
+                        open.window.request_redraw();
+                        event_loop.set_control_flow(ControlFlow::Wait);
+                    }
+                    Ok(again) => {
+                        let record = open.engine.recorder.rest();
+                        event_loop.set_control_flow(within(again.into_iter().chain(record).min()));
+                    }
                     Err(error) => return self.end(event_loop, Err(error.into())),
                 }
             }

@@ -65,7 +65,7 @@ enum Command {
     Render(render::Args),
     /// List the debug modes, constants and parameters of the shader tree
     Modes(modes::Args),
-    /// Compile every shader, and build the pipelines of every mode and choice; for CI
+    /// Compile every shader, and build the pipelines of every mode and choice; or draw a model and check its assertions and operations; for CI
     Check(check::Args),
     /// Show the devices, the shader tree and the contents of a model
     Info(info::Args),
@@ -135,7 +135,7 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::View(args)) => view::run(args, start),
         Some(Command::Render(args)) => render::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
-        Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Check(args)) => check::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::New(args)) => new::run(&args),
         Some(Command::Learn(args)) => learn::run(args, start),

@@ -1,5 +1,6 @@
 //! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
+mod checks;
 mod draw;
 mod error;
 mod hints;
@@ -26,6 +27,7 @@ use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
+pub use checks::CheckedPicture;
 pub use draw::Step;
 pub use error::HeadlessError;
 pub use not_finite::{Search, first_not_finite};

@@ -17,7 +17,7 @@
 //!
 //! - **Before** anything new reaches the compiler or the device, the window records its settings, model, tree,
 //!   geometry, and the hashes of the changed texts (`suspects`). This takes 0.5 ms for an edit. A moving camera is
-//!   recorded every 250 ms, and at each edit.
+//!   recorded every 250 ms, when it comes to rest, and at each edit.
 //! - **After** the device has drawn it, the window records the settings of a frame that has finished (`good`), and the
 //!   texts once the picture has settled, with all of its stages and light (`good.json`).
 //!

@@ -33,6 +33,8 @@ struct Inner {
     start: Instant,
     /// When camera and window were last compared with the record.
     checked: Instant,
+    /// Whether the camera of `state` is newer than that of the record.
+    is_stale: bool,
 }
 
 impl Recorder {
@@ -48,6 +50,7 @@ impl Recorder {
             writing: None,
             start,
             checked,
+            is_stale: false,
         })))
     }
 
@@ -93,16 +96,28 @@ impl Recorder {
         inner.attempt += u64::from(!is_alike);
         if !is_same {
             inner.state.work = Some(work.clone());
+            inner.is_stale = true;
         }
         if !is_alike || inner.checked.elapsed() > CAMERA_INTERVAL {
             inner.checked = Instant::now();
             let window = Some(window());
-            if !is_same || inner.state.window != window {
+            if inner.is_stale || inner.state.window != window {
                 inner.state.window = window;
                 inner.write();
             }
         }
         inner.attempt
+    }
+
+    /// Records a camera that moved less than 250 ms before the window came to rest. Returns when to call again, unless all is recorded.
+    pub fn rest(&self) -> Option<Duration> {
+        let mut inner = self.lock();
+        let wait = CAMERA_INTERVAL.saturating_sub(inner.checked.elapsed());
+        if inner.is_stale && wait.is_zero() {
+            inner.checked = Instant::now();
+            inner.write();
+        }
+        inner.is_stale.then_some(wait)
     }
 
     /// Records that the device has drawn the state with this number.
@@ -179,6 +194,7 @@ impl Inner {
         if self.start.elapsed() > LONG_LIFE {
             self.state.losses = 0;
         }
+        self.is_stale = false;
         if let Some(Err(error)) = self.folder.as_ref().map(|folder| self.state.write(folder)) {
             self.fail(&error);
         }

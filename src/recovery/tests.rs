@@ -131,3 +131,22 @@ fn nobody_waits_while_the_texts_are_written() {
     assert_eq!(written.texts, good.texts);
     assert_eq!(RecoveryState::read(folder.path()).losses, 0);
 }
+
+#[test]
+fn the_last_turn_of_a_camera_is_recorded_once_the_window_rests() {
+    let folder = tempfile::tempdir().unwrap();
+    let work = session().0.work.unwrap();
+    let recorder = Recorder::new(Some(folder.path().to_owned()), RecoveryState::default(), GoodTexts::default());
+    let geometry = || Geometry { size: (640, 480), at: None };
+    recorder.begin(&work, geometry);
+    assert_eq!(recorder.rest(), None, "all is recorded");
+    let mut turned = work;
+    Arc::make_mut(&mut turned.settings).camera.eye = Some([1.0, 2.0, 3.0]);
+    recorder.begin(&turned, geometry);
+    // The same frame again has nothing new to record, but the turn may not be recorded yet.
+    recorder.begin(&turned, geometry);
+    while let Some(wait) = recorder.rest() {
+        std::thread::sleep(wait);
+    }
+    assert_eq!(RecoveryState::read(folder.path()).work, Some(turned));
+}

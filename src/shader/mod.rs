@@ -6,6 +6,7 @@
 //! is either a complete new [`ShaderSet`] or [`Diagnostic`]s.
 
 pub mod annotation;
+pub mod checks;
 pub mod compile;
 pub mod contract;
 pub mod diagnostic;

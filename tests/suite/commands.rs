@@ -3,6 +3,7 @@
 mod attacks;
 mod bench;
 mod cache;
+mod checks;
 mod cli;
 mod files;
 mod learn;

@@ -1,8 +1,8 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
 mod args;
+mod asserts;
 mod many;
-mod modes;
 mod warnings;
 mod watch;
 
@@ -20,11 +20,11 @@ use specula::render::Capture;
 use specula::settings::Settings;
 use specula::shader::{Diagnostic, Mode};
 
+use super::common::chosen_modes::Modes;
 use super::common::{check_mode, check_out, check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_diagnostics, tell_left_out};
 pub use args::Args;
-use modes::Modes;
 use warnings::{Warnings, warn_of_not_finite};
 use watch::{Changes, Watch};
 
@@ -91,7 +91,10 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     complete(&mut headless, &args, watch.is_some())?;
     warnings.tell(&headless.shaders().warnings);
+    let mut asserted = asserts::check(&mut headless, &args);
     if let Some(mut watch) = watch {
+        // A save may mend it.
+        go_on(std::mem::replace(&mut asserted, Ok(())))?;
         message::tell(format_args!("wrote {}; watching, Ctrl+C ends", args.out.display()));
         while let Some(changes) = watch.next() {
             again(&mut headless, &args, &modes, &mut watch, &changes, &mut warnings)?;
@@ -100,7 +103,16 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     }
     // Validation messages of the teardown count too.
     drop(headless);
-    check_validation(&gpu)
+    check_validation(&gpu)?;
+    asserted
+}
+
+/// A result without failures that were printed, which do not end a command that watches.
+fn go_on(result: Result<(), Failure>) -> Result<(), Failure> {
+    match result {
+        Err(Failure::Printed) => Ok(()),
+        result => result,
+    }
 }
 
 /// Creates what the first frame needs. If the shaders have failed and are watched, waits for the next save. Returns `false` if
@@ -184,7 +196,10 @@ fn again(
     report(&reload, headless, args, detect_ms, first_frame_ms);
     complete(headless, args, true)?;
     warnings.tell(&headless.shaders().warnings);
-    Ok(())
+    match reload.outcome {
+        Outcome::Ready(_) => go_on(asserts::check(headless, args)),
+        _ => Ok(()),
+    }
 }
 
 /// Compiles the stages that the picture did not need. Their errors end the command, unless it watches for the next save.

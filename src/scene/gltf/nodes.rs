@@ -112,7 +112,11 @@ pub fn walk(root: &json::Root, chosen: Option<usize>, switched: &HashSet<usize>)
         scene.warnings.push(format!("{VISIBILITY} hides {hidden} nodes with all below them: they are not shown."));
     }
     if scene.meshes.is_empty() {
-        let found = format!("{} nodes, {} meshes in the file, none in the scene", root.nodes.len(), root.meshes.len());
+        let left = match hidden {
+            0 => "none in the scene".to_owned(),
+            _ => format!("none that is seen, since {VISIBILITY} hides {hidden} nodes with all below them"),
+        };
+        let found = format!("{} nodes, {} meshes in the file, {left}", root.nodes.len(), root.meshes.len());
         return Err(Problem::NothingToDraw { found });
     }
     Ok(scene)

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::asserts::numbered;
 use super::unbound::unbound;
 use crate::message::nearest;
 use crate::shader::diagnostic::Diagnostic;
@@ -138,7 +139,7 @@ fn pragma_once(text: &str) -> Option<Range<usize>> {
 }
 
 fn blanked(text: &str, bytes: Option<Range<usize>>) -> String {
-    let mut text = text.to_owned();
+    let mut text = numbered(text).into_owned();
     if let Some(bytes) = bytes {
         text.replace_range(bytes.clone(), &" ".repeat(bytes.len()));
     }

@@ -1,5 +1,6 @@
 //! Compiles a stage to SPIR-V with shaderc.
 
+pub mod asserts;
 mod balance;
 mod hooks;
 pub mod include;
@@ -255,10 +256,18 @@ impl Compiler {
         kind: StageKind,
     ) -> Result<(Vec<u32>, String), String> {
         let mut again = options.clone();
-        let log = match self.run_once(options, includes, path, text, kind) {
+        let mut log = match self.run_once(options, includes, path, text, kind) {
             Err(log) => log,
             good => return good,
         };
+        let asserting = asserts::with_functions(text, &log);
+        let text = asserting.as_deref().unwrap_or(text);
+        if asserting.is_some() {
+            log = match self.run_once(again.clone(), includes, path, text, kind) {
+                Err(log) => log,
+                good => return good,
+            };
+        }
         let names = own::refused(&log, includes.snapshot());
         if names.is_empty() {
             return Err(log);

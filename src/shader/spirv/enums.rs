@@ -57,12 +57,28 @@ pub mod model {
 
 /// Instructions of GLSL.std.450.
 pub mod extended {
+    pub const FABS: u32 = 4;
+    pub const ASIN: u32 = 16;
+    pub const ACOS: u32 = 17;
+    pub const ACOSH: u32 = 23;
+    pub const ATANH: u32 = 24;
+    pub const ATAN2: u32 = 25;
+    pub const POW: u32 = 26;
+    pub const LOG: u32 = 28;
+    pub const LOG2: u32 = 30;
+    pub const SQRT: u32 = 31;
+    pub const INVERSE_SQRT: u32 = 32;
+    pub const DETERMINANT: u32 = 33;
+    pub const MATRIX_INVERSE: u32 = 34;
     pub const MODF: u32 = 35;
     pub const UMIN: u32 = 38;
     pub const SMIN: u32 = 39;
+    pub const FCLAMP: u32 = 43;
     pub const UCLAMP: u32 = 44;
     pub const SCLAMP: u32 = 45;
+    pub const SMOOTHSTEP: u32 = 49;
     pub const FREXP: u32 = 51;
+    pub const NORMALIZE: u32 = 69;
     pub const INTERPOLATE_AT_CENTROID: u32 = 76;
     pub const INTERPOLATE_AT_OFFSET: u32 = 78;
 }

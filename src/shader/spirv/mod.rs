@@ -2,6 +2,7 @@
 //! sees a module.
 
 pub mod bindings;
+pub mod checks;
 mod conditions;
 mod declared;
 mod draw_index;

@@ -25,8 +25,9 @@ use super::spirv::trace::Purpose;
 use super::{Compiler, PixelValue, ShaderSet, Source};
 pub use assertion::Assertion;
 use calls::Calls;
+pub use log::EXTENSIONS;
 pub use report::{Done, LineOfTrace, Once};
-pub use stage::{Listener, ListeningStage, TracedStage};
+pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
 pub use statement::Site;
 pub use value::TracedValue;
 

@@ -16,7 +16,7 @@ use crate::shader::{Compiler, ShaderSet, Source, StageKind, specialize};
 
 /// A text that is appended to a stage, and the values that it gets.
 pub struct Listener {
-    /// GLSL that is appended. `SPECULA_COLOR` is the name of the color that the stage writes; its own `main` is `specula_main`.
+    /// GLSL that is appended. `SPECULA_COLOR` is the name of the color that a fragment stage writes; its own `main` is `specula_main`.
     pub text: String,
     /// Lines that are put behind `#version`; may be empty.
     pub extensions: &'static str,
@@ -34,6 +34,27 @@ pub struct ListeningStage<'a> {
     words: Vec<u32>,
 }
 
+/// Compiles the stage at `path` of `shaders` once more, with an appended text. `source` gives files their names. Returns its snapshot and its
+/// module, with lines.
+///
+/// # Errors
+/// A message why it cannot be compiled so.
+pub fn compile_listening<'a>(
+    shaders: &ShaderSet,
+    path: &TreePath,
+    (compiler, source): (&Compiler, &'a Source),
+    (text, extensions): (&str, &str),
+) -> Result<(Snapshot<'a>, Vec<u32>), String> {
+    let texts = shaders.texts.iter().map(|(path, text)| (path.clone(), Ok(text.clone()))).collect();
+    let snapshot = Snapshot::holding(source, texts);
+    let own = snapshot.read(path).map_err(|error| error.to_string())?;
+    let both = listening(&own, text, extensions).map_err(|lack| format!("{path} {lack}"))?;
+    let over = snapshot.over(BTreeMap::from([(path.clone(), Ok(both.into()))]));
+    let words = compiler.compile_with_lines(&over, path);
+    let words = words.ok_or_else(|| format!("{path} does not compile with the text that traces its values"))?;
+    Ok((snapshot, words))
+}
+
 impl<'a> ListeningStage<'a> {
     /// Compiles the fragment stage `stage` of `shaders` once more. `source` gives files their names.
     ///
@@ -42,19 +63,13 @@ impl<'a> ListeningStage<'a> {
     pub fn new(
         shaders: &'a ShaderSet,
         stage: &str,
-        (compiler, source): (&Compiler, &'a Source),
+        tools: (&Compiler, &'a Source),
         listener: &Listener,
     ) -> Result<Self, String> {
-        let path = TreePath::from(stage);
         let before = shaders.stages.get(stage).filter(|before| before.kind == StageKind::Fragment);
         let before = before.ok_or_else(|| format!("{stage} is no fragment stage that has compiled"))?;
-        let texts = shaders.texts.iter().map(|(path, text)| (path.clone(), Ok(text.clone()))).collect();
-        let snapshot = Snapshot::holding(source, texts);
-        let text = snapshot.read(&path).map_err(|error| error.to_string())?;
-        let text = listening(&text, listener).map_err(|lack| format!("{stage} {lack}"))?;
-        let over = snapshot.over(BTreeMap::from([(path.clone(), Ok(text.into()))]));
-        let words = compiler.compile_with_lines(&over, &path);
-        let words = words.ok_or_else(|| format!("{stage} does not compile with the text that traces its values"))?;
+        let text = (listener.text.as_str(), listener.extensions);
+        let (snapshot, words) = compile_listening(shaders, &TreePath::from(stage), tools, text)?;
         Ok(Self { shaders, stage: before.clone(), snapshot, words })
     }
 
@@ -151,17 +166,19 @@ impl TracedStage<'_> {
 }
 
 /// The text of a stage that listens. No line moves.
-fn listening(text: &str, listener: &Listener) -> Result<String, &'static str> {
+fn listening(text: &str, appended: &str, extensions: &str) -> Result<String, &'static str> {
     let main = main_of(&code(text)).ok_or("has no main()")?;
-    let color = color_of(text).ok_or("has no `out vec4` color")?;
+    let appended = match appended.contains("SPECULA_COLOR") {
+        true => appended.replace("SPECULA_COLOR", &color_of(text).ok_or("has no `out vec4` color")?),
+        false => appended.to_owned(),
+    };
     let (before, after) = (&text[..main.start], &text[main.end..]);
-    let before = match (listener.extensions, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?)))
-    {
+    let before = match (extensions, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?))) {
         ("", _) | (_, None) => before.to_owned(),
         (extensions, Some(end)) => {
             let next = before[..=end].lines().count() + 1;
             format!("{}{extensions}\n#line {next}\n{}", &before[..=end], &before[end + 1..])
         }
     };
-    Ok(format!("{before}specula_main{after}\n{}", listener.text.replace("SPECULA_COLOR", &color)))
+    Ok(format!("{before}specula_main{after}\n{appended}"))
 }

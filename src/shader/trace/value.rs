@@ -14,7 +14,7 @@ pub struct TracedValue {
 
 impl TracedValue {
     /// At most four numbers count.
-    pub(super) fn new(kind: NumberKind, bits: &[u32]) -> Self {
+    pub(in crate::shader) fn new(kind: NumberKind, bits: &[u32]) -> Self {
         let mut all = [0; 4];
         all.iter_mut().zip(bits).for_each(|(all, bits)| *all = *bits);
         Self { kind, count: bits.len().min(4), bits: all }

@@ -136,3 +136,11 @@ fn models_side_by_side_switch_by_clips_of_their_own() {
     assert_eq!([0, 1].map(|clip| count(&[playing(clip, 1.0, 1.5)])), [3, 3]);
     assert_eq!(count(&[playing(0, 1.0, 1.5), playing(1, 1.0, 1.5)]), 2);
 }
+
+#[test]
+fn a_file_whose_meshes_are_all_hidden_says_what_hides_them() {
+    let mut builder = Builder::triangle();
+    builder.json["nodes"][0]["extensions"] = hidden();
+    let error = builder.error();
+    assert!(error.contains("nothing to draw") && error.contains("KHR_node_visibility hides 1 nodes"), "{error}");
+}

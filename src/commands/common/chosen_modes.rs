@@ -2,8 +2,8 @@
 
 use specula::shader::{Mode, ShaderSet};
 
-use super::Failure;
-use crate::commands::common::check_mode;
+use super::check_mode;
+use crate::commands::Failure;
 
 /// The modes to write.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,0 +1,125 @@
+//! `specula check MODEL`: draws a model with stages that find assertions that fail, and operations whose result GLSL leaves open.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Value, json};
+use specula::events::{Event, emit};
+use specula::headless::Headless;
+use specula::message::{grouped, tell, warn};
+use specula::shader::Diagnostic;
+use specula::shader::checks::Broken;
+
+use super::Args;
+use crate::commands::common::chosen_modes::Modes;
+use crate::commands::common::{check_mode, check_validation, compiler};
+use crate::commands::progress::Progress;
+use crate::commands::{Failure, print_diagnostics, print_json};
+
+/// Something that was found, and the modes in which it did, the first one first.
+struct Found {
+    broken: Broken,
+    diagnostic: Diagnostic,
+    modes: Vec<String>,
+}
+
+/// Runs the command.
+pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
+    args.common.take_files(&mut args.models)?;
+    let mut settings = args.common.settings()?;
+    // Each sample would run the stage again.
+    settings.view.msaa = 1;
+    let modes = Modes::of(&mut settings.mode);
+    let sequence = args.frames.sequence()?;
+    let source = args.common.source()?;
+    let gpu = args.common.gpu()?;
+    let model = args.common.model(args.models.model.as_deref())?;
+    args.common.fit(&model, &mut settings)?;
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling the shaders");
+    let first = settings.mode.clone();
+    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size())?;
+    headless.set_sequence(sequence);
+    let shaders = headless.shaders();
+    check_mode(&shaders, &first)?;
+    let slugs: Vec<String> = match &modes {
+        Modes::One => vec![first],
+        modes => modes.in_shaders(&shaders, args.paths)?.into_iter().map(|mode| mode.slug.clone()).collect(),
+    };
+    let (mut found, mut checks, mut left_out) = (Vec::<Found>::new(), 0, BTreeSet::new());
+    for slug in &slugs {
+        progress.say(&format!("checking the mode {slug}"));
+        headless.settings_mut().mode.clone_from(slug);
+        let picture = headless.check_operations(args.undefined)?;
+        checks = checks.max(picture.checks);
+        left_out.extend(picture.left_out);
+        picture.broken.into_iter().for_each(|(broken, diagnostic)| add(&mut found, broken, diagnostic, slug));
+    }
+    drop(progress);
+    let stages: Vec<&str> = left_out.iter().map(String::as_str).collect();
+    if !stages.is_empty() {
+        let (name, stages) = (&gpu.info().name, stages.join(", "));
+        warn(format_args!("{name} cannot write buffers from these stages, which are not checked: {stages}"));
+    }
+    found.sort_by(|a, b| (&a.broken.file, a.broken.line).cmp(&(&b.broken.file, b.broken.line)));
+    let result = tell_of(args, &found, (checks, slugs.len()));
+    drop(headless);
+    check_validation(&gpu)?;
+    result
+}
+
+/// Adds something that was found, or a mode to what is known.
+fn add(found: &mut Vec<Found>, broken: Broken, diagnostic: Diagnostic, mode: &str) {
+    let is_same = |known: &&mut Found| {
+        (&known.broken.file, known.broken.line, known.broken.rule) == (&broken.file, broken.line, broken.rule)
+    };
+    match found.iter_mut().find(is_same) {
+        Some(known) if known.modes.last().is_some_and(|last| last == mode) => {}
+        Some(known) => known.modes.push(mode.to_owned()),
+        None => found.push(Found { broken, diagnostic, modes: vec![mode.to_owned()] }),
+    }
+}
+
+fn tell_of(args: &Args, found: &[Found], (checks, modes): (usize, usize)) -> Result<(), Failure> {
+    let diagnostics: Vec<Diagnostic> = found.iter().map(with_modes).collect();
+    for diagnostic in &diagnostics {
+        emit(args.common.emits(), &Event::Diagnostic(diagnostic));
+    }
+    if args.json {
+        print_json(&found.iter().map(as_json).collect::<Vec<_>>());
+    }
+    print_diagnostics(&diagnostics);
+    let faults = found.iter().filter(|found| found.broken.is_fault()).count();
+    if faults > 0 {
+        tell(format_args!("{faults} error{}", if faults == 1 { "" } else { "s" }));
+        return Err(Failure::Printed);
+    }
+    if !args.json && !args.common.emits() {
+        let modes = if modes == 1 { "one mode".to_owned() } else { format!("{modes} modes") };
+        let (of, none) = match args.undefined {
+            true => ("assertions and operations", "none failed or was undefined"),
+            false => ("assertions", "none failed"),
+        };
+        out!("drew {modes} with {} {of}: {none}", grouped(checks as f64));
+    }
+    Ok(())
+}
+
+fn with_modes(found: &Found) -> Diagnostic {
+    let others = found.modes.len() - 1;
+    let mode = &found.modes[0];
+    let note = match others {
+        0 => format!("in the mode {mode}"),
+        1..=4 => format!("in the modes {}", found.modes.join(", ")),
+        _ => format!("in the mode {mode} and {others} others"),
+    };
+    let mut diagnostic = found.diagnostic.clone();
+    diagnostic.notes.push(note);
+    diagnostic
+}
+
+fn as_json(found: &Found) -> Value {
+    let Broken { file, line, rule, text, stage, count, first, operands, .. } = &found.broken;
+    let operands: Vec<Value> = operands.iter().map(|operand| operand.json()).collect();
+    json!({ "file": file, "line": line, "rule": rule.name(), "text": text, "message": found.broken.message(), "stage": stage.to_string(),
+        "count": count, "first": [first.0, first.1], "operands": operands, "modes": found.modes })
+}

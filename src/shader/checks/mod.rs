@@ -1,0 +1,252 @@
+//! Finds the operations of a frame's stages whose result GLSL leaves open, and the author's assertions that fail and values that are
+//! printed, with how often, where first, and with which operands.
+//!
+//! Each stage is compiled once more with line information, and its module is instrumented (`spirv/checks/`). The set of pipelines is that of
+//! the picture except for these stages. It is drawn twice: the first draw counts, the second one reads the operands at the first places.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::compile::asserts::text_of;
+use super::library::Stage;
+use super::spirv::checks::{Check, MASK_WORDS, MOST_OPERANDS, Names, Rule, check};
+use super::spirv::trace::with_constants;
+use super::trace::{EXTENSIONS, TracedValue, compile_listening};
+use super::{Compiler, Diagnostic, ShaderSet, Source, StageKind, TreePath};
+
+/// Words of a check in the buffer: count, first place, operands.
+const CHECK: usize = 2 + MOST_OPERANDS;
+/// Words of a stage in the buffer.
+const PART: usize = CHECK * 32 * MASK_WORDS;
+/// Numbers in the text that stand for the address of the stage's part, and for the words of bits that are in use.
+const STANDING_FOR: [u32; 3] = [0xC0DE_0B01, 0xC0DE_0B02, 0xC0DE_0B03];
+const NAMES: Names<'_> =
+    Names { mask: "specula_check_bits", function: "specula_check_operands", silent: "specula_check" };
+
+/// The stages of a frame, compiled with the text that checks them.
+pub struct CheckedStages<'a> {
+    shaders: &'a ShaderSet,
+    source: &'a Source,
+    stages: Vec<CheckedStage>,
+    address: u64,
+    undefined: bool,
+}
+
+struct CheckedStage {
+    stage: Arc<Stage>,
+    words: Vec<u32>,
+    checks: Vec<Check>,
+}
+
+/// An operation that broke a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// Its stage, an index into the stages, and the number of its check there.
+    key: (usize, usize),
+    /// The file of the tree.
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// The rule.
+    pub rule: Rule,
+    /// The text of an `assert()` or a `print()`.
+    pub text: Option<String>,
+    /// The stage.
+    pub stage: TreePath,
+    /// The kind of the stage.
+    pub kind: StageKind,
+    /// In how many fragments, vertices or invocations.
+    pub count: u32,
+    /// Where first: a pixel from the upper left corner of the stage's image, an invocation, or x alone for a vertex or primitive.
+    pub first: (u32, u32),
+    /// The operands there.
+    pub operands: Vec<TracedValue>,
+}
+
+impl<'a> CheckedStages<'a> {
+    /// Compiles these stages of `shaders`. `address` is that of a buffer of [`CheckedStages::size`] bytes. `undefined`: checks operations,
+    /// and not only what the author asserts and prints.
+    ///
+    /// # Errors
+    /// A message why a stage cannot be checked.
+    pub fn new(
+        shaders: &'a ShaderSet,
+        stages: &BTreeSet<String>,
+        (compiler, source): (&Compiler, &'a Source),
+        (address, undefined): (u64, bool),
+    ) -> Result<Self, String> {
+        let stages = stages.iter().filter_map(|path| shaders.stages.get(path));
+        let compiled = stages.map(|stage| {
+            let (_, words) =
+                compile_listening(shaders, &stage.path, (compiler, source), (&text(stage.kind), EXTENSIONS))?;
+            Ok(CheckedStage { stage: stage.clone(), words, checks: Vec::new() })
+        });
+        let stages = compiled.collect::<Result<Vec<_>, String>>()?;
+        Ok(Self { shaders, source, stages, address, undefined })
+    }
+
+    /// Bytes of the buffer for this many stages.
+    pub fn size(stages: usize) -> u64 {
+        4 * (PART * stages.max(1)) as u64
+    }
+
+    /// The content of the buffer before the first draw: no check has failed.
+    pub fn empty(&self) -> Vec<u32> {
+        let check = [&[0, u32::MAX][..], &[0; MOST_OPERANDS]].concat();
+        check.repeat(32 * MASK_WORDS * self.stages.len())
+    }
+
+    /// The shaders that count.
+    ///
+    /// # Errors
+    /// A message why a stage cannot be checked.
+    pub fn counting(&mut self) -> Result<Arc<ShaderSet>, String> {
+        self.instrumented(None)
+    }
+
+    /// The shaders that read the operands of these checks, where the buffer says that they failed first.
+    ///
+    /// # Errors
+    /// As [`CheckedStages::counting`].
+    pub fn reading(&mut self, broken: &[Broken]) -> Result<Arc<ShaderSet>, String> {
+        let mut chosen: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        broken.iter().for_each(|broken| _ = chosen.entry(broken.key.0).or_default().insert(broken.key.1));
+        self.instrumented(Some(&chosen))
+    }
+
+    fn instrumented(&mut self, chosen: Option<&BTreeMap<usize, BTreeSet<usize>>>) -> Result<Arc<ShaderSet>, String> {
+        let mut shaders = self.shaders.clone();
+        for (index, stage) in self.stages.iter_mut().enumerate() {
+            let of_stage = match chosen.map(|chosen| chosen.get(&index)) {
+                None => None,
+                Some(Some(chosen)) => Some(chosen),
+                // Nothing failed in this stage.
+                Some(None) => continue,
+            };
+            let path = &stage.stage.path;
+            let lacks = || format!("{path} cannot be checked");
+            let checked = check(&stage.words, &NAMES, self.undefined, of_stage).ok_or_else(lacks)?;
+            let part = self.address + 4 * (PART * index) as u64;
+            let used = if chosen.is_some() { 0 } else { checked.checks.len().div_ceil(32) as u32 };
+            let values = [part as u32, (part >> 32) as u32, used];
+            let changes: Vec<(u32, u32)> = STANDING_FOR.into_iter().zip(values).collect();
+            let words = with_constants(&checked.words, &changes).ok_or_else(lacks)?;
+            stage.checks = checked.checks;
+            shaders.stages.insert(path.to_string(), Arc::new(stage.stage.with_module(words)));
+        }
+        Ok(Arc::new(shaders))
+    }
+
+    /// How many operations are checked.
+    pub fn check_count(&self) -> usize {
+        self.stages.iter().map(|stage| stage.checks.len()).sum()
+    }
+
+    /// The operations that broke a rule, by the words of the buffer, in the order of files and lines.
+    pub fn broken(&self, words: &[u32]) -> Vec<Broken> {
+        let parts = self.stages.iter().enumerate().zip(words.chunks_exact(PART));
+        let mut found: Vec<Broken> = parts
+            .flat_map(|((index, stage), part)| {
+                let failed = stage.checks.iter().enumerate().zip(part.chunks_exact(CHECK));
+                failed.filter(|(_, words)| words[0] > 0).map(move |((number, check), words)| {
+                    let mut left = &words[2..];
+                    let operands = check.operands.iter().map(|(kind, count)| {
+                        let (bits, rest) = left.split_at((*count as usize).min(left.len()));
+                        left = rest;
+                        TracedValue::new(*kind, bits)
+                    });
+                    Broken {
+                        key: (index, number),
+                        file: check.file.clone(),
+                        line: check.line,
+                        rule: check.rule,
+                        text: check.text.and_then(|number| self.text(&check.file, number)),
+                        stage: stage.stage.path.clone(),
+                        kind: stage.stage.kind,
+                        count: words[0],
+                        first: place(stage.stage.kind, words[1]),
+                        operands: operands.collect(),
+                    }
+                })
+            })
+            .collect();
+        found.sort_by(|a, b| (&a.file, a.line, a.rule, &a.stage).cmp(&(&b.file, b.line, b.rule, &b.stage)));
+        found
+    }
+
+    fn text(&self, file: &str, number: u32) -> Option<String> {
+        text_of(self.shaders.texts.get(&TreePath::from(file))?, number)
+    }
+
+    /// Tells of a broken rule, with the line of its file: an error, or a warning of what is printed.
+    pub fn diagnostic(&self, broken: &Broken) -> Diagnostic {
+        let path = TreePath::from(broken.file.as_str());
+        let text = self.shaders.texts.get(&path);
+        let line = text.and_then(|text| text.lines().nth((broken.line as usize).checked_sub(1)?));
+        let (file, message) = (self.source.display_path(&path), broken.message());
+        let told =
+            if broken.is_fault() { Diagnostic::error(file, message) } else { Diagnostic::warning(file, message) };
+        told.on_line(broken.line, line)
+    }
+}
+
+impl Broken {
+    /// Whether it is a fault, and not only a value that is printed.
+    pub fn is_fault(&self) -> bool {
+        self.rule != Rule::Print
+    }
+
+    /// The fault in one sentence, with operands, how often, and where first.
+    pub fn message(&self) -> String {
+        let operands: Vec<String> = self.operands.iter().map(TracedValue::text).collect();
+        let (x, y) = self.first;
+        let (unit, first) = match self.kind {
+            StageKind::Fragment => ("fragment", format!("at the pixel {x},{y}")),
+            StageKind::Compute => ("invocation", format!("of the invocation {x},{y}")),
+            StageKind::Vertex => ("invocation", format!("of the vertex {x}")),
+            _ => ("invocation", format!("of the primitive {x}")),
+        };
+        let count = crate::message::grouped(f64::from(self.count));
+        let plural = if self.count == 1 { "" } else { "s" };
+        let where_ = format!("first {first}, in {count} {unit}{plural} of {}", self.stage);
+        let text = self.text.as_deref().unwrap_or_default();
+        match (self.rule, operands.join(" and ")) {
+            (Rule::Print, values) => format!("{text} = {values} {where_}"),
+            (rule @ Rule::Assert, values) => {
+                let parts = [text, &values].into_iter().filter(|part| !part.is_empty());
+                let parts: String = parts.map(|part| format!(": {part}")).collect();
+                format!("{rule}{parts}, {where_}")
+            }
+            (rule, values) => format!("{rule}: {values} {where_}"),
+        }
+    }
+}
+
+/// A place as the text packs it.
+fn place(kind: StageKind, packed: u32) -> (u32, u32) {
+    match kind {
+        StageKind::Fragment | StageKind::Compute => (packed & 0xffff, packed >> 16),
+        _ => (packed, 0),
+    }
+}
+
+/// The text that is appended to a stage of this kind.
+fn text(kind: StageKind) -> String {
+    let (place, counts) = match kind {
+        // The pixels around a triangle run along for derivatives.
+        StageKind::Fragment => ("(uint(gl_FragCoord.y) << 16 | uint(gl_FragCoord.x))", "!gl_HelperInvocation"),
+        StageKind::Compute => ("(gl_GlobalInvocationID.y << 16 | (gl_GlobalInvocationID.x & 0xffffu))", "true"),
+        StageKind::Vertex => ("uint(gl_VertexIndex)", "true"),
+        StageKind::TessellationControl | StageKind::TessellationEvaluation => ("uint(gl_PrimitiveID)", "true"),
+        StageKind::Geometry => ("uint(gl_PrimitiveIDIn)", "true"),
+        StageKind::Task | StageKind::Mesh => ("gl_WorkGroupID.x", "true"),
+    };
+    let number = |number: u32| format!("{number}u");
+    include_str!("checks.glsl")
+        .replace("SPECULA_PLACE", place)
+        .replace("SPECULA_COUNTS", counts)
+        .replace("SPECULA_LOW", &number(STANDING_FOR[0]))
+        .replace("SPECULA_HIGH", &number(STANDING_FOR[1]))
+        .replace("SPECULA_USED", &number(STANDING_FOR[2]))
+        .replace("SPECULA_WORDS", &number(MASK_WORDS as u32))
+}
