@@ -250,3 +250,35 @@ fn text(kind: StageKind) -> String {
         .replace("SPECULA_USED", &number(STANDING_FOR[2]))
         .replace("SPECULA_WORDS", &number(MASK_WORDS as u32))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::source::snapshot::Snapshot;
+    use crate::shader::spirv::{optimize, validate};
+
+    #[test]
+    fn checked_stages_of_the_tree_are_valid() {
+        let (source, compiler) = (Source::embedded(), Compiler::new().unwrap());
+        let snapshot = Snapshot::new(&source);
+        let texts = source.list().into_iter().filter_map(|path| Some((path.clone(), snapshot.read(&path).ok()?)));
+        let shaders = ShaderSet { texts: texts.collect(), ..ShaderSet::default() };
+        for path in ["pbr.frag", "debug.frag", "pbr.vert", "tonemap.frag", "deform.comp"] {
+            let path = TreePath::from(path);
+            let kind = StageKind::of(&path).unwrap();
+            let (_, words) =
+                compile_listening(&shaders, &path, (&compiler, &source), (&text(kind), EXTENSIONS)).unwrap();
+            let counting = check(&words, &NAMES, true, None).unwrap();
+            let all: BTreeSet<usize> = (0..counting.checks.len()).collect();
+            let reading = check(&words, &NAMES, true, Some(&all)).unwrap();
+            assert_eq!(counting.checks, reading.checks, "{path}");
+            assert!(!all.is_empty() && all.len() < 32 * MASK_WORDS, "{path}: {} checks", all.len());
+            for words in [&counting.words, &reading.words] {
+                assert_eq!(validate(words), Ok(()), "{path}");
+                assert_eq!(validate(&optimize(words.clone())), Ok(()), "{path}, optimized");
+            }
+            let without = check(&words, &NAMES, false, None).unwrap();
+            assert!(without.checks.is_empty(), "{path}: {:?}", without.checks);
+        }
+    }
+}

@@ -120,3 +120,16 @@ impl fmt::Display for Rule {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_manual_lists_all_rules() {
+        let manual = include_str!("../../../../assets/manual/command-line.md");
+        for rule in Rule::UNDEFINED {
+            assert!(manual.contains(&format!("`{}`", rule.name())), "{rule:?}");
+        }
+    }
+}
