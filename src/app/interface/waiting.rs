@@ -7,12 +7,12 @@ use winit::event::WindowEvent;
 use super::Interface;
 
 impl Interface {
-    /// Defers a key until after the next frame if egui has yet to process one that moves the focus, and all events that follow
-    /// such a key. Returns an event that need not wait.
+    /// Defers a key until after the next frame if egui has yet to process one that moves the focus, or a button of the mouse, and all events
+    /// that follow such a key. Returns an event that need not wait.
     pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {
         let waits = match &event {
             WindowEvent::KeyboardInput { .. } | WindowEvent::Ime(_) | WindowEvent::ModifiersChanged(_) => {
-                !self.waiting.is_empty() || self.moves_focus()
+                !self.waiting.is_empty() || self.has_to_wait(&event)
             }
             WindowEvent::MouseInput { .. }
             | WindowEvent::MouseWheel { .. }
@@ -34,7 +34,16 @@ impl Interface {
 
     /// The next deferred event that can be handled.
     pub(in crate::app) fn next_waiting(&mut self) -> Option<WindowEvent> {
-        if self.moves_focus() { None } else { self.waiting.pop_front() }
+        let next = self.waiting.front()?;
+        if self.has_to_wait(next) { None } else { self.waiting.pop_front() }
+    }
+
+    /// Whether an event has to wait for the next frame. A frame knows only which keys are down at its end, so `Ctrl` stays down until a frame
+    /// has seen the click that it belongs to.
+    fn has_to_wait(&self, event: &WindowEvent) -> bool {
+        let is_key = matches!(event, WindowEvent::KeyboardInput { .. } | WindowEvent::ModifiersChanged(_));
+        let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });
+        self.moves_focus() || (is_key && self.input.egui_input().events.iter().any(is_button))
     }
 
     /// Whether the events that egui processes with the next frame move the keyboard focus.

@@ -341,6 +341,15 @@ impl Viewer {
         shot
     }
 
+    /// Takes a screenshot, which is the same as `expected`.
+    #[track_caller]
+    pub fn shows(&mut self, expected: &RgbaImage, why: &str) {
+        let shot = self.screenshot();
+        if shot != *expected {
+            panic!("{why}: {} instead of {}. {}", keep(&shot), keep(expected), self.running.story());
+        }
+    }
+
     /// Takes screenshots until `is` accepts one, because new content appears only once it is complete.
     #[track_caller]
     pub fn until(&mut self, what: &str, mut is: impl FnMut(&RgbaImage) -> bool) {

@@ -58,7 +58,7 @@ fn a_loss_costs_nothing_but_the_text_that_caused_it() {
         let message = diagnostic["message"].as_str().unwrap();
         assert!(message.contains(cause) && message.contains("until it changes"), "{diagnostic}");
         viewer.running.event("ready");
-        assert!(viewer.screenshot() == before, "{function}: the picture before did not come back");
+        viewer.shows(&before, &format!("{function}: the picture before did not come back"));
         assert_eq!(viewer.geometry(), geometry, "{function}");
 
         // Other files are edited as ever. The refused text is not used even if everything is compiled again.
@@ -66,7 +66,7 @@ fn a_loss_costs_nothing_but_the_text_that_caused_it() {
         let ndf = viewer.tree.edited(NDF, "float a2 = alpha * alpha;", "float a2 = alpha;");
         viewer.tree.write(NDF, &ndf);
         viewer.running.reload(true);
-        assert!(viewer.screenshot() == before, "{function}: the roughness does not depend on the distribution");
+        viewer.shows(&before, &format!("{function}: the roughness does not depend on the distribution"));
         let size = before.dimensions();
         viewer.until_screen("the diagnostic", |screen| errors(screen, size) > 100);
 
@@ -104,7 +104,7 @@ fn a_setting_that_loses_the_device_is_set_back() {
     let diagnostic = viewer.running.event("diagnostic");
     assert!(diagnostic["message"].as_str().unwrap().contains("alfa"), "{diagnostic}");
     viewer.running.reload(false);
-    assert!(viewer.screenshot() == before, "the mode before did not come back");
+    viewer.shows(&before, "the mode before did not come back");
     viewer.key("n");
     viewer.until("shading normals", |shot| *shot != before);
     viewer.quit();
@@ -122,7 +122,7 @@ fn a_tree_that_loses_the_device_at_once_can_be_opened() {
     let event = viewer.restarted();
     assert_eq!(event["refused"], serde_json::json!([USER]), "{event}");
     viewer.running.event("ready");
-    assert!(viewer.screenshot() == built_in, "the built-in text is not used instead");
+    viewer.shows(&built_in, "the built-in text is not used instead");
     viewer.quit();
 }
 
