@@ -91,6 +91,21 @@ pub enum Event<'a> {
         /// Mode, file, line, code and value, as `specula probe` prints them; or a message.
         not_finite: serde_json::Value,
     },
+    /// The statements of a file were traced at the pinned pixel, for the panel Source.
+    Traced {
+        /// Pixels from the upper left corner of the picture.
+        pixel: [u32; 2],
+        /// Shader generation.
+        generation: u64,
+        /// The file, as the tree names it.
+        file: &'a str,
+        /// Whether the color of the fragment that is seen is the picture's, bit by bit; nothing if there is no trace.
+        equal: Option<bool>,
+        /// Why there is no trace.
+        error: Option<&'a str>,
+        /// How long it took.
+        ms: f64,
+    },
     /// The inspector has measured the BRDF of a pixel's material.
     Curves {
         /// Shader generation.

@@ -1,5 +1,7 @@
 //! Writes changes of single values into the files of a shader tree. All other bytes of the files stay as they are.
 
+mod merge;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -64,9 +66,59 @@ pub fn write(root: &Path, edits: &[Edit]) -> Result<Written, String> {
     Ok(Written(writes))
 }
 
+/// Writes a text that was typed into a file below `root`. `base` is the text with which the typing began. If another program has changed the
+/// file since, its changes are merged, unless both have changed the same lines. Returns the text that the file then has.
+///
+/// # Errors
+/// A message, if the same lines were changed, or the file cannot be read or written. The file then stays as it is.
+pub fn write_text(root: &Path, path: &TreePath, base: &str, text: &str) -> Result<(String, Written), String> {
+    let file = root.join(path.as_str());
+    if leads_out(root, path.as_str()) {
+        return Err(format!("cannot write {}: {}", file.display(), SourceError::Outside));
+    }
+    let bytes = regular_file::read(&file, regular_file::LONGEST_TEXT);
+    let bytes = bytes.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
+    let now = std::str::from_utf8(&bytes).map_err(|_| format!("{} is no UTF-8", file.display()))?;
+    let merged = merge::merge(base, now, text).map_err(|line| {
+        format!(
+            "{} was changed by another program in the same place, at line {line}, so it stays as it is",
+            file.display()
+        )
+    })?;
+    let new = merged.clone().into_bytes();
+    if new != bytes {
+        replace(&file, &new)?;
+    }
+    Ok((merged, Written(vec![(file, [bytes, new])])))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_typed_text_is_written_with_the_changes_of_others_or_not_at_all() {
+        let tree = tempfile::tempdir().unwrap();
+        let file = tree.path().join("a.glsl");
+        let read = || std::fs::read_to_string(&file).unwrap();
+        let base = "one\ntwo\nthree\nfour\n";
+        std::fs::write(&file, base).unwrap();
+        let path = TreePath::from("a.glsl");
+        let (text, written) = write_text(tree.path(), &path, base, "one\ntwo!\nthree\nfour\n").unwrap();
+        assert_eq!((text.as_str(), read().as_str()), ("one\ntwo!\nthree\nfour\n", "one\ntwo!\nthree\nfour\n"));
+        written.take_back(false).unwrap();
+        assert_eq!(read(), base);
+        // Another program has changed the end.
+        std::fs::write(&file, "one\ntwo\nthree\nfour\nfive\n").unwrap();
+        write_text(tree.path(), &path, base, "zero\none\ntwo\nthree\nfour\n").unwrap();
+        assert_eq!(read(), "zero\none\ntwo\nthree\nfour\nfive\n");
+        // Both have changed a line.
+        std::fs::write(&file, "one\n2\nthree\nfour\n").unwrap();
+        let error = write_text(tree.path(), &path, base, "one\nTWO\nthree\nfour\n").unwrap_err();
+        assert!(error.contains("changed by another program in the same place, at line 2"), "{error}");
+        assert_eq!(read(), "one\n2\nthree\nfour\n");
+        assert!(write_text(tree.path(), &"b.glsl".into(), "", "").unwrap_err().contains("cannot read"));
+    }
 
     #[test]
     fn what_was_written_is_taken_back_unless_the_file_has_changed() {

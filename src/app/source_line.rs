@@ -35,10 +35,15 @@ impl SourceLine {
     /// The file and the line that a text such as `brdf/ndf.glsl:20` names. The file may be the end of a path.
     pub(super) fn place<'a>(shaders: &'a ShaderSet, text: &str) -> Option<(&'a TreePath, &'a Arc<str>, u32)> {
         let (file, line) = place_of(text)?;
+        let (path, text) = Self::file(shaders, file)?;
+        Some((path, text, line))
+    }
+
+    /// The file that a path, or the end of one, names.
+    pub(super) fn file<'a>(shaders: &'a ShaderSet, file: &str) -> Option<(&'a TreePath, &'a Arc<str>)> {
         let ends = |path: &&TreePath| path.as_str().strip_suffix(file).is_some_and(|rest| rest.ends_with('/'));
         let exact = shaders.texts.get_key_value(&TreePath::from(file));
-        let (path, text) = exact.or_else(|| shaders.texts.iter().find(|(path, _)| ends(path)))?;
-        Some((path, text, line))
+        exact.or_else(|| shaders.texts.iter().find(|(path, _)| ends(path)))
     }
 
     /// The edits that put the values in place of the numbers.

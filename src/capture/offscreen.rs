@@ -11,10 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
 use crate::frame::{Clock, FrameState, Limits, TargetFormat};
-use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
-use crate::headless::{HeadlessError, Search, first_not_finite};
+use crate::gpu::{Gpu, GpuError, Image};
+use crate::headless::{HeadlessError, OffscreenView, Search, first_not_finite};
 use crate::pipeline::PipelineSet;
-use crate::render::{BoundFrame, Capture, Output, Redraw, Resources, Texel, View, read_texels, texel_places};
+use crate::render::{BoundFrame, Capture, Redraw, Resources, Texel, View, read_texels, texel_places};
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::not_finite::NotFinite;
@@ -25,9 +25,7 @@ pub struct OffscreenCapture {
     gpu: Arc<Gpu>,
     session: Session,
     resources: Resources,
-    frames: Frames,
-    view: View,
-    output: Option<Arc<Image>>,
+    own: OffscreenView,
     clock: Clock,
     /// Frames that are drawn for each capture, for passes that depend on earlier frames.
     count: u32,
@@ -61,10 +59,9 @@ impl OffscreenCapture {
         clock: Clock,
         canceled: &Arc<AtomicBool>,
     ) -> Result<Self, GpuError> {
-        let view = View::new(gpu, resources.layouts(), 1)?;
-        let frames = Frames::new(gpu, 1)?;
+        let own = OffscreenView::new(gpu, resources.layouts())?;
         let (gpu, canceled) = (gpu.clone(), canceled.clone());
-        Ok(Self { gpu, session, resources, frames, view, output: None, clock, count: 1, is_linear: false, canceled })
+        Ok(Self { gpu, session, resources, own, clock, count: 1, is_linear: false, canceled })
     }
 
     /// Sets the number of frames that each capture takes.
@@ -97,20 +94,20 @@ impl OffscreenCapture {
     ) -> Result<Vec<PixelValue>, CaptureError> {
         let mut values = Vec::new();
         self.session.settings.view.msaa = 1;
-        self.view.probe = Some(at);
+        self.own.view.probe = Some(at);
         for (index, mode) in modes.iter().enumerate() {
             tell(progress, index, modes.len())?;
             self.session.settings.mode.clone_from(&mode.slug);
             let frame = self.bind_as(size, |state| Arc::new(Arc::unwrap_or_clone(state).with_numbers()))?;
-            self.view.restart_passes();
-            self.view.restart_mean();
+            self.own.view.restart_passes();
+            self.own.view.restart_mean();
             let count = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
             for _ in 0..count {
                 self.draw(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
             }
-            values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+            values.push(self.own.view.pixel(self.own.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
         }
-        self.view.probe = None;
+        self.own.view.probe = None;
         Ok(values)
     }
 
@@ -120,7 +117,7 @@ impl OffscreenCapture {
     /// As [`Renderer::capture`].
     pub fn texels(&mut self, size: (u32, u32), at: (u32, u32)) -> Result<Vec<Texel>, HeadlessError> {
         let places = texel_places(&self.bind(size)?.state, at);
-        Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
+        Ok(read_texels(&self.gpu, &self.resources, &mut self.own.frames, places)?)
     }
 
     /// The first statement that computes NaN or infinity at the pixel `at`, if one of the values in these modes is not finite.
@@ -142,7 +139,7 @@ impl OffscreenCapture {
             source,
             is_canceled: &|| canceled.load(Ordering::Relaxed),
         };
-        let found = first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.frames), &search);
+        let found = first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.own.frames), &search);
         Some(NotFinite { mode: mode.slug.clone(), found })
     }
 
@@ -222,9 +219,9 @@ impl OffscreenCapture {
 
     /// Draws as many frames as the settings ask for, and reads the last one back.
     fn picture(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
-        self.view.restart_passes();
-        self.view.restart_mean();
-        self.view.forget_limits();
+        self.own.view.restart_passes();
+        self.own.view.restart_mean();
+        self.own.view.forget_limits();
         let accumulates = frame.state.pipelines.accumulates;
         let count = if accumulates { self.session.settings.view.frames } else { self.count };
         for _ in 1..count {
@@ -247,27 +244,8 @@ impl OffscreenCapture {
         if self.canceled.load(Ordering::Relaxed) {
             return Err(HeadlessError::Canceled);
         }
-        self.view.prepare(frame)?;
-        let fits = |image: &Arc<Image>| (image.desc().width, image.desc().height) == frame.state.size;
-        let image = match self.output.take().filter(fits) {
-            Some(image) => image,
-            None => self.view.output_image(frame.state.size)?,
-        };
-        self.output = Some(image.clone());
-        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
-        let mut encoder = self.frames.begin()?;
-        let slot = self.frames.current();
-        let drawn = self.view.draw(&mut encoder, slot, frame, &output, redraw);
-        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &image));
-        let result = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
-        if result.is_err() {
-            self.view.forget();
-        }
-        let result = result?;
-        // SYNC: this thread reads the picture, or draws the next over it.
-        self.frames.wait()?;
-        self.view.take_range_sample(slot);
-        match self.frames.endless_loop(self.frames.current()) {
+        let result = self.own.draw(frame, redraw, more)?;
+        match self.own.endless_loop() {
             Some(words) => Err(HeadlessError::Gpu(GpuError::EndlessLoop(words))),
             None => Ok(result),
         }
@@ -289,6 +267,6 @@ impl Renderer for OffscreenCapture {
     }
 
     fn measured_limits(&self) -> Option<Limits> {
-        self.view.measured_limits()
+        self.own.view.measured_limits()
     }
 }

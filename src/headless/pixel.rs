@@ -4,52 +4,12 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::near_pixel::NearPixel;
 use super::{Headless, HeadlessError, Step};
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene};
+use crate::frame::{Clock, FrameState};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
-use crate::scene;
-use crate::settings::Settings;
-use crate::shader::{Mode, PixelValue, ShaderSet};
-
-/// A frame of which one pixel is read.
-pub(super) struct NearPixel {
-    whole: Arc<FrameState>,
-    all: Scene,
-    /// The instances near the pixel; or all, if one of those is transmissive.
-    part: Scene,
-    settings: Settings,
-    revisions: Revisions,
-}
-
-impl NearPixel {
-    /// `None` if there is no scene.
-    pub(super) fn new(headless: &Headless, at: (u32, u32)) -> Result<Option<Self>, HeadlessError> {
-        let whole = headless.frame_state()?;
-        let Some(all) = whole.scene.clone() else { return Ok(None) };
-        let near = scene::near_pixel(all.model(), whole.camera.clip_from_world(), headless.size, at);
-        let part = all.only(near);
-        let shows_more = part.materials().iter().any(|material| whole.pipelines.is_transmissive(*material));
-        let part = if shows_more { all.clone() } else { part };
-        let (settings, revisions) = (headless.session.settings.clone(), headless.session.revisions);
-        Ok(Some(Self { whole, all, part, settings, revisions }))
-    }
-
-    /// The frame in a mode with these shaders. Only the instances near the pixel are drawn, unless a pass may need the others.
-    pub(super) fn state(&self, mode: &Mode, clock: Clock, shaders: &Arc<ShaderSet>) -> Arc<FrameState> {
-        let state = self.state_in(mode, &self.part, clock, shaders);
-        Arc::new(if state.pipelines.is_local() { state } else { self.state_in(mode, &self.all, clock, shaders) })
-    }
-
-    fn state_in(&self, mode: &Mode, scene: &Scene, clock: Clock, shaders: &Arc<ShaderSet>) -> FrameState {
-        let settings = Settings { mode: mode.slug.clone(), ..self.settings.clone() };
-        let scene = &scene.at(&settings.animation, clock.time_s);
-        let (scene, revisions) = (Some(scene), self.revisions);
-        let (size, target) = (self.whole.size, self.whole.pipelines.target);
-        let inputs = FrameInputs { settings: &settings, shaders, scene, revisions, clock, size, target };
-        FrameState::new(&inputs).with_numbers()
-    }
-}
+use crate::shader::{Mode, PixelValue};
 
 impl Headless {
     /// The values of one pixel, counted from the upper left corner, in each of `modes`; zero where nothing covers the
@@ -76,8 +36,10 @@ impl Headless {
     ) -> Result<Vec<PixelValue>, HeadlessError> {
         self.finish_or_fail()?;
         self.provide()?;
-        let Some(near) = NearPixel::new(self, at)? else { return Ok(Vec::new()) };
-        let state_of = |mode: &Mode, clock: Clock| near.state(mode, clock, &near.whole.shaders);
+        let (whole, session) = (self.frame_state()?, &self.session);
+        let near = NearPixel::new(&whole, &session.settings, session.revisions, at);
+        let Some(near) = near else { return Ok(Vec::new()) };
+        let state_of = |mode: &Mode, clock: Clock| near.state(mode, clock, &whole.shaders);
         // The last frame of the sequence is read.
         let sequence = self.sequence;
         let states: Vec<(&Mode, Arc<FrameState>)> =

@@ -29,6 +29,7 @@ pub use annotation::{Constant, DrawAs, Encode, Mode, Numbers, PATHS_STAGE, Param
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use expression::{Expression, Watching};
+pub use glsl::{Highlight, highlights, includes};
 pub use graph::{Graph, GraphPass};
 pub use includes::IncludeGraph;
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};

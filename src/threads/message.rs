@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use crossbeam_channel::Receiver;
 use winit::event_loop::EventLoopProxy;
 
-use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
+use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, WorkerMessage};
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
@@ -21,7 +21,8 @@ use crate::render::PathTracingKey;
 use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
-use crate::shader::{Diagnostic, Source};
+use crate::shader::trace::Trace;
+use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::write_back::Written;
 
 /// The desktop shows no file dialog: no XDG portal answers.
@@ -55,6 +56,12 @@ pub(crate) enum Message {
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
+    /// What the statements of a file do at the pinned pixel, for the request with this number.
+    Traced(u64, Box<Traced>),
+    /// The same in an older version of the shaders.
+    TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
+    /// The text of a file of the tree as it was saved.
+    SourceText(TreePath, Arc<str>),
     /// The settings of a look file, or the reason why it cannot be used.
     Look(Result<Box<Look>, String>),
     /// The pictures of the built-in models and environments.
@@ -108,6 +115,8 @@ pub(crate) enum TaskKind {
     Measurer,
     /// Looks for the statement that makes NaN.
     Finder,
+    /// Traces the statements of a pixel.
+    PixelTracer,
     Capture(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),

@@ -26,6 +26,8 @@
 //!   event ends it between two goals.
 //! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
 //!   new frame or pixel ends its work before the next step.
+//! - **The tracer** compiles the stage of the pinned pixel with a log, builds its pipelines and draws the pixel, while the panel Source is
+//!   open. It has a view of its own and keeps the pipelines for the next pixel. The newest request wins.
 //! - **Captures** are drawn by one thread, one after the other, each with a clone of `Resources`. A second shader tree has a thread as long as it is
 //!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
 //!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
@@ -49,6 +51,7 @@ mod message;
 mod newest;
 mod results;
 pub(crate) mod second_tree;
+pub(crate) mod tracer;
 pub(crate) mod worker;
 
 use std::path::PathBuf;
@@ -69,10 +72,11 @@ use checker::Checker;
 use finder::Finder;
 use loader::Loader;
 use measurer::Measurer;
+use tracer::Tracer;
 use worker::Worker;
 
 pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind};
-pub(crate) use results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, WorkerMessage};
+pub(crate) use results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, WorkerMessage};
 
 /// One of two pictures that are compared.
 pub(crate) enum Side {
@@ -114,6 +118,7 @@ pub(crate) struct Threads {
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
     pub(crate) finder: Finder,
+    pub(crate) tracer: Tracer,
     gpu: Arc<Gpu>,
     /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
     /// compile a second shader tree.
@@ -144,6 +149,7 @@ impl Threads {
             checker: Checker::new(device.0, compiler, sender),
             measurer: Measurer::new(device.0, sender),
             finder: Finder::new(device.0, sender),
+            tracer: Tracer::new(device.0, sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturer: None,

@@ -9,6 +9,7 @@ use crate::learn::Finding;
 use crate::measure::Curves;
 use crate::pipeline::{PipelineSet, Reload};
 use crate::render::{BakeError, BoundFrame, GpuEnvironment, GpuModel, PathTracing, PathTracingKey, Tables};
+use crate::shader::trace::Trace;
 use crate::shader::{Diagnostic, Source};
 
 /// Messages of the worker.
@@ -83,6 +84,26 @@ pub(crate) struct MeasuredCurves {
     /// The curves of the previous shaders, if they could be measured.
     pub(crate) before: Option<Curves>,
     pub(crate) ms: f64,
+}
+
+/// Result of a trace.
+pub(crate) struct Traced {
+    /// The stage that draws the pixel; empty if there is none.
+    pub(crate) stage: String,
+    /// The files whose statements it has at the pixel.
+    pub(crate) files: Vec<String>,
+    /// The file whose statements were traced.
+    pub(crate) file: String,
+    /// The trace, or the reason why there is none.
+    pub(crate) trace: Result<Trace, String>,
+    pub(crate) ms: f64,
+}
+
+impl Default for Traced {
+    fn default() -> Self {
+        let (stage, files, file) = (String::new(), Vec::new(), String::new());
+        Self { stage, files, file, trace: Err("the trace has not begun".to_owned()), ms: 0.0 }
+    }
 }
 
 /// A result of the thread of a second shader tree.

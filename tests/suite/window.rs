@@ -21,6 +21,7 @@ mod panels;
 mod passes;
 mod pictures;
 mod scene;
+mod source;
 
 use crate::support::process::finish;
 use crate::support::window::{Display, Viewer};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, SearchOf, Shown};
+use crate::app::state::workspace::Sight;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::render::Texel;
@@ -21,8 +22,9 @@ const MARKER: u32 = 6;
 /// Pins a pixel, or unpins it if it is the pinned one and its marker is in sight.
 pub(in crate::app) fn inspect(state: &mut State, at: [u32; 2]) {
     let inspector = &mut state.inspection;
+    let Sight { inspector: has_inspector, source: has_source, .. } = state.workspace.sight;
     // The panel reads the pixel once it is open.
-    if !state.workspace.sight.inspector {
+    if !has_inspector && !has_source {
         // A click is the shader's own input there.
         if state.shader.is_single_file {
             return;

@@ -8,4 +8,5 @@ pub(super) mod inspect;
 pub(super) mod restored;
 pub(super) mod select;
 pub(super) mod sessions;
+pub(super) mod trace;
 pub(super) mod watch;

@@ -20,6 +20,7 @@ pub(super) mod scene;
 pub(super) mod settings;
 pub(super) mod shaders;
 mod shortcut;
+pub(super) mod source;
 pub(super) mod spec;
 
 use winit::event::KeyEvent;

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::spec::{Registered, Spec, Until};
 use super::{
     camera, capture, compare, file, history, layout, modes, numbers, playback, program, scene, settings, shaders,
+    source,
 };
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -56,6 +57,9 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &scene::INSPECT_PIXEL,
     &scene::UNPIN,
     &scene::FOLLOW_MOUSE,
+    &source::SOURCE,
+    &source::SHOW_FILE,
+    &source::CHOOSE_TRACE,
     &shaders::ASK_EXPRESSION,
     &shaders::ASK_DEFAULTS,
     &shaders::WRITE_DEFAULTS,

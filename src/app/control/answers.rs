@@ -51,6 +51,11 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
         match until {
             Until::Settled(result) if settled => reply.done(result(state)),
             Until::Compared(result) if settled && state.compare.is_drawn() => reply.done(result(state)),
+            Until::Found(result) => match result(state) {
+                Some(Ok(result)) => reply.done(result),
+                Some(Err(message)) => reply.error(message),
+                None => state.waiting.push(reply, Until::Found(result)),
+            },
             Until::Picture(job) if settled => begin_capture(state, engine, reply, job),
             Until::Reloaded if settled || (state.has_errors() && !engine.threads.worker.is_compiling()) => {
                 match state.has_errors() {

@@ -8,6 +8,7 @@ use super::picture::missing_thumbnail;
 use super::progress::awaits_edit;
 use super::results::take_background;
 use crate::app::actions::inspect::{begin_values, values_complete};
+use crate::app::actions::trace::update_trace;
 use crate::app::engine::Engine;
 use crate::app::panels::timeline::THUMBNAIL;
 use crate::app::screen::{BetweenRequest, Build, Inspected, InspectorRequest, POLL, RestingPicture};
@@ -65,6 +66,18 @@ impl Drawing {
         state: &mut State,
         engine: &mut Engine,
     ) -> Result<Option<Duration>, GpuError> {
+        let is_safe_mode = engine.recorder.is_safe_mode();
+        let trace = update_trace(state, engine, is_safe_mode);
+        let drawn = self.draw_between(state, engine, is_safe_mode)?;
+        Ok(trace.into_iter().chain(drawn).min())
+    }
+
+    fn draw_between(
+        &mut self,
+        state: &mut State,
+        engine: &mut Engine,
+        is_safe_mode: bool,
+    ) -> Result<Option<Duration>, GpuError> {
         let screen = &mut self.screen;
         if !screen.between.is_finished() {
             return Ok(Some(POLL));
@@ -89,7 +102,6 @@ impl Drawing {
             None
         };
         let sees_nothing = Sight::default();
-        let is_safe_mode = engine.recorder.is_safe_mode();
         let sight = if is_safe_mode { &sees_nothing } else { &state.workspace.sight };
         let inspection = &state.inspection;
         let inspector = (sight.inspector && !state.shader.is_single_file).then(|| InspectorRequest {

@@ -1,6 +1,7 @@
 //! The arrangement of the panels: tiles around the picture that the user docks, resizes and closes. It is kept between runs.
 
 mod behavior;
+mod below;
 mod fit;
 mod preset;
 mod repair;
@@ -180,6 +181,9 @@ impl Layout {
     }
 
     fn insert(&mut self, panel: Panel) {
+        if panel.is_below_picture() && below::insert(&mut self.tree, panel) {
+            return self.fit.invalidate();
+        }
         let group = Panel::groups().into_iter().find(|group| group.contains(&panel)).unwrap_or_default();
         let (root, tiles) = (self.tree.root(), &mut self.tree.tiles);
         let with = |other: &Panel| tiles.parent_of(tiles.find_pane(other)?);

@@ -48,7 +48,7 @@ fn free_picture(tree: &mut Tree<Panel>) {
 }
 
 /// Replaces a child of a container, which keeps its share.
-fn replace(tree: &mut Tree<Panel>, parent: TileId, old: TileId, new: TileId) {
+pub(super) fn replace(tree: &mut Tree<Panel>, parent: TileId, old: TileId, new: TileId) {
     if let Some(Tile::Container(container)) = tree.tiles.get_mut(parent) {
         if let Container::Linear(linear) = container {
             linear.shares.replace_with(old, new);

@@ -14,6 +14,7 @@ use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
 use crate::app::actions::files::on_tree_found;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
+use crate::app::actions::trace::on_traced;
 use crate::app::actions::watch::watch_files;
 use crate::app::command::file::{OPEN, Open, chosen};
 use crate::app::command::{execute, on_asked};
@@ -64,6 +65,9 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::FilesChanged(paths) => on_files_changed(state, engine, &paths),
         Message::Curves(measured) => on_curves(state, *measured),
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
+        Message::Traced(number, traced) => on_traced(state, number, *traced),
+        Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
+        Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),
         Message::Tools(Err(message)) => {

@@ -59,6 +59,10 @@ pub(in crate::app) fn on_panic(state: &mut State, engine: &mut Engine, task: Tas
             state.inspection.fail_search();
             "finding"
         }
+        TaskKind::PixelTracer => {
+            state.traces.fail("the trace failed");
+            "pixel tracer"
+        }
         TaskKind::Capture(number) => {
             state.captures.ended(number);
             "capturing"

@@ -24,6 +24,7 @@ pub(super) mod parameters;
 pub(super) mod passes;
 pub(super) mod scene;
 mod shaders;
+mod source;
 mod status_bar;
 #[cfg(test)]
 mod tests;
@@ -45,6 +46,7 @@ static PANELS: &[&PanelSpec] = &[
     &texture::PANEL,
     &learn::PANEL,
     &shaders::PANEL,
+    &source::PANEL,
     &timeline::PANEL,
     &timing::PANEL,
     &expression::PANEL,
@@ -77,6 +79,11 @@ impl Panel {
     /// Whether its tile leaves scrolling to the panel.
     pub(in crate::app) fn scrolls_itself(self) -> bool {
         self.spec().is_some_and(|spec| spec.scrolls_itself)
+    }
+
+    /// Whether it opens below the picture, where there is room for long lines.
+    pub(in crate::app) fn is_below_picture(self) -> bool {
+        self.spec().is_some_and(|spec| spec.is_below_picture)
     }
 
     /// Keywords for the search.

@@ -43,6 +43,7 @@ pub(super) struct PanelSpec {
     pub(super) make: fn() -> Box<dyn PanelUi>,
     pub(super) is_in_presets: bool,
     pub(super) scrolls_itself: bool,
+    pub(super) is_below_picture: bool,
 }
 
 impl PanelSpec {
@@ -53,12 +54,26 @@ impl PanelSpec {
         words: &'static str,
         make: fn() -> Box<dyn PanelUi>,
     ) -> Self {
-        Self { panel: Panel(title), group, words, make, is_in_presets: true, scrolls_itself: false }
+        Self {
+            panel: Panel(title),
+            group,
+            words,
+            make,
+            is_in_presets: true,
+            scrolls_itself: false,
+            is_below_picture: false,
+        }
     }
 
     /// No preset opens the panel.
     pub(super) const fn opens_on_request(mut self) -> Self {
         self.is_in_presets = false;
+        self
+    }
+
+    /// The panel opens below the picture instead of beside panels of its group.
+    pub(super) const fn below_picture(mut self) -> Self {
+        self.is_below_picture = true;
         self
     }
 

@@ -210,13 +210,14 @@ fn the_buttons_of_a_comparison_fit_a_narrow_column() {
 }
 
 /// Label that a panel shows without a model, and with one.
-const LABELS: [(Panel, [&str; 2]); 17] = [
+const LABELS: [(Panel, [&str; 2]); 18] = [
     (Panel::MODES, ["Compiling shaders…", "Facing"]),
     (Panel("Scene"), ["No model yet", "Search nodes, materials, textures"]),
     (Panel("Model"), ["Statistics", "Statistics"]),
     (Panel::TEXTURE, ["", "shell base color"]),
     (Panel::LEARN, ["Square the roughness", "Square the roughness"]),
     (Panel::SHADERS, ["Reload", "Generation 3"]),
+    (Panel::SOURCE, ["Compiling shaders…", "Click a pixel of the picture"]),
     (Panel::TIMELINE, ["Keep this picture", "Keep this picture"]),
     (Panel::TIMING, ["Pipelines", "Pipelines"]),
     (Panel::EXPRESSION, ["Watch", "Watch"]),

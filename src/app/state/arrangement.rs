@@ -19,6 +19,7 @@ impl Panel {
     pub(in crate::app) const PARAMETERS: Self = Self("Parameters");
     pub(in crate::app) const PASSES: Self = Self("Passes");
     pub(in crate::app) const INSPECTOR: Self = Self("Inspector");
+    pub(in crate::app) const SOURCE: Self = Self("Source");
     pub(in crate::app) const OUTPUT: Self = Self("Output");
     pub(in crate::app) const CAPTURE: Self = Self("Capture");
 }

@@ -22,6 +22,7 @@ pub(super) mod selection;
 pub(super) mod shaders;
 mod shown_version;
 pub(super) mod timing;
+pub(super) mod trace;
 pub(super) mod waiting;
 pub(super) mod waits;
 pub(super) mod watched_files;
@@ -66,6 +67,7 @@ use shaders::stages::StageTable;
 use shaders::status::ShaderStatus;
 use shaders::versions::Versions;
 use timing::Timing;
+use trace::Traces;
 use waiting::Waiting;
 use watched_files::WatchedFiles;
 use workspace::Workspace;
@@ -104,6 +106,8 @@ pub(super) struct State {
     pub(super) history: History,
     /// The inspected pixel.
     pub(super) inspection: Inspection,
+    /// What the statements of a file do at the inspected pixel.
+    pub(super) traces: Traces,
     /// The modes that the picture shows side by side.
     pub(super) grid: Grid,
     /// Files that were open, in this run and before.
@@ -182,6 +186,7 @@ impl State {
             playback: Playback::default(),
             history: History::default(),
             inspection: Inspection::default(),
+            traces: Traces::default(),
             grid: Grid::default(),
             recent: Recent::default(),
             last_sessions: LastSessions::default(),

@@ -26,6 +26,8 @@ pub(in crate::app) enum Until<S> {
     VersionWritten(u64),
     /// Once the shader files have these edits.
     EditsWritten(Value),
+    /// Once there is a result, or a reason why there is none.
+    Found(fn(&S) -> Option<Result<Value, String>>),
     /// Once the final picture is written.
     Screen(Option<PathBuf>),
     /// The same for the window with its panels.

@@ -71,6 +71,8 @@ pub(in crate::app) struct Sight {
     pub(in crate::app) timing: bool,
     /// Whether the values of the inspected pixel were.
     pub(in crate::app) inspector: bool,
+    /// Whether the code with the values of the pinned pixel was.
+    pub(in crate::app) source: bool,
     /// The texture that is shown.
     pub(in crate::app) texture: Option<TextureRequest>,
     /// The modes whose thumbnails are in sight, by their slugs.

@@ -88,6 +88,15 @@ pub(in crate::app) const WARNING: Tone = Tone::new(0xffc45c, 0x7a5a00);
 /// All is well.
 pub(in crate::app) const GOOD: Tone = Tone::new(0x70c982, 0x2a732c);
 
+/// Code: keywords, types, functions, numbers, directives, comments, and the values beside it.
+pub(in crate::app) const CODE_KEYWORD: Tone = Tone::new(0xc792ea, 0x7a2fa0);
+pub(in crate::app) const CODE_TYPE: Tone = Tone::new(0x6cc5b8, 0x0b665c);
+pub(in crate::app) const CODE_FUNCTION: Tone = Tone::new(0x8fb8f0, 0x1d4f91);
+pub(in crate::app) const CODE_NUMBER: Tone = Tone::new(0xe8a27c, 0x8a3f12);
+pub(in crate::app) const CODE_DIRECTIVE: Tone = Tone::new(0xb0a4c8, 0x5c4a80);
+pub(in crate::app) const CODE_COMMENT: Tone = Tone::new(0x7f8a96, 0x5f6a75);
+pub(in crate::app) const CODE_VALUE: Tone = Tone::new(0x5fd0ff, 0x00609c);
+
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {
     pub(in crate::app) use egui_phosphor::regular::{

@@ -26,7 +26,7 @@ use std::fmt;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{assigns, code};
 
-pub use follow::follow;
+pub use follow::{follow, lines_before};
 pub use host::{can_show, hosts};
 pub use overlay::{Overlay, is_virtual};
 pub use scope::{Structs, Variable, members, variables};

@@ -2,12 +2,14 @@
 //! compiler. Everything in Specula that looks into a shader's text looks through this module.
 
 mod entry;
+mod highlight;
 mod include;
 mod lines;
 pub mod syntax;
 mod token;
 
 pub use entry::{color_of, main_of, outputs};
+pub use highlight::{Highlight, highlights};
 pub use include::includes;
 pub use lines::{Code, Line, find_word, is_same_code, lines};
 pub use token::{Token, TokenKind, assigns, code, is_name, is_word, spelled, tokens};

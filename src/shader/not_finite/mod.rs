@@ -56,7 +56,7 @@ pub fn listener() -> Listener {
     Listener { text, extensions: "", function: FUNCTION, logged: Logged::Floats }
 }
 
-impl TracedStage<'_> {
+impl TracedStage {
     /// Decodes a pixel that these shaders have drawn. `None` if every value was finite.
     pub fn found(&self, pixel: &PixelValue) -> Option<FirstNotFinite> {
         let [first, nan, classes, _] = pixel.value.map(|number| number as u32);

@@ -148,7 +148,7 @@ impl Assertion {
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::tests::event;
+    use super::super::sample::event;
     use super::*;
 
     #[test]

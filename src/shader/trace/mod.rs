@@ -12,6 +12,8 @@ mod assertion;
 mod calls;
 pub mod log;
 mod report;
+#[cfg(test)]
+pub(crate) mod sample;
 mod stage;
 mod statement;
 mod value;
@@ -37,26 +39,29 @@ const MOST_INSTANCES: usize = 400;
 
 /// A stage whose log is written to a buffer. A module in which every statement of every file logs would take a driver minutes to compile,
 /// so several modules log a few files each.
-pub struct LoggingStage<'a> {
-    stage: ListeningStage<'a>,
+pub struct LoggingStage {
+    stage: ListeningStage,
+    /// With the statements of all files.
+    whole: TracedStage,
     listener: Listener,
     address: u64,
 }
 
-impl<'a> LoggingStage<'a> {
+impl LoggingStage {
     /// Compiles the fragment stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
     pub fn new(
-        shaders: &'a ShaderSet,
+        shaders: &Arc<ShaderSet>,
         stage: &str,
-        tools: (&Compiler, &'a Source),
+        tools: (&Compiler, &Source),
         address: u64,
     ) -> Result<Self, String> {
         let listener = log::listener();
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
-        Ok(Self { stage, listener, address })
+        let whole = stage.traced(&listener, None, Some)?;
+        Ok(Self { stage, whole, listener, address })
     }
 
     /// Groups of files that a module each can log. `wanted` names files; if it is empty, all are logged that the stage keeps with one of
@@ -65,21 +70,17 @@ impl<'a> LoggingStage<'a> {
     /// # Errors
     /// A message why the stage cannot be traced, or that it has no statement of a wanted file.
     pub fn groups(&self, wanted: &[&str], constants: &[&[(u32, u32)]]) -> Result<Vec<BTreeSet<String>>, String> {
-        let whole = self.stage.traced(&self.listener, None, Some)?;
-        let files: BTreeSet<&str> = whole.places().map(|place| place.file.as_str()).collect();
+        let files: BTreeSet<&str> = self.whole.places().map(|place| place.file.as_str()).collect();
         if let Some(unknown) = wanted.iter().find(|file| !files.contains(**file)) {
             let list: Vec<&str> = files.into_iter().collect();
             return Err(format!("no statement of {unknown} is in the stage, which has those of {}", list.join(", ")));
         }
-        let mut instances: BTreeMap<String, usize> = wanted.iter().map(|file| ((*file).to_owned(), 0)).collect();
-        for constants in constants {
-            for (file, count) in whole.instances(self.listener.function, constants) {
-                if wanted.is_empty() || wanted.contains(&file.as_str()) {
-                    let most = instances.entry(file).or_default();
-                    *most = count.max(*most);
-                }
-            }
+        if let [file] = wanted {
+            return Ok(vec![BTreeSet::from([(*file).to_owned()])]);
         }
+        let mut instances = self.instances(constants);
+        instances.retain(|file, _| wanted.is_empty() || wanted.contains(&file.as_str()));
+        wanted.iter().for_each(|file| _ = instances.entry((*file).to_owned()).or_default());
         let (mut groups, mut used): (Vec<BTreeSet<String>>, usize) = (Vec::new(), 0);
         for (file, count) in instances {
             used += count;
@@ -97,11 +98,27 @@ impl<'a> LoggingStage<'a> {
         }
     }
 
+    /// The files whose statements the stage keeps with one of these lists of constants.
+    pub fn files(&self, constants: &[&[(u32, u32)]]) -> Vec<String> {
+        let kept = self.instances(constants).into_iter().filter(|(_, count)| *count > 0);
+        kept.map(|(file, _)| file).collect()
+    }
+
+    /// How many log points of each file are in the stage at most, with one of these lists of constants.
+    fn instances(&self, constants: &[&[(u32, u32)]]) -> BTreeMap<String, usize> {
+        let mut all: BTreeMap<String, usize> = BTreeMap::new();
+        for (file, count) in constants.iter().flat_map(|of| self.whole.instances(self.listener.function, of)) {
+            let most = all.entry(file).or_default();
+            *most = count.max(*most);
+        }
+        all
+    }
+
     /// The stage with a log of what the statements of these files do.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
-    pub fn of(&self, files: &BTreeSet<String>) -> Result<TracedStage<'_>, String> {
+    pub fn of(&self, files: &BTreeSet<String>) -> Result<TracedStage, String> {
         let finish = |words: Vec<u32>| log::with_address(&words, self.address);
         let traced = self.stage.traced(&self.listener, Some(files), finish)?;
         let names = || files.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
@@ -141,7 +158,7 @@ pub struct Fragment {
 }
 
 /// What a statement does.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Doing {
     /// The file, as the tree names it.
     pub file: String,
@@ -182,7 +199,7 @@ pub enum Act {
 
 impl Trace {
     /// The trace of a log that `stage` has written. `picture` and `redrawn`: see the members.
-    pub fn new(stage: &TracedStage<'_>, words: &[u32], picture: &PixelValue, redrawn: &PixelValue) -> Self {
+    pub fn new(stage: &TracedStage, words: &[u32], picture: &PixelValue, redrawn: &PixelValue) -> Self {
         let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
         let (logged, left_out) = log::decode(words);
         let fragment = |logged: log::LoggedFragment| {
@@ -243,7 +260,7 @@ impl Trace {
 }
 
 /// What the statement of a log point does. `None` for the begin and the end of a function.
-fn doing(stage: &TracedStage<'_>, number: u32) -> Option<Doing> {
+fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
     let point = stage.point(number)?;
     let place = stage.place(point);
     let (act, name) = match &place.purpose {
@@ -258,7 +275,7 @@ fn doing(stage: &TracedStage<'_>, number: u32) -> Option<Doing> {
 }
 
 /// An event of a log. `None` for the begin and the end of a function, which change `calls`.
-fn event(stage: &TracedStage<'_>, number: u32, bits: [u32; 4], calls: &mut Calls) -> Option<Event> {
+fn event(stage: &TracedStage, number: u32, bits: [u32; 4], calls: &mut Calls) -> Option<Event> {
     let point = stage.point(number)?;
     let (path, count) = (calls.path(), point.count as usize);
     match &stage.place(point).purpose {

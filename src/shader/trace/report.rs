@@ -53,11 +53,33 @@ impl Trace {
     /// The lines of a fragment, file by file in the order in which they were reached.
     pub fn lines(&self, fragment: usize) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
-        let mut files: Vec<&str> = Vec::new();
-        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
         let events = fragment.events.iter().map(|event| (&event.doing, Ok(event)));
         let left_out = fragment.left_out.iter().map(|(doing, count)| (doing, Err(*count)));
-        for (doing, event) in events.chain(left_out) {
+        self.gather(events.chain(left_out))
+    }
+
+    /// The same of the events that `is_shown` accepts. Those that were not kept do not count.
+    pub fn lines_where(&self, fragment: usize, mut is_shown: impl FnMut(&Event) -> bool) -> Vec<LineOfTrace> {
+        let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
+        self.gather(fragment.events.iter().filter(|event| is_shown(event)).map(|event| (&event.doing, Ok(event))))
+    }
+
+    /// The files with statements that log.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        let files: BTreeSet<&str> = self.code.keys().map(|(file, _)| file.as_str()).collect();
+        files.into_iter()
+    }
+
+    /// The lines of a file that have statements.
+    pub fn statement_lines<'a>(&'a self, file: &'a str) -> impl Iterator<Item = u32> + 'a {
+        self.code.keys().filter(move |(of, _)| of == file).map(|(_, line)| *line)
+    }
+
+    /// Gathers events, or how many were not kept, by their lines.
+    fn gather<'a>(&self, events: impl Iterator<Item = (&'a Doing, Result<&'a Event, u32>)>) -> Vec<LineOfTrace> {
+        let mut files: Vec<&str> = Vec::new();
+        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
+        for (doing, event) in events {
             if !files.contains(&doing.file.as_str()) {
                 files.push(&doing.file);
             }
@@ -184,10 +206,25 @@ impl Done {
         self.last.push(once);
     }
 
+    /// The values that were kept, in order.
+    pub fn values(&self) -> impl Iterator<Item = TracedValue> {
+        self.first.iter().chain(&self.last).filter_map(|once| once.value)
+    }
+
     /// As `alpha2 = 0.0625 ×3`, `alpha2 = 0.0625, 0.25, 1 ×3` or, of more than three values, `i = 0, 1, …, 39 ×40`.
     pub fn text(&self) -> String {
-        let values = self.first.iter().chain(&self.last).filter_map(|once| once.value);
-        let mut texts: Vec<String> = values.map(|value| value.text()).collect();
+        let values = self.values_text();
+        match self.act {
+            Act::Store | Act::Argument => format!("{} = {values}", self.name),
+            Act::Return => format!("return{} {values}", self.name),
+            Act::Condition => format!("? {values}"),
+            Act::Discard => format!("discard{values}"),
+        }
+    }
+
+    /// The values in [`Self::text`].
+    pub fn values_text(&self) -> String {
+        let mut texts: Vec<String> = self.values().map(|value| value.text()).collect();
         texts.dedup();
         let values = match texts.as_slice() {
             [first, second, _, .., last] => format!("{first}, {second}, …, {last}"),
@@ -198,41 +235,21 @@ impl Done {
             0 => String::new(),
             count => format!(" (the last {count} not kept)"),
         };
-        let values = format!("{values}{times}{left_out}");
-        match self.act {
-            Act::Store | Act::Argument => format!("{} = {values}", self.name),
-            Act::Return => format!("return{} {values}", self.name),
-            Act::Condition => format!("? {values}"),
-            Act::Discard => format!("discard{values}"),
-        }
+        format!("{values}{times}{left_out}")
     }
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::sample::{event, trace};
     use super::*;
-
-    pub(in crate::shader::trace) fn event(line: u32, act: Act, name: &str, numbers: &[f32]) -> Event {
-        let value = match numbers {
-            [] => None,
-            [number] => Some(TracedValue::float(*number)),
-            numbers => Some(TracedValue::floats(numbers)),
-        };
-        Event { doing: Doing { file: "a.glsl".into(), line, act, name: name.into() }, value, calls: "f".into() }
-    }
-
-    fn trace(events: Vec<Event>, left_out: Vec<(Doing, u32)>) -> Trace {
-        let code = [3, 5, 7, 9].map(|line| (("a.glsl".to_owned(), line), format!("line {line};")));
-        let fragment = Fragment { depth: 0.5, color: Some([0; 4]), events, left_out };
-        Trace { fragments: vec![fragment], left_out: 0, picture: [0; 4], redrawn: [0; 4], code: code.into() }
-    }
 
     #[test]
     fn events_are_gathered_by_line() {
         let mut events = vec![event(9, Act::Return, "", &[2.0]), event(3, Act::Store, "n", &[0.0, 1.0, 0.5])];
         events.extend((0..40).map(|round| event(5, Act::Store, "i", &[round as f32])));
-        let full = (event(5, Act::Store, "i", &[]).doing, 7);
-        let trace = trace(events, vec![full]);
+        let mut trace = trace(events, &[3, 5, 7, 9]);
+        trace.fragments[0].left_out = vec![(event(5, Act::Store, "i", &[]).doing, 7)];
         let lines = trace.lines(0);
         let texts: Vec<(u32, String)> = lines.iter().map(|line| (line.line, line.text())).collect();
         assert_eq!(texts[0], (3, "n = (0, 1, 0.5)".to_owned()));
@@ -246,7 +263,7 @@ pub(super) mod tests {
 
     #[test]
     fn the_proof_counts_steps_of_floats() {
-        let mut trace = trace(Vec::new(), Vec::new());
+        let mut trace = trace(Vec::new(), &[]);
         assert_eq!((trace.is_proven(0), trace.proof_text(0).as_str()), (true, "equal to the picture"));
         trace.picture = [1.0, 0.0, 0.0, 0.0].map(f32::to_bits);
         trace.fragments[0].color = Some([1.0 + f32::EPSILON * 2.0, 0.0, -0.0, 0.0].map(f32::to_bits));

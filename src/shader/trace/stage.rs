@@ -26,11 +26,30 @@ pub struct Listener {
     pub logged: Logged,
 }
 
-/// A fragment stage that has compiled with a listener.
-pub struct ListeningStage<'a> {
-    shaders: &'a ShaderSet,
+/// A stage, and the texts of its files.
+struct StageTexts {
+    shaders: Arc<ShaderSet>,
     stage: Arc<Stage>,
-    snapshot: Snapshot<'a>,
+    source: Source,
+}
+
+impl StageTexts {
+    fn snapshot(&self) -> Snapshot<'_> {
+        let texts = self.shaders.texts.iter().map(|(path, text)| (path.clone(), Ok(text.clone()))).collect();
+        Snapshot::holding(&self.source, texts)
+    }
+
+    /// The text of a file; empty if there is none.
+    fn text(&self, file: &str) -> Arc<str> {
+        let path = TreePath::from(file);
+        let known = self.shaders.texts.get(&path).cloned();
+        known.or_else(|| self.source.read(&path).ok().map(Arc::from)).unwrap_or_default()
+    }
+}
+
+/// A fragment stage that has compiled with a listener.
+pub struct ListeningStage {
+    texts: Arc<StageTexts>,
     words: Vec<u32>,
 }
 
@@ -55,22 +74,23 @@ pub fn compile_listening<'a>(
     Ok((snapshot, words))
 }
 
-impl<'a> ListeningStage<'a> {
+impl ListeningStage {
     /// Compiles the fragment stage `stage` of `shaders` once more. `source` gives files their names.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
     pub fn new(
-        shaders: &'a ShaderSet,
+        shaders: &Arc<ShaderSet>,
         stage: &str,
-        tools: (&Compiler, &'a Source),
+        tools: (&Compiler, &Source),
         listener: &Listener,
     ) -> Result<Self, String> {
         let before = shaders.stages.get(stage).filter(|before| before.kind == StageKind::Fragment);
         let before = before.ok_or_else(|| format!("{stage} is no fragment stage that has compiled"))?;
         let text = (listener.text.as_str(), listener.extensions);
-        let (snapshot, words) = compile_listening(shaders, &TreePath::from(stage), tools, text)?;
-        Ok(Self { shaders, stage: before.clone(), snapshot, words })
+        let (_, words) = compile_listening(shaders, &TreePath::from(stage), tools, text)?;
+        let texts = StageTexts { shaders: shaders.clone(), stage: before.clone(), source: tools.1.clone() };
+        Ok(Self { texts: Arc::new(texts), words })
     }
 
     /// Its module, instrumented, after `finish`. `only`: the files whose statements are logged.
@@ -82,14 +102,15 @@ impl<'a> ListeningStage<'a> {
         listener: &Listener,
         only: Option<&BTreeSet<String>>,
         finish: impl FnOnce(Vec<u32>) -> Option<Vec<u32>>,
-    ) -> Result<TracedStage<'_>, String> {
-        let lacks = || format!("the values of {} cannot be traced", self.stage.path);
+    ) -> Result<TracedStage, String> {
+        let StageTexts { shaders, stage, .. } = &*self.texts;
+        let lacks = || format!("the values of {} cannot be traced", stage.path);
         let mut traced = trace(&self.words, listener.function, listener.logged, only).ok_or_else(lacks)?;
         let words = finish(std::mem::take(&mut traced.words)).ok_or_else(lacks)?;
         self.move_arguments(&mut traced.places);
-        let mut shaders = self.shaders.clone();
-        shaders.stages.insert(self.stage.path.to_string(), Arc::new(self.stage.with_module(words)));
-        Ok(TracedStage { shaders: Arc::new(shaders), of: self, traced })
+        let mut shaders = ShaderSet::clone(shaders);
+        shaders.stages.insert(stage.path.to_string(), Arc::new(stage.with_module(words)));
+        Ok(TracedStage { shaders: Arc::new(shaders), texts: self.texts.clone(), traced })
     }
 
     /// Moves arguments to the headers of their functions.
@@ -97,7 +118,7 @@ impl<'a> ListeningStage<'a> {
         let mut headers: HashMap<String, Vec<RangeInclusive<u32>>> = HashMap::new();
         for place in places.iter_mut().filter(|place| matches!(place.purpose, Purpose::Argument(_))) {
             let functions = headers.entry(place.file.clone()).or_insert_with_key(|file| {
-                let text = self.snapshot.read(&TreePath::from(file.as_str())).unwrap_or_default();
+                let text = self.texts.text(file);
                 let code = Code::new(&text);
                 let lines = |of: &Function| code.number_at(of.head.start)..=code.number_at(of.body.bytes.end);
                 functions(&code.tokens).iter().map(lines).collect()
@@ -109,14 +130,14 @@ impl<'a> ListeningStage<'a> {
 }
 
 /// An instrumented stage and its set.
-pub struct TracedStage<'a> {
+pub struct TracedStage {
     /// The set.
     pub shaders: Arc<ShaderSet>,
-    of: &'a ListeningStage<'a>,
+    texts: Arc<StageTexts>,
     traced: Traced,
 }
 
-impl TracedStage<'_> {
+impl TracedStage {
     /// The log point with a number that the module has given, from 1.
     pub fn point(&self, number: u32) -> Option<&LogPoint> {
         self.traced.points.get((number as usize).checked_sub(1)?)
@@ -140,7 +161,7 @@ impl TracedStage<'_> {
 
     /// How often the log points of each file stand in the module, specialized with these constants, once all calls are inlined.
     pub(super) fn instances(&self, function: &str, constants: &[(u32, u32)]) -> BTreeMap<String, usize> {
-        let stage = self.shaders.stages.get(self.of.stage.path.as_str());
+        let stage = self.shaders.stages.get(self.texts.stage.path.as_str());
         let words = stage.map(|stage| specialize(&stage.spirv, constants)).unwrap_or_default();
         instances(&words, function, &self.traced.places, &self.traced.points)
     }
@@ -152,7 +173,7 @@ impl TracedStage<'_> {
 
     /// A line of a file of the tree, without the space around it; empty if there is none.
     pub(super) fn line(&self, file: &str, line: u32) -> String {
-        let text = self.of.snapshot.read(&TreePath::from(file)).unwrap_or_default();
+        let text = self.texts.text(file);
         let at = (line as usize).checked_sub(1);
         at.and_then(|at| text.lines().nth(at)).unwrap_or_default().trim().to_owned()
     }
@@ -160,8 +181,9 @@ impl TracedStage<'_> {
     /// The statement of a log point, by its number.
     pub fn site_of(&self, number: u32) -> Option<Site> {
         let place = self.place(self.point(number)?);
-        let ListeningStage { stage, snapshot, .. } = self.of;
-        Some(statement::site(place, Texts { snapshot, stage: &stage.path, dependencies: &stage.dependencies }))
+        let (stage, snapshot) = (&self.texts.stage, self.texts.snapshot());
+        let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
+        Some(statement::site(place, texts))
     }
 }
 

@@ -52,6 +52,11 @@ impl TracedValue {
         })
     }
 
+    /// Whether no number is NaN or infinite.
+    pub fn is_finite(&self) -> bool {
+        self.numbers().all(f64::is_finite)
+    }
+
     /// One of the numbers, from 0.
     pub(super) fn component(&self, index: usize) -> Option<Self> {
         self.bits[..self.count].get(index).map(|bits| Self::new(self.kind, &[*bits]))

@@ -101,7 +101,7 @@ fn in_picture(
 ) {
     let state = context.state;
     compare::show(egui, state, &mut own.map, picture, &mut commands.list);
-    if commands.sight.inspector {
+    if commands.sight.inspector || commands.sight.source {
         marker(egui, &state.inspection, picture);
     }
     gizmo::show(egui, state, &mut own.gizmo, picture, commands);

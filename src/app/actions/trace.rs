@@ -1,0 +1,144 @@
+//! Has the pinned pixel traced while the panel Source is in sight.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::app::engine::Engine;
+use crate::app::frames::progress::{awaits_edit, is_settled, moves};
+use crate::app::state::State;
+use crate::app::state::trace::Progress;
+use crate::app::state::trace::subject::Subject;
+use crate::events::{Event, emit};
+use crate::shader::TreePath;
+use crate::threads::tracer::{OlderVersion, TraceRequest};
+use crate::threads::{Message, Traced};
+
+/// How long settings must not change before the pixel is traced with them.
+const REST: Duration = Duration::from_millis(150);
+/// The same on a software device, whose frames a trace holds up.
+const REST_ON_CPU: Duration = Duration::from_millis(400);
+
+/// Asks for a trace if that of the picture is missing. Returns the time until it is to be looked at again.
+pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_safe_mode: bool) -> Option<Duration> {
+    if !state.workspace.sight.source || is_safe_mode {
+        state.traces.unseen();
+        engine.threads.tracer.release();
+        return None;
+    }
+    read_saved(state, engine);
+    let Some(at) = state.inspection.pin else {
+        state.traces.progress = Progress::NoPixel;
+        return None;
+    };
+    if state.shown().is_some_and(|shown| at[0] >= shown.size.0 || at[1] >= shown.size.1) {
+        state.traces.progress = Progress::Outside;
+        return None;
+    }
+    let Some(subject) = subject(state, engine, at) else {
+        state.traces.progress = Progress::Waits;
+        return None;
+    };
+    if state.traces.asked() == Some(&subject) {
+        state.traces.resume();
+        return None;
+    }
+    let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
+    if let Some(left) = state.traces.rest_left(&subject, rest) {
+        state.traces.progress = Progress::Waits;
+        return Some(left);
+    }
+    let before = if state.traces.lacks_before(&subject) { version_before(state, engine) } else { None };
+    let request = TraceRequest {
+        compiler: engine.compiler.clone(),
+        session: state.session.clone(),
+        resources: engine.resources.clone(),
+        source: state.source.clone(),
+        clock: state.picture.clock,
+        size: subject.size,
+        at: at.into(),
+        file: subject.file.as_ref().map(|file| file.as_str().to_owned()),
+    };
+    let number = engine.threads.tracer.trace(request, before);
+    state.traces.ask(subject, number);
+    None
+}
+
+/// Has the shown file read while it has errors: the shaders in use have an older text.
+fn read_saved(state: &mut State, engine: &Engine) {
+    if !state.has_errors() {
+        return state.traces.saved.forget();
+    }
+    let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
+    let Some(path) = state.traces.file_shown().cloned().or_else(of_stage) else { return };
+    let display = state.source.display_path(&path);
+    let errors = state.session.diagnostics.iter().filter(|found| found.file == display);
+    if errors.clone().next().is_none() || !state.traces.saved.lacks(&path, errors) {
+        return;
+    }
+    let source = state.source.clone();
+    engine.threads.wait(move || {
+        let text = source.read(&path).ok()?;
+        Some(Message::SourceText(path, text.into()))
+    });
+}
+
+/// What the trace of the picture is of; `None` while the picture is not final.
+fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
+    let (shown, shaders) = (state.shown()?, state.session.shaders.clone()?);
+    let is_final = shown.shaders.generation == shaders.generation
+        && shaders.is_complete()
+        && !awaits_edit(state, engine)
+        && is_settled(state, engine);
+    if !is_final {
+        return None;
+    }
+    // While the picture moves, the trace of a moment stays.
+    let last = state.traces.asked().filter(|_| moves(state));
+    let time_s = last.map_or(state.picture.clock.time_s, |last| last.time_s);
+    let settings = last.filter(|last| is_same_but_lights(last, state)).map(|last| last.settings.clone());
+    Some(Subject {
+        at,
+        size: shown.size,
+        settings: settings.unwrap_or_else(|| state.session.shared_settings()),
+        shaders,
+        revisions: state.session.revisions,
+        model: state.session.model().map_or(0, |model| Arc::as_ptr(model) as usize),
+        light: Arc::as_ptr(engine.resources.environment()) as usize,
+        time_s,
+        file: state.traces.file.clone(),
+    })
+}
+
+/// Whether the settings differ from those of a trace in the places of the orbiting lights alone.
+fn is_same_but_lights(last: &Subject, state: &State) -> bool {
+    let mut settings = state.session.settings.clone();
+    settings.lights.orbit.clone_from(&last.settings.lights.orbit);
+    settings == *last.settings
+}
+
+/// The version before that on screen.
+fn version_before(state: &State, engine: &Engine) -> Option<OlderVersion> {
+    let version = state.versions.before(state.shown_generation())?;
+    let set = engine.generations.set(version.generation)?.clone();
+    let like = engine.generations.picture(version.generation).map(|picture| picture.frame.clone());
+    Some(OlderVersion { shaders: version.shaders.clone(), set, like })
+}
+
+/// Takes the result of a trace.
+pub(in crate::app) fn on_traced(state: &mut State, number: u64, traced: Traced) {
+    let Traced { stage, files, file, trace, ms } = traced;
+    if !state.traces.take(number, (stage, files, file), trace) {
+        return;
+    }
+    let Some(newest) = state.traces.newest() else { return };
+    let fragment = newest.trace.as_ref().ok().and_then(|trace| Some((trace, trace.visible()?)));
+    let event = Event::Traced {
+        pixel: newest.of.at,
+        generation: newest.of.shaders.generation,
+        file: newest.file.as_str(),
+        equal: fragment.map(|(trace, fragment)| trace.is_proven(fragment)),
+        error: newest.trace.as_ref().err().map(String::as_str),
+        ms,
+    };
+    emit(&state.events, &event);
+}

@@ -1,0 +1,67 @@
+//! Commands of the panel Source: the file, the pixel, and which of what happened there is shown.
+
+use serde::Deserialize;
+
+use super::spec::{Outcome, Spec, Until};
+use crate::app::engine::Engine;
+use crate::app::source_line::SourceLine;
+use crate::app::state::State;
+use crate::app::state::arrangement::Panel;
+use crate::app::state::trace::choice::Choice;
+use crate::app::state::workspace::PanelRequest;
+use crate::message::did_you_mean;
+use crate::shader::TreePath;
+
+/// Fields of `source`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Source {
+    file: Option<String>,
+    at: Option<[u32; 2]>,
+    fragment: Option<usize>,
+    call: Option<String>,
+    time: Option<usize>,
+}
+
+pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).takes(
+    r#""file"?: "brdf/ndf.glsl", "at"?: [x,y], "fragment"?: n, "call"?: "shade > add_light [2]", "time"?: n"#,
+    "Opens the panel Source at a file of the tree, pins a pixel, and traces what the file's statements do there; a fragment is counted from 0, \
+     the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `files` of the stage, `calls`, and \
+     `changed`: values that the last edit has changed",
+);
+
+/// Shows a file in the panel Source.
+pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file| {
+    state.traces.file = Some(file);
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
+});
+
+/// Chooses the fragment, the call and the time whose values the panel Source shows.
+pub(in crate::app) static CHOOSE_TRACE: Spec<Choice> =
+    Spec::act("choose-trace", |state, _, choice| state.traces.choice = choice);
+
+fn source(state: &mut State, _: &mut Engine, Source { file, at, fragment, call, time }: Source) -> Outcome {
+    let file = file.map(|file| file_of(state, &file)).transpose()?;
+    if let Some([x, y]) = at {
+        let (width, height) = state.shown().ok_or("there is no picture yet")?.size;
+        if x >= width || y >= height {
+            return Err(format!("[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"));
+        }
+        state.inspection.pin = at;
+    }
+    state.traces.file = file.or(state.traces.file.take());
+    state.traces.choice = Choice { fragment, call, time: time.filter(|time| *time > 0) };
+    state.traces.expect();
+    state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
+    Ok(Until::Found(|state| state.traces.answer()))
+}
+
+/// The file of the tree that a path, or the end of one, names.
+fn file_of(state: &State, file: &str) -> Result<TreePath, String> {
+    let shaders = state.session.shaders.as_ref().ok_or("there are no shaders yet")?;
+    let found = SourceLine::file(shaders, file).map(|(path, _)| path.clone());
+    found.ok_or_else(|| {
+        let hint = did_you_mean(file, shaders.texts.keys().map(TreePath::as_str));
+        format!("no stage has a file {file}.{hint}")
+    })
+}

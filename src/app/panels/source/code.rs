@@ -1,0 +1,66 @@
+//! The lines of the file, of which only those in sight are laid out.
+
+use egui::{ScrollArea, Ui, vec2};
+
+use super::find::Find;
+use super::model::CodeModel;
+use super::row::{Look, show_row};
+use crate::app::commands::Commands;
+use crate::app::state::State;
+use crate::app::widgets::theme::small_mono_font;
+
+/// Height of a row, in points.
+pub(super) const ROW: f32 = 17.0;
+
+/// Where the list is, and where it goes.
+#[derive(Default)]
+pub(super) struct Scroll {
+    /// The line to bring into sight.
+    to: Option<usize>,
+    /// The first line in sight.
+    pub(super) first: usize,
+    /// The file whose lines were shown.
+    file: String,
+}
+
+impl Scroll {
+    /// Brings a line, by its index, into sight.
+    pub(super) fn to(&mut self, line: usize) {
+        self.to = Some(line);
+    }
+}
+
+/// Shows the lines.
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &State,
+    model: &CodeModel,
+    find: &Find,
+    scroll: &mut Scroll,
+    commands: &mut Commands,
+) {
+    let Some(path) = model.path() else { return };
+    let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&small_mono_font(), '0'));
+    let look = Look::new(letter, model.lines.len());
+    let width = look.gutter + letter * model.longest as f32 + 40.0;
+    let mut area = ScrollArea::both().id_salt("code").auto_shrink(false);
+    if scroll.file != path.as_str() {
+        path.as_str().clone_into(&mut scroll.file);
+        // A file opens where the pixel reaches it.
+        let first = model.first_change().or_else(|| model.lines.iter().position(|line| !line.row.notes.is_empty()));
+        scroll.to = Some(scroll.to.or(first).unwrap_or(0));
+    }
+    if let Some(line) = scroll.to.take() {
+        let above = (ui.available_height() / 3.0).min(6.0 * ROW);
+        area = area.vertical_scroll_offset((ROW * model.shown_at(line) as f32 - above).max(0.0));
+    }
+    let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing, vec2(0.0, 0.0));
+    area.show_rows(ui, ROW, model.shown.len(), |ui, range| {
+        ui.set_min_width(width.max(ui.available_width()));
+        scroll.first = range.start;
+        for shown in &model.shown[range] {
+            show_row(ui, (state, path), model, shown, (&look, find), commands);
+        }
+    });
+    ui.spacing_mut().item_spacing = spacing;
+}

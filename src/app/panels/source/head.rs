@@ -1,0 +1,240 @@
+//! Above the code: the file, the pixel, whether the trace is the picture's, and which fragment, call and time are shown.
+
+use std::path::PathBuf;
+
+use egui::{ComboBox, RichText, ScrollArea, Ui};
+
+use super::code::Scroll;
+use super::model::CodeModel;
+use crate::app::command::file::EDIT;
+use crate::app::command::scene::UNPIN;
+use crate::app::command::source::{CHOOSE_TRACE, SHOW_FILE};
+use crate::app::commands::Commands;
+use crate::app::editor::Place;
+use crate::app::state::State;
+use crate::app::state::trace::choice::{Choice, calls, most_times};
+use crate::app::state::trace::{PixelTrace, Progress};
+use crate::app::widgets::plural;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, small_mono};
+use crate::shader::trace::Trace;
+use crate::shader::{ShaderSet, TreePath};
+
+/// Width of the list of files, points.
+const FILES: f32 = 190.0;
+/// Height of the list of files, points.
+const MENU: f32 = 380.0;
+
+/// Shows the rows above the code.
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &State,
+    shaders: &ShaderSet,
+    model: &CodeModel,
+    scroll: &mut Scroll,
+    commands: &mut Commands,
+) {
+    let newest = state.traces.newest();
+    ui.horizontal_wrapped(|ui| {
+        files(ui, state, shaders, model, newest.map(|newest| &**newest), commands);
+        pixel(ui, state, commands);
+        progress(ui, state, newest.map(|newest| &**newest));
+        changes(ui, state, model, scroll);
+        open_in_editor(ui, state, model, commands);
+    });
+    let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
+    if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
+        choices(ui, &state.traces.choice, trace, fragment, commands);
+    }
+    ui.add_space(2.0);
+}
+
+/// The list of files: those that the pixel's stage has first.
+fn files(
+    ui: &mut Ui,
+    state: &State,
+    shaders: &ShaderSet,
+    model: &CodeModel,
+    newest: Option<&PixelTrace>,
+    commands: &mut Commands,
+) {
+    let shown = model.path().map_or("no file", TreePath::as_str);
+    let of_stage: Vec<TreePath> =
+        newest.map(|of| of.files.iter().map(|file| TreePath::from(file.as_str())).collect()).unwrap_or_default();
+    let list = ComboBox::from_id_salt("file").selected_text(small_mono(shown)).width(FILES).height(MENU).truncate();
+    let list = list.show_ui(ui, |ui| {
+        ScrollArea::vertical().max_height(MENU).show(ui, |ui| {
+            let mut file = |ui: &mut Ui, path: &TreePath, is_strong: bool| {
+                let text = small_mono(path.as_str());
+                let text = if is_strong { text } else { text.color(QUIET) };
+                if ui.selectable_label(path.as_str() == shown, text).clicked() {
+                    commands.push(SHOW_FILE.with(path.clone()));
+                }
+            };
+            if let Some(newest) = newest.filter(|_| !of_stage.is_empty()) {
+                ui.label(RichText::new(format!("In {} at this pixel", newest.stage)).small().color(QUIET));
+                of_stage.iter().for_each(|path| file(ui, path, true));
+                ui.separator();
+                ui.label(RichText::new("Other files").small().color(QUIET));
+            }
+            let others = shaders.texts.keys().filter(|path| !of_stage.contains(path) && !is_hidden(path));
+            others.for_each(|path| file(ui, path, false));
+        });
+    });
+    let of = state.source.name();
+    named(list.response, "File")
+        .on_hover_text(format!("The file of {of} that is shown. The values are those of its statements"));
+}
+
+/// Whether a path names a stage that only Specula knows.
+fn is_hidden(path: &TreePath) -> bool {
+    path.as_str().rsplit('/').next().is_some_and(|name| name.starts_with('.'))
+}
+
+fn pixel(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    match state.inspection.pin {
+        Some([x, y]) => {
+            let text = small_mono(format!("{x}, {y}")).strong();
+            ui.label(text).on_hover_text("The pinned pixel, from the upper left corner of the picture");
+            if ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
+                commands.push(UNPIN.with(()));
+            }
+        }
+        None => {
+            let hint = "Click a pixel of the picture to see what each line computes there";
+            ui.label(RichText::new(hint).color(ACCENT));
+        }
+    }
+}
+
+/// How far the trace is, and whether its color is the picture's.
+fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>) {
+    let quiet = |ui: &mut Ui, text: &str| drop(ui.label(RichText::new(text).small().color(QUIET)));
+    match (state.traces.progress, newest) {
+        (Progress::UnderWay(_), _) => {
+            ui.add(egui::Spinner::new().size(12.0));
+            quiet(ui, "Tracing…");
+        }
+        (Progress::Outside, _) => quiet(ui, "outside of the picture"),
+        (Progress::Waits, _) if state.inspection.is_pinned() => quiet(ui, "Waiting for the final picture…"),
+        (Progress::Done, Some(PixelTrace { trace: Err(message), .. })) => {
+            ui.label(RichText::new(message).small().color(WARNING));
+        }
+        (Progress::Done, Some(PixelTrace { trace: Ok(trace), .. })) => {
+            let Some(fragment) = state.traces.fragment() else {
+                return quiet(ui, "every fragment is discarded here; choose one below");
+            };
+            let text = trace.proof_text(fragment);
+            let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
+            let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
+            ui.label(RichText::new(format!("{mark}{text}")).small().color(color)).on_hover_text(hint);
+        }
+        _ => {}
+    }
+}
+
+/// What the last edit has changed.
+fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
+    if state.traces.before().is_none() || state.traces.progress != Progress::Done {
+        return;
+    }
+    let Some(first) = model.first_change() else {
+        let text = "no value differs from the version before";
+        return drop(ui.label(RichText::new(text).small().color(QUIET)));
+    };
+    let line = &model.lines[first].row;
+    let text = format!("▸ first change in line {}, {} in all", line.line, plural(model.changes(), "line"));
+    let hint = "Values before and after the last edit stand beside the code. Click to go to the line that differs first, in the order of execution";
+    let is_bad = line.notes.iter().any(|note| note.is_bad);
+    let button = egui::Button::new(RichText::new(text).small().color(if is_bad { ERROR } else { ACCENT })).frame(false);
+    if ui.add(button).on_hover_text(hint).clicked() {
+        scroll.to(first);
+    }
+}
+
+fn open_in_editor(ui: &mut Ui, state: &State, model: &CodeModel, commands: &mut Commands) {
+    let Some(path) = model.path() else { return };
+    let display = state.source.display_path(path);
+    if display.starts_with("embedded:") {
+        return;
+    }
+    if ui.small_button("Open in editor").on_hover_text(format!("Open {display} in your editor")).clicked() {
+        commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None }));
+    }
+}
+
+/// The fragment, the call and the time, where there is a choice.
+fn choices(ui: &mut Ui, now: &Choice, trace: &Trace, fragment: usize, commands: &mut Commands) {
+    let (calls, times) = (calls(trace, fragment), most_times(now, trace));
+    let has = [trace.fragments.len() > 1, calls.len() > 1 || now.call.is_some(), times > 1 || now.time.is_some()];
+    if has == [false; 3] {
+        return;
+    }
+    let mut choice = now.clone();
+    ui.horizontal_wrapped(|ui| {
+        if has[0] {
+            choose_fragment(ui, &mut choice, trace, fragment);
+        }
+        if has[1] {
+            choose_call(ui, &mut choice, &calls);
+        }
+        if has[2] {
+            choose_time(ui, &mut choice, times);
+        }
+    });
+    if choice != *now {
+        commands.push(CHOOSE_TRACE.with(choice));
+    }
+}
+
+fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: usize) {
+    let name = |at: usize| {
+        let of = &trace.fragments[at];
+        let is = match (of.color, trace.visible() == Some(at)) {
+            (None, _) => "discarded",
+            (_, true) => "seen",
+            _ => "hidden or blended",
+        };
+        format!("Fragment {at}: {is}, depth {:.4}", of.depth)
+    };
+    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(name(fragment)).small());
+    let list = list.show_ui(ui, |ui| {
+        for at in 0..trace.fragments.len() {
+            if ui.selectable_label(at == fragment, name(at)).clicked() {
+                choice.fragment = Some(at);
+            }
+        }
+    });
+    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first");
+}
+
+fn choose_call(ui: &mut Ui, choice: &mut Choice, calls: &[std::sync::Arc<str>]) {
+    let all = format!("All {}", plural(calls.len(), "call"));
+    let shown = choice.call.clone().unwrap_or_else(|| all.clone());
+    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(260.0).truncate();
+    let list = list.show_ui(ui, |ui| {
+        ui.set_min_width(360.0);
+        ui.selectable_value(&mut choice.call, None, all);
+        for call in calls {
+            ui.selectable_value(&mut choice.call, Some(call.to_string()), small_mono(&**call));
+        }
+    });
+    named(list.response, "Call")
+        .on_hover_text("One call: the values of what led to it, of itself, and of what it calls");
+}
+
+fn choose_time(ui: &mut Ui, choice: &mut Choice, times: usize) {
+    let mut time = choice.time.unwrap_or(0);
+    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
+        0.0 => "all".to_owned(),
+        number => format!("{number:.0}"),
+    };
+    let parse = |text: &str| if text.trim() == "all" { Some(0.0) } else { text.trim().parse().ok() };
+    let most = times.max(time);
+    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1).prefix("Time ");
+    let drag = ui.add(drag.custom_formatter(text).custom_parser(parse));
+    named(drag, "Time").on_hover_text(
+        "Of a statement that ran more than once in the chosen call, as in a loop: which time. Drag, or type a number",
+    );
+    choice.time = (time > 0).then_some(time);
+}

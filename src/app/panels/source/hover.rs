@@ -1,0 +1,53 @@
+//! All values of a statement, with their type and the calls that led to them.
+
+use egui::{Grid, RichText, Ui};
+
+use super::model::CodeLine;
+use crate::app::state::trace::rows::Note;
+use crate::app::widgets::plural;
+use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, small_mono};
+use crate::shader::TreePath;
+use crate::shader::trace::{Act, Once};
+
+/// Values that are listed.
+const MOST: usize = 12;
+
+/// Shows the hover text of a value.
+pub(super) fn show(ui: &mut Ui, (path, line): (&TreePath, &CodeLine), note: &Note, expression: Option<&str>) {
+    ui.set_max_width(520.0);
+    let done = &note.done;
+    let kind = done.values().next().map(|value| value.type_name()).unwrap_or_default();
+    let what = match done.act {
+        Act::Argument => format!("{kind} {}, an argument", done.name),
+        Act::Store => format!("{kind} {}", done.name),
+        Act::Condition => "A condition".to_owned(),
+        Act::Return => format!("{kind}, returned"),
+        Act::Discard => "Discards the fragment".to_owned(),
+    };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(what).strong());
+        ui.label(RichText::new(format!("{path}:{}", line.row.line)).small().color(QUIET));
+    });
+    if let Some(before) = &note.before {
+        ui.label(small_mono(format!("before the last edit: {before}")).color(ACCENT));
+    }
+    let all: Vec<&Once> = done.first.iter().chain(&done.last).collect();
+    Grid::new("values").num_columns(3).spacing([12.0, 1.0]).show(ui, |ui| {
+        for (index, once) in all.iter().take(MOST).enumerate() {
+            let text = once.value.map(|value| value.text()).unwrap_or_default();
+            let is_bad = once.value.is_some_and(|value| !value.is_finite());
+            let value = small_mono(text);
+            ui.label(small_mono(format!("{}", index + 1)).color(QUIET));
+            ui.label(if is_bad { value.color(ERROR) } else { value });
+            ui.label(RichText::new(&*once.calls).small().color(QUIET));
+            ui.end_row();
+        }
+    });
+    let more = done.count.saturating_sub(all.len().min(MOST));
+    if more > 0 {
+        ui.label(RichText::new(format!("and {more} more of {}", plural(done.count, "time"))).small().color(QUIET));
+    }
+    if expression.is_some() {
+        ui.label(RichText::new("Click to see it over the whole model").small().color(ACCENT));
+    }
+}

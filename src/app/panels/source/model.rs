@@ -1,0 +1,156 @@
+//! What the panel shows of a file, made anew when the file, the trace or the choice changes.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::app::state::State;
+use crate::app::state::trace::PixelTrace;
+use crate::app::state::trace::choice::Choice;
+use crate::app::state::trace::rows::Row;
+use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
+
+/// A line of the file.
+pub(super) struct CodeLine {
+    pub(super) text: String,
+    /// The parts that have a color, by their bytes in `text`.
+    pub(super) parts: Vec<(Range<usize>, Highlight)>,
+    /// The file that the line includes.
+    pub(super) include: Option<TreePath>,
+    pub(super) row: Row,
+    /// Whether there is an error or a warning about the line.
+    pub(super) severity: Option<Severity>,
+}
+
+/// A row of the list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Shown {
+    /// A line, by its index.
+    Line(usize),
+    /// A message about the line above.
+    Message(Severity, String),
+}
+
+/// The inputs that decide whether the rest is up to date.
+#[derive(Clone, PartialEq)]
+struct Inputs {
+    path: TreePath,
+    text: Arc<str>,
+    traces: [usize; 2],
+    choice: Choice,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// The file that is shown.
+#[derive(Default)]
+pub(super) struct CodeModel {
+    inputs: Option<Inputs>,
+    pub(super) lines: Vec<CodeLine>,
+    pub(super) shown: Vec<Shown>,
+    /// Characters of the longest line.
+    pub(super) longest: usize,
+}
+
+impl CodeModel {
+    /// The file.
+    pub(super) fn path(&self) -> Option<&TreePath> {
+        self.inputs.as_ref().map(|inputs| &inputs.path)
+    }
+
+    /// Makes the rows anew if something has changed.
+    pub(super) fn update(&mut self, state: &State, shaders: &ShaderSet) {
+        let Some((path, text)) = shown_file(state, shaders) else {
+            return *self = Self::default();
+        };
+        let address = |trace: Option<&Arc<PixelTrace>>| trace.map_or(0, |trace| Arc::as_ptr(trace) as usize);
+        let display = state.source.display_path(&path);
+        let diagnostics = state.session.diagnostics.iter().filter(|found| found.file == display);
+        let inputs = Inputs {
+            path,
+            text,
+            traces: [address(state.traces.newest()), address(state.traces.before())],
+            choice: state.traces.choice.clone(),
+            diagnostics: diagnostics.cloned().collect(),
+        };
+        if self.inputs.as_ref() == Some(&inputs) {
+            return;
+        }
+        self.lines = lines(state, shaders, &inputs);
+        self.shown = rows(&mut self.lines, &inputs.diagnostics);
+        self.longest = self.lines.iter().map(|line| line.text.chars().count()).max().unwrap_or(0);
+        self.inputs = Some(inputs);
+    }
+
+    /// The index of the first line whose values the last edit has changed.
+    pub(super) fn first_change(&self) -> Option<usize> {
+        self.lines.iter().position(|line| line.row.is_first_change)
+    }
+
+    /// How many lines have values that the last edit has changed.
+    pub(super) fn changes(&self) -> usize {
+        let is_changed = |line: &&CodeLine| line.row.notes.iter().any(|note| note.before.is_some());
+        self.lines.iter().filter(is_changed).count()
+    }
+
+    /// The index of the row that shows a line.
+    pub(super) fn shown_at(&self, line: usize) -> usize {
+        self.shown.iter().position(|shown| *shown == Shown::Line(line)).unwrap_or(0)
+    }
+}
+
+/// The file that is shown, with its text: the chosen one, that of the newest trace, or that of the stage of the model.
+fn shown_file(state: &State, shaders: &ShaderSet) -> Option<(TreePath, Arc<str>)> {
+    let known = |path: &TreePath| {
+        let saved = state.traces.saved.of(path);
+        Some((path.clone(), saved.or_else(|| shaders.texts.get(path))?.clone()))
+    };
+    let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
+    let first = || shaders.texts.keys().next().and_then(known);
+    let found = state.traces.file_shown().and_then(known);
+    found.or_else(|| of_stage().as_ref().and_then(known)).or_else(first)
+}
+
+fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs) -> Vec<CodeLine> {
+    let Inputs { path, text, .. } = inputs;
+    let mut parts = highlights(text).into_iter().peekable();
+    let mut names = includes(text).peekable();
+    let mut start = 0;
+    let with_breaks = text.split_inclusive('\n').zip(text.lines());
+    let line = |((with_break, line), row): ((&str, &str), Row)| {
+        let bytes = start..start + line.len();
+        let in_line = |of: &Range<usize>| of.start - bytes.start..of.end.min(bytes.end) - bytes.start;
+        let mut own = Vec::new();
+        while let Some((of, highlight)) = parts.next_if(|(of, _)| of.start < bytes.end) {
+            own.push((in_line(&of), highlight));
+        }
+        let include = names.next_if(|include| include.bytes.start < bytes.end);
+        start += with_break.len();
+        CodeLine {
+            text: line.to_owned(),
+            parts: own,
+            include: include.and_then(|include| included(shaders, path, include.name)),
+            row,
+            severity: None,
+        }
+    };
+    with_breaks.zip(state.traces.rows(path, text)).map(line).collect()
+}
+
+/// The file that a file includes by a name: beside it first, then from the root, as the compiler looks.
+fn included(shaders: &ShaderSet, path: &TreePath, name: &str) -> Option<TreePath> {
+    let mut places = path.sibling(name).into_iter().chain(TreePath::parse(name));
+    places.find(|place| shaders.texts.contains_key(place))
+}
+
+/// The lines with the messages about them.
+fn rows(lines: &mut [CodeLine], diagnostics: &[Diagnostic]) -> Vec<Shown> {
+    let mut shown = Vec::new();
+    let about = |line: Option<u32>| diagnostics.iter().filter(move |found| found.line == line);
+    let message = |found: &Diagnostic| Shown::Message(found.severity, found.message.replace('\n', " "));
+    shown.extend(about(None).map(message));
+    for (index, line) in lines.iter_mut().enumerate() {
+        shown.push(Shown::Line(index));
+        shown.extend(about(Some(line.row.line)).map(message));
+        line.severity = about(Some(line.row.line)).map(|found| found.severity).min();
+    }
+    shown
+}

@@ -1,0 +1,294 @@
+//! A row of the code: its number, its code in colors, and its values at the right.
+
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::{Align2, Color32, CursorIcon, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
+
+use super::code::ROW;
+use super::find::Find;
+use super::hover;
+use super::model::{CodeLine, CodeModel, Shown};
+use crate::app::command::source::SHOW_FILE;
+use crate::app::commands::Commands;
+use crate::app::source_line::watch;
+use crate::app::state::State;
+use crate::app::state::trace::rows::{Note, Reach};
+use crate::app::widgets::spoken;
+use crate::app::widgets::theme::{
+    ACCENT, CODE_COMMENT, CODE_DIRECTIVE, CODE_FUNCTION, CODE_KEYWORD, CODE_NUMBER, CODE_TYPE, CODE_VALUE, ERROR,
+    PANEL, QUIET, TEXT, WARNING, small_font, small_mono_font,
+};
+use crate::shader::trace::Act;
+use crate::shader::{Highlight, Severity, TreePath};
+
+/// Largest share of the row in sight that values cover while code lies below them.
+const MOST_VALUES: f32 = 0.6;
+/// Points between code and values, and between two values.
+const GAP: f32 = 14.0;
+/// Opacity of lines that the pixel does not reach.
+const MISSED: f32 = 0.42;
+
+/// The measures of the rows.
+pub(super) struct Look {
+    /// Width of a letter, points.
+    letter: f32,
+    /// Width of the numbers with their marks, points.
+    pub(super) gutter: f32,
+}
+
+impl Look {
+    pub(super) fn new(letter: f32, lines: usize) -> Self {
+        let digits = lines.max(100).to_string().len() as f32;
+        Self { letter, gutter: letter * digits + 26.0 }
+    }
+}
+
+/// Shows a row.
+pub(super) fn show_row(
+    ui: &mut Ui,
+    of: (&State, &TreePath),
+    model: &CodeModel,
+    shown: &Shown,
+    (look, find): (&Look, &Find),
+    commands: &mut Commands,
+) {
+    let width = ui.available_width();
+    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+    match shown {
+        Shown::Line(index) => {
+            if let Some(line) = model.lines.get(*index) {
+                show_line(ui, of, line, rect, (look, find), commands);
+            }
+        }
+        Shown::Message(severity, text) => message(ui, rect, *severity, text, look),
+    }
+}
+
+/// The part of a row that is in sight.
+fn in_sight(ui: &Ui, rect: Rect) -> Rect {
+    Rect::from_x_y_ranges(ui.clip_rect().x_range(), rect.y_range())
+}
+
+fn message(ui: &mut Ui, rect: Rect, severity: Severity, text: &str, look: &Look) {
+    let color = if severity == Severity::Error { ERROR } else { WARNING }.color();
+    let sight = in_sight(ui, rect);
+    ui.painter().rect_filled(sight, 0.0, color.gamma_multiply(0.12));
+    let at = pos2(sight.left() + look.gutter, rect.center().y);
+    ui.painter().text(at, Align2::LEFT_CENTER, text, small_font(), color);
+    let response = ui.interact(sight, ui.id().with(("message", rect.top() as i32)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
+    response.on_hover_text(text);
+}
+
+fn show_line(
+    ui: &mut Ui,
+    (state, path): (&State, &TreePath),
+    line: &CodeLine,
+    rect: Rect,
+    (look, find): (&Look, &Find),
+    commands: &mut Commands,
+) {
+    let (row, sight) = (&line.row, in_sight(ui, rect));
+    let background = background(line);
+    if let Some(color) = background {
+        ui.painter().rect_filled(sight, 0.0, color);
+    }
+    let response = ui.interact(sight, ui.id().with(("line", row.line)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("{}: {}", row.line, line.text)));
+    let opacity = if row.reach == Reach::Missed { MISSED } else { 1.0 };
+    let left = rect.left() + look.gutter;
+    for place in find.places(&line.text) {
+        let x = |byte: usize| left + look.letter * line.text[..byte].chars().count() as f32;
+        let found = Rect::from_x_y_ranges(x(place.start)..=x(place.end), rect.y_range());
+        ui.painter().rect_filled(found, 2.0, ACCENT.color().gamma_multiply(0.3));
+    }
+    let galley = ui.painter().layout_job(code(line, opacity));
+    let code_end = left + galley.size().x;
+    ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
+    gutter(ui, line, sight, background, look);
+    if let Some(include) = &line.include {
+        include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);
+    }
+    values(ui, (state, path), line, (sight, code_end, background), commands);
+}
+
+/// The color behind a line.
+fn background(line: &CodeLine) -> Option<Color32> {
+    match line.severity {
+        Some(Severity::Error) => Some(ERROR.color().gamma_multiply(0.12)),
+        Some(Severity::Warning) => Some(WARNING.color().gamma_multiply(0.1)),
+        None if line.row.is_first_change => Some(ACCENT.color().gamma_multiply(0.13)),
+        None => None,
+    }
+}
+
+/// The number of a line and its mark, over code that is scrolled below them.
+fn gutter(ui: &Ui, line: &CodeLine, sight: Rect, background: Option<Color32>, look: &Look) {
+    let painter = ui.painter();
+    let area = sight.with_max_x(sight.left() + look.gutter - 6.0);
+    painter.rect_filled(area, 0.0, PANEL.color());
+    background.into_iter().for_each(|color| _ = painter.rect_filled(area, 0.0, color));
+    let is_changed = line.row.notes.iter().any(|note| note.before.is_some());
+    let is_bad = line.row.notes.iter().any(|note| note.is_bad);
+    let mark = pos2(sight.left() + 6.0, sight.center().y);
+    let color = if is_bad || line.severity == Some(Severity::Error) { ERROR } else { ACCENT }.color();
+    if line.row.is_first_change {
+        let points = vec![mark + vec2(-3.0, -4.0), mark + vec2(4.0, 0.0), mark + vec2(-3.0, 4.0)];
+        painter.add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
+    } else if is_changed || is_bad || line.severity.is_some() {
+        painter.circle_filled(mark, 2.5, color);
+    }
+    let number = pos2(sight.left() + look.gutter - 14.0, sight.center().y);
+    let opacity = if line.row.reach == Reach::Reached { 1.0 } else { 0.55 };
+    let color = QUIET.color().gamma_multiply(opacity);
+    painter.text(number, Align2::RIGHT_CENTER, line.row.line.to_string(), small_mono_font(), color);
+    // Reached lines have a bar beside their numbers.
+    if line.row.reach == Reach::Reached {
+        let x = sight.left() + look.gutter - 9.0;
+        let bar = Rect::from_x_y_ranges(x..=x + 2.0, sight.top()..=sight.bottom());
+        painter.rect_filled(bar, 0.0, CODE_VALUE.color().gamma_multiply(0.55));
+    }
+}
+
+/// The code in colors.
+fn code(line: &CodeLine, opacity: f32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let mut add = |text: &str, color: Color32| {
+        let format =
+            TextFormat { font_id: small_mono_font(), color: color.gamma_multiply(opacity), ..TextFormat::default() };
+        job.append(text, 0.0, format);
+    };
+    let mut at = 0;
+    for (bytes, highlight) in &line.parts {
+        add(&line.text[at..bytes.start], TEXT.color());
+        add(&line.text[bytes.clone()], color(*highlight));
+        at = bytes.end;
+    }
+    add(&line.text[at..], TEXT.color());
+    job.wrap.max_width = f32::INFINITY;
+    job
+}
+
+fn color(highlight: Highlight) -> Color32 {
+    match highlight {
+        Highlight::Keyword => CODE_KEYWORD,
+        Highlight::Type => CODE_TYPE,
+        Highlight::Function => CODE_FUNCTION,
+        Highlight::Number | Highlight::Constant => CODE_NUMBER,
+        Highlight::Text => ACCENT,
+        Highlight::Directive | Highlight::Annotation => CODE_DIRECTIVE,
+        Highlight::Comment => CODE_COMMENT,
+    }
+    .color()
+}
+
+fn include_link(ui: &mut Ui, line: u32, include: &TreePath, rect: Rect, commands: &mut Commands) {
+    let response = ui.interact(rect, ui.id().with(("include", line)), Sense::click());
+    spoken::button(&response, &format!("Open {include}"));
+    if response.hovered() {
+        ui.painter().hline(rect.x_range(), rect.bottom() - 2.0, egui::Stroke::new(1.0, ACCENT));
+    }
+    if response.clicked() {
+        commands.push(SHOW_FILE.with(include.clone()));
+    }
+    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(format!("Click to show {include} here"));
+}
+
+/// The values of a line, at the right end of what is in sight.
+fn values(
+    ui: &mut Ui,
+    (state, path): (&State, &TreePath),
+    line: &CodeLine,
+    (sight, code_end, background): (Rect, f32, Option<Color32>),
+    commands: &mut Commands,
+) {
+    if line.row.notes.is_empty() {
+        return;
+    }
+    let right = sight.right() - 8.0;
+    let free = right - code_end - GAP;
+    let most = free.max(MOST_VALUES * sight.width());
+    let mut galleys = Vec::new();
+    let mut total = 0.0;
+    for note in &line.row.notes {
+        let gap = if galleys.is_empty() { 0.0 } else { GAP };
+        let room = most - total - gap;
+        if room < 3.0 * GAP && !galleys.is_empty() {
+            break;
+        }
+        let mut job = job_of(note);
+        job.wrap = TextWrapping::truncate_at_width(room);
+        let galley = ui.painter().layout_job(job);
+        total += gap + galley.size().x;
+        galleys.push((note, galley));
+    }
+    let start = right - total;
+    if start < code_end + GAP {
+        cover(ui, sight.with_min_x(start - GAP), background);
+    }
+    let mut x = start;
+    for (index, (note, galley)) in galleys.into_iter().enumerate() {
+        let size = galley.size();
+        let area = Rect::from_x_y_ranges(x..=x + size.x, sight.y_range()).expand2(vec2(3.0, 0.0));
+        let expression =
+            expression(note).filter(|_| state.session.shaders.as_ref().is_some_and(|of| of.can_watch(path)));
+        let sense = if expression.is_some() { Sense::click() } else { Sense::hover() };
+        let response = ui.interact(area, ui.id().with(("note", line.row.line, index)), sense);
+        spoken::button(&response, &note.text());
+        if response.hovered() {
+            ui.painter().rect_filled(area, 3.0, ui.visuals().widgets.inactive.weak_bg_fill);
+        }
+        ui.painter().galley(pos2(x, sight.center().y - size.y / 2.0), galley, CODE_VALUE.color());
+        if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
+            watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
+        }
+        let response = if expression.is_some() { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
+        response.on_hover_ui(|ui| hover::show(ui, (path, line), note, expression.as_deref()));
+        x += size.x + GAP;
+    }
+}
+
+/// Covers the code below the values, with a soft edge.
+fn cover(ui: &Ui, area: Rect, background: Option<Color32>) {
+    let painter = ui.painter();
+    for (at, opacity) in [(0.0, 0.35), (4.0, 0.6), (8.0, 1.0)] {
+        let part = if opacity < 1.0 {
+            Rect::from_x_y_ranges(area.left() + at..=area.left() + at + 4.0, area.y_range())
+        } else {
+            area.with_min_x(area.left() + at)
+        };
+        painter.rect_filled(part, 0.0, PANEL.color().gamma_multiply(opacity));
+        background.into_iter().for_each(|color| _ = painter.rect_filled(part, 0.0, color.gamma_multiply(opacity)));
+    }
+}
+
+/// The expression that shows a value over the model.
+fn expression(note: &Note) -> Option<String> {
+    let name = &note.done.name;
+    match note.done.act {
+        Act::Store | Act::Argument if !name.is_empty() && !name.contains("[ ]") => Some(name.clone()),
+        Act::Return if name.is_empty() => Some("return".to_owned()),
+        _ => None,
+    }
+}
+
+fn job_of(note: &Note) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let mut add = |text: &str, color: Color32| {
+        let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
+        job.append(text, 0.0, format);
+    };
+    let is_branch = matches!(note.done.act, Act::Condition | Act::Discard);
+    add(&note.label, QUIET.color());
+    if let Some(before) = &note.before {
+        add(before, QUIET.color());
+        add(" → ", QUIET.color());
+    }
+    let color = match (note.is_bad, note.before.is_some(), is_branch) {
+        (true, ..) => ERROR,
+        (_, true, _) => ACCENT,
+        (.., true) => CODE_KEYWORD,
+        _ => CODE_VALUE,
+    };
+    add(&note.values, color.color());
+    job
+}

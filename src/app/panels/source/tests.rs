@@ -1,0 +1,179 @@
+//! The panel over a trace, without a device.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use super::SourceState;
+use crate::app::command::source::{CHOOSE_TRACE, SHOW_FILE};
+use crate::app::command::spec::Command;
+use crate::app::commands::Commands;
+use crate::app::context::Context;
+use crate::app::gallery::Thumbnails;
+use crate::app::panels::panel_ui::PanelUi as _;
+use crate::app::readings::Readings;
+use crate::app::state::State;
+use crate::app::state::trace::choice::Choice;
+use crate::app::state::trace::subject::Subject;
+use crate::app::widgets::theme;
+use crate::render::BakeReport;
+use crate::settings::Settings;
+use crate::shader::trace::sample::{called, event, trace};
+use crate::shader::trace::{Act, Event};
+use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
+
+const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
+
+/// What a test looks at.
+struct Window {
+    state: State,
+    panel: SourceState,
+    asked: Vec<Command>,
+}
+
+fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
+    let files = [("a.glsl", text), ("b.glsl", "float g;\n")];
+    let texts = files.map(|(path, text)| (TreePath::from(path), Arc::<str>::from(text)));
+    Arc::new(ShaderSet { generation, texts: BTreeMap::from(texts), ..ShaderSet::default() })
+}
+
+/// Takes a trace of a version of `a.glsl`.
+fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, statements: &[u32]) {
+    let shaders = shaders(generation, text);
+    state.session.shaders = Some(shaders.clone());
+    state.inspection.pin = Some([3, 4]);
+    let of = Subject {
+        at: [3, 4],
+        size: (64, 48),
+        settings: Arc::new(Settings::default()),
+        shaders,
+        revisions: Default::default(),
+        model: 1,
+        light: 1,
+        time_s: 0.0,
+        file: None,
+    };
+    state.traces.ask(of, generation);
+    let names = ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+    assert!(state.traces.take(generation, names, Ok(trace(events, statements))));
+}
+
+fn events(a: f32) -> Vec<Event> {
+    vec![
+        event(2, Act::Argument, "x", &[0.5 * a]),
+        event(3, Act::Store, "a", &[a]),
+        event(4, Act::Condition, "", &[0.0]),
+        event(6, Act::Return, "", &[a]),
+    ]
+}
+
+fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static, Window> {
+    let mut state = State::new(Settings::of_window(), Source::embedded());
+    add(&mut state, 1, text, events, statements);
+    let window = Window { state, panel: SourceState::default(), asked: Vec::new() };
+    let mut has_theme = false;
+    let show = move |ui: &mut egui::Ui, window: &mut Window| {
+        if !std::mem::replace(&mut has_theme, true) {
+            theme::apply(ui.ctx());
+        }
+        let (thumbnails, baked) = (Thumbnails::default(), BakeReport::default());
+        let readings = Readings {
+            baking: None,
+            baked: &baked,
+            memory: None,
+            thumbnails: &thumbnails,
+            texture: None,
+            pipelines: 0,
+            value: None,
+            title: None,
+            legend: None,
+        };
+        let mut commands = Commands::new(&window.state.session.settings);
+        window.panel.ui(ui, &Context::new(&window.state, readings), &mut commands);
+        window.asked.extend(commands.finish(&window.state.session.settings).0);
+    };
+    let mut harness = Harness::builder().with_size(egui::vec2(900.0, 300.0)).build_ui_state(show, window);
+    harness.run_steps(3);
+    harness
+}
+
+/// The labels that a screen reader finds.
+fn labels(harness: &Harness<'_, Window>) -> Vec<String> {
+    harness.root().children_recursive().filter_map(|node| node.accesskit_node().label()).collect()
+}
+
+#[test]
+fn values_stand_beside_the_code_and_change_with_a_save() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3, 4, 5, 6]);
+    for text in ["x = 1", "a = 2", "not taken", "return 2", "3:     float a = x * 2.0;"] {
+        harness.get_by_label(text);
+    }
+    assert!(labels(&harness).iter().any(|label| label.contains("equal to the picture")), "{:?}", labels(&harness));
+    let edited = TEXT.replace("2.0", "4.0");
+    add(&mut harness.state_mut().state, 2, &edited, events(4.0), &[2, 3, 4, 5, 6]);
+    harness.run_steps(3);
+    for text in ["x = 1 → 2", "a = 2 → 4", "not taken", "return 2 → 4"] {
+        harness.get_by_label(text);
+    }
+    harness.get_by_label_contains("first change in line 2, 3 lines in all");
+    assert!(harness.state().asked.is_empty(), "the panel changes nothing by itself");
+}
+
+#[test]
+fn an_include_and_the_list_open_a_file() {
+    let mut harness = window(TEXT, events(2.0), &[2]);
+    harness.get_by_role_and_label(Role::Button, "Open b.glsl").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [SHOW_FILE.with("b.glsl".into())]);
+    harness.state_mut().state.traces.file = Some("b.glsl".into());
+    harness.run_steps(2);
+    harness.get_by_label("1: float g;");
+    assert!(!labels(&harness).iter().any(|label| label == "a = 2"), "values of another file");
+}
+
+#[test]
+fn errors_stand_below_their_lines() {
+    let mut harness = window(TEXT, events(2.0), &[2]);
+    let state = &mut harness.state_mut().state;
+    let file = state.source.display_path(&"a.glsl".into());
+    state.session.diagnostics = vec![Diagnostic::error(file, "'q' : undeclared").on_line(3, None)];
+    harness.run_steps(2);
+    let message = harness.get_by_label("'q' : undeclared").rect();
+    let [above, below] = ["3:     float a", "4:     if (a"].map(|line| harness.get_by_label_contains(line).rect());
+    assert!(above.bottom() <= message.top() && message.bottom() <= below.top(), "{above:?} {message:?} {below:?}");
+}
+
+#[test]
+fn the_search_finds_lines_of_a_long_file_of_which_few_are_shown() {
+    let text: String = (1..=600).map(|line| format!("float v{line} = {line}.0;\n")).collect();
+    let mut harness = window(&text, vec![event(5, Act::Store, "v5", &[5.0])], &[5]);
+    let shown =
+        |harness: &Harness<'_, Window>| labels(harness).iter().filter(|label| label.contains(": float v")).count();
+    assert!((5..40).contains(&shown(&harness)), "{}", shown(&harness));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
+    harness.run_steps(2);
+    harness.get_by_label("Find in the file").type_text("V432");
+    harness.run_steps(3);
+    harness.get_by_label("1 of 1 lines");
+    harness.get_by_label("432: float v432 = 432.0;");
+    assert!(shown(&harness) < 40);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Find in the file").is_none());
+}
+
+#[test]
+fn a_call_is_chosen_where_there_are_more() {
+    let both = ["main > f", "main > f [2]"].map(|calls| called(calls, 3, Act::Store, "a", &[2.0]));
+    let mut harness = window(TEXT, both.to_vec(), &[3]);
+    harness.get_by_label("Call").click();
+    harness.run_steps(2);
+    harness.get_by_label("main > f [2]").click();
+    harness.run_steps(2);
+    let chosen = Choice { call: Some("main > f [2]".to_owned()), ..Choice::default() };
+    assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
+}

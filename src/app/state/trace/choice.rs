@@ -1,0 +1,93 @@
+//! Which of a pixel's fragments, calls and times the values are of.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::shader::trace::{Doing, LineOfTrace, Trace};
+
+/// The choice among what happened at a pixel.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) struct Choice {
+    /// From 0 for the nearest; `None` for the one that is seen.
+    pub(in crate::app) fragment: Option<usize>,
+    /// The path of a call, as `shade > add_light [2]`: it, the calls that led to it, and those that it makes. `None` for all.
+    pub(in crate::app) call: Option<String>,
+    /// Of a statement that ran more than once, the time that counts, from 1. `None` for all.
+    pub(in crate::app) time: Option<usize>,
+}
+
+impl Choice {
+    /// The fragment of a trace.
+    pub(in crate::app) fn fragment_of(&self, trace: &Trace) -> Option<usize> {
+        self.fragment.filter(|fragment| *fragment < trace.fragments.len()).or_else(|| trace.visible())
+    }
+
+    /// The chosen call, if the fragment has it.
+    pub(in crate::app) fn call_of(&self, trace: &Trace, fragment: usize) -> Option<&str> {
+        let call = self.call.as_deref()?;
+        calls(trace, fragment).iter().any(|of| **of == *call).then_some(call)
+    }
+
+    /// The lines of the chosen fragment, call and time.
+    pub(in crate::app) fn lines(&self, trace: &Trace) -> Vec<LineOfTrace> {
+        let Some(fragment) = self.fragment_of(trace) else { return Vec::new() };
+        let call = self.call_of(trace, fragment);
+        if call.is_none() && self.time.is_none() {
+            return trace.lines(fragment);
+        }
+        let mut times: HashMap<Doing, usize> = HashMap::new();
+        trace.lines_where(fragment, |event| {
+            if call.is_some_and(|call| !is_related(&event.calls, call)) {
+                return false;
+            }
+            let time = times.entry(event.doing.clone()).or_default();
+            *time += 1;
+            self.time.is_none_or(|chosen| chosen == *time)
+        })
+    }
+}
+
+/// Whether a path of calls is another, leads to it, or begins with it.
+pub(super) fn is_related(path: &str, other: &str) -> bool {
+    let leads = |a: &str, b: &str| a.is_empty() || b.strip_prefix(a).is_some_and(|rest| rest.starts_with(" > "));
+    path == other || leads(path, other) || leads(other, path)
+}
+
+/// The paths of calls in a fragment, in their order.
+pub(in crate::app) fn calls(trace: &Trace, fragment: usize) -> Vec<Arc<str>> {
+    let mut found: Vec<Arc<str>> = Vec::new();
+    for event in trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events) {
+        if !event.calls.is_empty() && !found.contains(&event.calls) {
+            found.push(event.calls.clone());
+        }
+    }
+    found
+}
+
+/// How often the statement ran that ran most often in the chosen call.
+pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace) -> usize {
+    let all = Choice { time: None, ..choice.clone() };
+    all.lines(trace).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_has_what_leads_to_it_and_what_it_makes() {
+        let chosen = "shade > add_light [2]";
+        for (path, is) in [
+            ("", true),
+            ("shade", true),
+            (chosen, true),
+            ("shade > add_light [2] > d_ggx", true),
+            ("shade > add_light", false),
+            ("shade > add_light [2", false),
+            ("shade > add_light [21]", false),
+            ("other", false),
+        ] {
+            assert_eq!(is_related(path, chosen), is, "{path}");
+        }
+    }
+}

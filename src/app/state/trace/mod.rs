@@ -1,0 +1,246 @@
+//! What the statements of a file do at the pinned pixel: the newest trace, that of the version before, and what of them the user has chosen.
+//! Nothing is traced while the panel Source is out of sight.
+
+pub(in crate::app) mod choice;
+pub(in crate::app) mod rows;
+mod saved;
+pub(in crate::app) mod subject;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::shader::trace::Trace;
+use crate::shader::{ShaderSet, TreePath};
+use choice::Choice;
+use rows::{Row, Side, Sources, rows};
+use saved::SavedText;
+use subject::Subject;
+
+/// Frames within which the panel comes into sight after it was asked for.
+const MOST_UNSEEN: u32 = 8;
+
+/// A trace, and what it is of.
+pub(in crate::app) struct PixelTrace {
+    pub(in crate::app) of: Subject,
+    /// The stage that draws the pixel; empty if there is none.
+    pub(in crate::app) stage: String,
+    /// The files whose statements it has at the pixel.
+    pub(in crate::app) files: Vec<String>,
+    /// The file whose statements were traced.
+    pub(in crate::app) file: TreePath,
+    /// The trace, or the reason why there is none.
+    pub(in crate::app) trace: Result<Trace, String>,
+}
+
+impl PixelTrace {
+    /// The text of the traced file.
+    pub(in crate::app) fn text(&self) -> Arc<str> {
+        self.of.shaders.texts.get(&self.file).cloned().unwrap_or_default()
+    }
+
+    fn side(&self) -> Option<Side<'_>> {
+        Some(Side { trace: self.trace.as_ref().ok()?, text: self.text() })
+    }
+}
+
+/// How far the newest trace is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) enum Progress {
+    /// The next frame decides whether there is something to trace.
+    #[default]
+    Unknown,
+    /// The panel is out of sight.
+    Unseen,
+    /// No pixel is pinned.
+    NoPixel,
+    /// The pinned pixel is outside of the picture, which has become smaller.
+    Outside,
+    /// The picture is not final.
+    Waits,
+    /// The thread has been asked, by the number of the request.
+    UnderWay(u64),
+    /// The trace is that of the picture.
+    Done,
+}
+
+/// The traces.
+#[derive(Default)]
+pub(in crate::app) struct Traces {
+    /// The file that the user has chosen; `None` for that of the stage.
+    pub(in crate::app) file: Option<TreePath>,
+    pub(in crate::app) choice: Choice,
+    pub(in crate::app) progress: Progress,
+    /// The shown file as it was saved, while it does not compile.
+    pub(in crate::app) saved: SavedText,
+    /// What was asked for last, and the number of that request.
+    asked: Option<Subject>,
+    number: u64,
+    /// What is to be asked for once it has stayed as it is for a while.
+    resting: Option<(Subject, Instant)>,
+    /// Frames in which the panel was out of sight since a command asked for a trace.
+    unseen: u32,
+    /// The newest trace. It stays while a newer one is under way.
+    newest: Option<Arc<PixelTrace>>,
+    /// That of the version before, at the same pixel of the same picture.
+    before: Option<Arc<PixelTrace>>,
+}
+
+impl Traces {
+    /// The newest trace.
+    pub(in crate::app) fn newest(&self) -> Option<&Arc<PixelTrace>> {
+        self.newest.as_ref()
+    }
+
+    /// The trace of the version before.
+    pub(in crate::app) fn before(&self) -> Option<&Arc<PixelTrace>> {
+        self.before.as_ref()
+    }
+
+    /// What was asked for last.
+    pub(in crate::app) fn asked(&self) -> Option<&Subject> {
+        self.asked.as_ref()
+    }
+
+    /// The file that the panel shows: the chosen one, or that of the stage.
+    pub(in crate::app) fn file_shown(&self) -> Option<&TreePath> {
+        self.file.as_ref().or(self.newest.as_ref().map(|newest| &newest.file))
+    }
+
+    /// Notes that a trace of `subject` was asked for, by the number of the request.
+    pub(in crate::app) fn ask(&mut self, subject: Subject, number: u64) {
+        (self.asked, self.number, self.progress) = (Some(subject), number, Progress::UnderWay(number));
+    }
+
+    /// Records that the thread has failed. The same trace would fail again, so it is not asked for again.
+    pub(in crate::app) fn fail(&mut self, message: &str) {
+        self.take(self.number, Default::default(), Err(message.to_owned()));
+    }
+
+    /// How long `subject` must still stay as it is, of a total of `rest`, before it is asked for: settings may be dragged. A click, a save and
+    /// another file are traced at once.
+    pub(in crate::app) fn rest_left(&mut self, subject: &Subject, rest: Duration) -> Option<Duration> {
+        self.asked.as_ref().filter(|asked| asked.settings != subject.settings)?;
+        match &self.resting {
+            Some((of, since)) if of == subject => rest.checked_sub(since.elapsed()).filter(|left| !left.is_zero()),
+            _ => {
+                self.resting = Some((subject.clone(), Instant::now()));
+                Some(rest)
+            }
+        }
+    }
+
+    /// Notes that a command waits for the trace of the picture.
+    pub(in crate::app) fn expect(&mut self) {
+        (self.progress, self.unseen) = (Progress::Unknown, 0);
+    }
+
+    /// Notes that the picture is still that of the last request.
+    pub(in crate::app) fn resume(&mut self) {
+        let is_taken = |asked: &Subject| self.newest.as_ref().is_some_and(|newest| newest.of == *asked);
+        let is_done = self.asked.as_ref().is_some_and(is_taken);
+        self.progress = if is_done { Progress::Done } else { Progress::UnderWay(self.number) };
+    }
+
+    /// Notes that the panel was out of sight in a frame.
+    pub(in crate::app) fn unseen(&mut self) {
+        (self.asked, self.progress) = (None, Progress::Unseen);
+        self.unseen = self.unseen.saturating_add(1);
+    }
+
+    /// The result for a command that waits for the trace of the picture, once there is one.
+    pub(in crate::app) fn answer(&self) -> Option<Result<Value, String>> {
+        match self.progress {
+            Progress::Done => Some(self.json()),
+            Progress::NoPixel => Some(Err("no pixel is pinned; name one with `at`".to_owned())),
+            Progress::Outside => Some(Err("the pinned pixel is outside of the picture".to_owned())),
+            // It opens within a few frames.
+            Progress::Unseen if self.unseen > MOST_UNSEEN => {
+                Some(Err("the panel Source is not in sight, so nothing is traced".to_owned()))
+            }
+            Progress::Unseen | Progress::Unknown | Progress::Waits | Progress::UnderWay(_) => None,
+        }
+    }
+
+    /// Whether a trace of the version before is missing for `subject`: the last trace is of another picture.
+    pub(in crate::app) fn lacks_before(&self, subject: &Subject) -> bool {
+        let is_known = |known: &Option<Arc<PixelTrace>>| {
+            known.as_ref().is_some_and(|known| known.of.is_same_but_version(subject) && known.trace.is_ok())
+        };
+        let is_other = |known: &Option<Arc<PixelTrace>>| {
+            is_known(known) && known.as_ref().is_some_and(|known| !known.of.has_same_texts(subject))
+        };
+        !is_other(&self.newest) && !is_other(&self.before)
+    }
+
+    /// Takes the result of a request, if it is the newest. Returns whether it is.
+    pub(in crate::app) fn take(
+        &mut self,
+        number: u64,
+        (stage, files, file): (String, Vec<String>, String),
+        trace: Result<Trace, String>,
+    ) -> bool {
+        let Some(of) = self.asked.clone().filter(|_| self.progress == Progress::UnderWay(number)) else {
+            return false;
+        };
+        self.progress = Progress::Done;
+        // Without a stage, there is no file of it.
+        let last = || self.newest.as_ref().map(|last| last.file.clone());
+        let named = (!file.is_empty()).then(|| TreePath::from(file.as_str()));
+        let file = named.or_else(|| of.file.clone()).or_else(last).unwrap_or_else(|| TreePath::from(""));
+        let newest = PixelTrace { of, stage, files, file, trace };
+        let fits = |old: &Arc<PixelTrace>| {
+            old.trace.is_ok()
+                && old.of.is_same_but_version(&newest.of)
+                && old.file == newest.file
+                && !old.of.has_same_texts(&newest.of)
+        };
+        let last = self.newest.take().filter(fits);
+        self.before = last.or(self.before.take().filter(fits));
+        self.newest = Some(Arc::new(newest));
+        true
+    }
+
+    /// Takes the trace of the version before for the newest request, unless there is one.
+    pub(in crate::app) fn take_before(&mut self, number: u64, (shaders, trace): (Arc<ShaderSet>, Trace)) {
+        let is_missing = self.number == number && self.progress == Progress::Done && self.before.is_none();
+        let Some(newest) = self.newest.as_ref().filter(|_| is_missing) else { return };
+        let PixelTrace { of, stage, files, file, .. } = &**newest;
+        let of = Subject { shaders, ..of.clone() };
+        let (stage, files, file) = (stage.clone(), files.clone(), file.clone());
+        self.before = Some(Arc::new(PixelTrace { of, stage, files, file, trace: Ok(trace) }));
+    }
+
+    /// The fragment whose statements are shown.
+    pub(in crate::app) fn fragment(&self) -> Option<usize> {
+        self.newest.as_ref()?.trace.as_ref().ok().and_then(|trace| self.choice.fragment_of(trace))
+    }
+
+    /// The rows of a text of a file.
+    pub(in crate::app) fn rows(&self, file: &TreePath, text: &str) -> Vec<Row> {
+        let of_file = |of: &Option<Arc<PixelTrace>>| of.clone().filter(|of| of.file == *file);
+        let (now, before) = (of_file(&self.newest), of_file(&self.before));
+        let now = now.as_ref().and_then(|now| now.side());
+        let before = before.as_ref().and_then(|before| before.side());
+        rows(&Sources { text, now, before }, &self.choice)
+    }
+
+    /// The newest trace in the form of `specula trace --json`, with the values that the last edit has changed.
+    pub(in crate::app) fn json(&self) -> Result<Value, String> {
+        let newest = self.newest.as_ref().ok_or("no pixel has been traced")?;
+        let trace = newest.trace.as_ref().map_err(Clone::clone)?;
+        let none = "every fragment of the model is discarded at this pixel; choose one with `fragment`";
+        let fragment = self.choice.fragment_of(trace).ok_or(none)?;
+        let mut json = trace.json(fragment);
+        (json["pixel"], json["mode"]) = (json!(newest.of.at), json!(newest.of.settings.mode));
+        (json["file"], json["stage"], json["files"]) =
+            (json!(newest.file.as_str()), json!(newest.stage), json!(newest.files));
+        json["calls"] = json!(choice::calls(trace, fragment));
+        json["changed"] = self.rows(&newest.file, &newest.text()).iter().flat_map(Row::changes_json).collect();
+        Ok(json)
+    }
+}
+
+#[cfg(test)]
+mod tests;

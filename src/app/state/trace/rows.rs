@@ -1,0 +1,195 @@
+//! The lines of a file with what their statements do at a pixel, now and in the version before.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::choice::{Choice, is_related};
+use crate::shader::expression::lines_before;
+use crate::shader::trace::{Act, Done, LineOfTrace, Trace};
+
+/// A trace and the text of its file.
+pub(in crate::app) struct Side<'a> {
+    pub(in crate::app) trace: &'a Trace,
+    pub(in crate::app) text: Arc<str>,
+}
+
+/// What the rows are made of.
+pub(in crate::app) struct Sources<'a> {
+    /// The text that is shown.
+    pub(in crate::app) text: &'a str,
+    pub(in crate::app) now: Option<Side<'a>>,
+    pub(in crate::app) before: Option<Side<'a>>,
+}
+
+/// Whether the pixel reaches a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) enum Reach {
+    /// The line has no statements, or nothing is known.
+    #[default]
+    Unknown,
+    Reached,
+    Missed,
+}
+
+/// A line with its values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::app) struct Row {
+    /// From 1.
+    pub(in crate::app) line: u32,
+    pub(in crate::app) reach: Reach,
+    /// What its statements do, in order.
+    pub(in crate::app) notes: Vec<Note>,
+    /// Whether this is the first line, in the order of execution, whose values differ from the version before.
+    pub(in crate::app) is_first_change: bool,
+}
+
+/// What a statement of a line does.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct Note {
+    pub(in crate::app) done: Done,
+    /// What stands before the values: `a2 = `; may be empty.
+    pub(in crate::app) label: String,
+    pub(in crate::app) values: String,
+    /// The values in the version before, if they differ.
+    pub(in crate::app) before: Option<String>,
+    /// Whether a value is NaN or infinite.
+    pub(in crate::app) is_bad: bool,
+}
+
+impl Note {
+    /// What is shown, on one line.
+    pub(in crate::app) fn text(&self) -> String {
+        let Self { label, values, before, .. } = self;
+        before.as_ref().map_or_else(|| format!("{label}{values}"), |before| format!("{label}{before} → {values}"))
+    }
+}
+
+impl Row {
+    /// The values that differ from the version before.
+    pub(super) fn changes_json(&self) -> impl Iterator<Item = Value> {
+        self.notes.iter().filter_map(|note| {
+            let before = note.before.as_ref()?;
+            Some(json!({ "line": self.line, "name": note.done.name, "act": note.done.act, "before": before,
+                "now": note.values, "first": self.is_first_change }))
+        })
+    }
+}
+
+/// The rows of a text, one for each of its lines.
+pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
+    let Sources { text, now, before } = sources;
+    let mut rows: Vec<Row> = (1..).zip(text.lines()).map(|(line, _)| Row { line, ..Row::default() }).collect();
+    let Some(now) = now else { return rows };
+    let lines = by_line(choice.lines(now.trace));
+    let earlier = before.as_ref().map(|before| {
+        // The number of a fragment of one version may be that of another in the other version.
+        let choice = Choice { fragment: choice.fragment_of(before.trace).and(choice.fragment), ..choice.clone() };
+        (by_line(choice.lines(before.trace)), lines_before(&before.text, &now.text))
+    });
+    let file = lines.values().next().map(|line| line.file.clone());
+    let file = file.or_else(|| now.trace.files().next().map(str::to_owned)).unwrap_or_default();
+    let statements: BTreeSet<u32> = now.trace.statement_lines(&file).collect();
+    let traced = lines_before(&now.text, text);
+    let mut changed: BTreeMap<u32, usize> = BTreeMap::new();
+    for (at, row) in rows.iter_mut().enumerate() {
+        let Some(line) = traced.get(at).copied().flatten() else { continue };
+        let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
+        let is_loop = text.lines().nth(at).is_some_and(is_loop);
+        row.notes = lines.get(&line).map(|line| notes(line, earlier, is_loop)).unwrap_or_default();
+        row.reach = match (statements.contains(&line), lines.contains_key(&line)) {
+            (_, true) => Reach::Reached,
+            (true, false) => Reach::Missed,
+            (false, false) => Reach::Unknown,
+        };
+        if row.notes.iter().any(|note| note.before.is_some()) {
+            changed.insert(line, at);
+        }
+    }
+    if let Some(first) = first_change(now.trace, choice, &changed) {
+        rows[first].is_first_change = true;
+    }
+    spread(&mut rows);
+    rows
+}
+
+fn by_line(lines: Vec<LineOfTrace>) -> BTreeMap<u32, LineOfTrace> {
+    lines.into_iter().map(|line| (line.line, line)).collect()
+}
+
+/// The row of the changed line that ran first. `changed`: the rows of traced lines.
+fn first_change(trace: &Trace, choice: &Choice, changed: &BTreeMap<u32, usize>) -> Option<usize> {
+    let fragment = choice.fragment_of(trace)?;
+    let call = choice.call_of(trace, fragment);
+    let events = trace.fragments.get(fragment)?.events.iter();
+    let mut of_choice = events.filter(|event| call.is_none_or(|call| is_related(&event.calls, call)));
+    of_choice.find_map(|event| changed.get(&event.doing.line).copied()).or(changed.values().next().copied())
+}
+
+/// Lines without statements between lines that are not reached belong to them.
+fn spread(rows: &mut [Row]) {
+    let known: Vec<Reach> = rows.iter().map(|row| row.reach).collect();
+    let mut above = Reach::Unknown;
+    for at in 0..rows.len() {
+        if known[at] != Reach::Unknown {
+            above = known[at];
+        } else if above == Reach::Missed {
+            let below = known[at..].iter().find(|reach| **reach != Reach::Unknown);
+            if below == Some(&Reach::Missed) {
+                rows[at].reach = Reach::Missed;
+            }
+        }
+    }
+}
+
+fn is_loop(line: &str) -> bool {
+    ["for", "while", "do"].iter().any(|word| {
+        let rest = line.trim_start().trim_start_matches('}').trim_start().strip_prefix(word);
+        rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+    })
+}
+
+fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, is_loop: bool) -> Vec<Note> {
+    let note = |done: &Done| {
+        let is_same = |of: &&Done| (of.act, &of.name) == (done.act, &done.name);
+        let before = earlier.and_then(|line| line.done.iter().find(is_same));
+        let values = values(done, is_loop);
+        let before = before.map(|before| self::values(before, is_loop)).filter(|before| *before != values);
+        let label = match done.act {
+            Act::Store | Act::Argument => format!("{} = ", done.name),
+            Act::Return => format!("return{} ", done.name),
+            Act::Condition | Act::Discard => String::new(),
+        };
+        let is_bad = done.values().any(|value| !value.is_finite());
+        Note { done: done.clone(), label, values, before, is_bad }
+    };
+    line.done.iter().map(note).collect()
+}
+
+/// The values in words. A condition says whether its branch was taken, or how many rounds its loop had.
+fn values(done: &Done, is_loop: bool) -> String {
+    let count = done.count;
+    match done.act {
+        Act::Discard => {
+            if count > 1 {
+                format!("discard ×{count}")
+            } else {
+                "discard".to_owned()
+            }
+        }
+        Act::Condition if done.values().count() == count => {
+            let taken = done.values().filter(|value| value.numbers().any(|number| number != 0.0)).count();
+            match (is_loop, taken) {
+                (true, 1) => "1 round".to_owned(),
+                (true, taken) => format!("{taken} rounds"),
+                (false, taken) if taken == count && count == 1 => "taken".to_owned(),
+                (false, taken) if taken == count => format!("taken ×{count}"),
+                (false, 0) if count == 1 => "not taken".to_owned(),
+                (false, 0) => format!("not taken ×{count}"),
+                (false, taken) => format!("taken {taken} of {count}"),
+            }
+        }
+        _ => done.values_text(),
+    }
+}

@@ -1,0 +1,65 @@
+//! The text of a file as it was saved, while it does not compile: the shaders in use have an older one.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+
+use crate::shader::{Diagnostic, TreePath};
+
+/// The text of one file.
+#[derive(Default)]
+pub(in crate::app) struct SavedText {
+    /// The file that was asked for, and a hash of the errors that it had then.
+    asked: Option<(TreePath, u64)>,
+    text: Option<(TreePath, Arc<str>)>,
+}
+
+impl SavedText {
+    /// Whether the text of a file with these errors is missing. The next call with the same counts it as asked for.
+    pub(in crate::app) fn lacks<'a>(&mut self, path: &TreePath, errors: impl Iterator<Item = &'a Diagnostic>) -> bool {
+        let mut hasher = DefaultHasher::new();
+        errors.for_each(|error| error.hash(&mut hasher));
+        let asked = (path.clone(), hasher.finish());
+        if self.asked.as_ref() == Some(&asked) {
+            return false;
+        }
+        self.asked = Some(asked);
+        true
+    }
+
+    /// Takes the text of a file, if it is still the one that was asked for.
+    pub(in crate::app) fn take(&mut self, path: TreePath, text: Arc<str>) {
+        if self.asked.as_ref().is_some_and(|(asked, _)| *asked == path) {
+            self.text = Some((path, text));
+        }
+    }
+
+    /// The text of a file.
+    pub(in crate::app) fn of(&self, path: &TreePath) -> Option<&Arc<str>> {
+        self.text.as_ref().filter(|(of, _)| of == path).map(|(_, text)| text)
+    }
+
+    /// Forgets the text: the shaders in use have it.
+    pub(in crate::app) fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_is_asked_for_once_for_each_state_of_its_errors() {
+        let mut saved = SavedText::default();
+        let path = TreePath::from("a.glsl");
+        let errors = [Diagnostic::error("a.glsl", "one"), Diagnostic::error("a.glsl", "two")];
+        assert!(saved.lacks(&path, errors[..1].iter()) && !saved.lacks(&path, errors[..1].iter()));
+        assert!(saved.lacks(&path, errors.iter()));
+        saved.take("b.glsl".into(), "b".into());
+        assert_eq!(saved.of(&"b.glsl".into()), None, "nobody has asked for it");
+        saved.take(path.clone(), "text".into());
+        assert_eq!(saved.of(&path).map(|text| &**text), Some("text"));
+        saved.forget();
+        assert_eq!(saved.of(&path), None);
+    }
+}

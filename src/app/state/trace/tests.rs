@@ -1,0 +1,188 @@
+//! Traces of two versions, as rows.
+
+use std::collections::BTreeMap;
+
+use super::rows::Reach;
+use super::*;
+use crate::settings::Settings;
+use crate::shader::trace::sample::{called, event, trace};
+use crate::shader::trace::{Act, Event};
+
+const OLD: &str = "float f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
+const NEW: &str = "float f(float x) {\n    float b = 1.0;\n    float a = x * 4.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
+
+fn subject(shaders: &Arc<ShaderSet>) -> Subject {
+    Subject {
+        at: [3, 4],
+        size: (64, 48),
+        settings: Arc::new(Settings::default()),
+        shaders: shaders.clone(),
+        revisions: Default::default(),
+        model: 1,
+        light: 1,
+        time_s: 0.0,
+        file: None,
+    }
+}
+
+fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
+    let texts = BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from(text))]);
+    Arc::new(ShaderSet { generation, texts, ..ShaderSet::default() })
+}
+
+/// Takes a trace of a version.
+fn add(traces: &mut Traces, shaders: &Arc<ShaderSet>, number: u64, events: Vec<Event>, statements: &[u32]) {
+    traces.ask(subject(shaders), number);
+    let names = ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+    assert!(traces.take(number, names, Ok(trace(events, statements))));
+}
+
+fn old_events() -> Vec<Event> {
+    vec![
+        event(1, Act::Argument, "x", &[1.0]),
+        event(2, Act::Store, "a", &[2.0]),
+        event(3, Act::Condition, "", &[0.0]),
+        event(5, Act::Return, "", &[2.0]),
+    ]
+}
+
+fn new_events() -> Vec<Event> {
+    vec![
+        event(1, Act::Argument, "x", &[1.0]),
+        event(2, Act::Store, "b", &[1.0]),
+        event(3, Act::Store, "a", &[4.0]),
+        event(4, Act::Condition, "", &[1.0]),
+        event(5, Act::Store, "a", &[3.0]),
+        event(6, Act::Return, "", &[3.0]),
+    ]
+}
+
+fn texts(traces: &Traces, text: &str) -> Vec<String> {
+    let rows = traces.rows(&"a.glsl".into(), text);
+    rows.iter().map(|row| row.notes.iter().map(rows::Note::text).collect::<Vec<_>>().join("; ")).collect()
+}
+
+#[test]
+fn a_save_shows_old_and_new_values_on_lines_that_moved() {
+    let mut traces = Traces::default();
+    add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1, 2, 3, 4, 5]);
+    assert_eq!(texts(&traces, OLD), ["x = 1", "a = 2", "not taken", "", "return 2", ""]);
+    let reach: Vec<Reach> = traces.rows(&"a.glsl".into(), OLD).iter().map(|row| row.reach).collect();
+    use Reach::{Missed, Reached, Unknown};
+    assert_eq!(reach, [Reached, Reached, Reached, Missed, Reached, Unknown]);
+
+    add(&mut traces, &shaders(2, NEW), 2, new_events(), &[1, 2, 3, 4, 5, 6]);
+    let expected = ["x = 1", "b = 1", "a = 2 → 4", "not taken → taken", "a = 3", "return 2 → 3", ""];
+    assert_eq!(texts(&traces, NEW), expected);
+    let rows = traces.rows(&"a.glsl".into(), NEW);
+    let first: Vec<u32> = rows.iter().filter(|row| row.is_first_change).map(|row| row.line).collect();
+    assert_eq!(first, [3], "the first line that differs");
+    let changed = traces.json().unwrap()["changed"].clone();
+    assert_eq!(changed[0], json!({ "line": 3, "name": "a", "act": "store", "before": "2", "now": "4", "first": true }));
+    assert_eq!(changed.as_array().unwrap().len(), 3);
+
+    // While a later edit does not compile, the values stay beside the lines that they belong to.
+    let broken = format!("// more\n{NEW}");
+    assert_eq!(texts(&traces, &broken)[3], "a = 2 → 4");
+}
+
+#[test]
+fn another_pixel_has_no_version_before() {
+    let mut traces = Traces::default();
+    add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1]);
+    let newest = shaders(2, NEW);
+    assert!(!traces.lacks_before(&subject(&newest)), "the last trace is the version before");
+    let other = Subject { at: [9, 9], ..subject(&newest) };
+    assert!(traces.lacks_before(&other));
+    traces.ask(other, 2);
+    let names = || ("a.frag".to_owned(), Vec::new(), "a.glsl".to_owned());
+    assert!(traces.take(2, names(), Ok(trace(new_events(), &[1]))));
+    assert!(traces.before().is_none());
+    // The thread traces it, too.
+    traces.take_before(1, (shaders(1, OLD), trace(old_events(), &[1])));
+    assert!(traces.before().is_none(), "an answer to an older request");
+    traces.take_before(2, (shaders(1, OLD), trace(old_events(), &[1])));
+    assert_eq!(texts(&traces, NEW)[2], "a = 2 → 4");
+    // A result that is not awaited any more is none.
+    assert!(!traces.take(1, names(), Ok(trace(old_events(), &[1]))));
+}
+
+#[test]
+fn the_same_texts_are_one_version() {
+    let mut traces = Traces::default();
+    add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1]);
+    add(&mut traces, &shaders(2, NEW), 2, new_events(), &[1]);
+    // Another expression is watched: a generation, but no version.
+    add(&mut traces, &shaders(3, NEW), 3, new_events(), &[1]);
+    assert_eq!(texts(&traces, NEW)[2], "a = 2 → 4");
+}
+
+#[test]
+fn a_call_and_a_time_choose_values() {
+    let mut traces = Traces::default();
+    let text = "float f(float x) {\n    for (int i = 0; i < 2; i++)\n        x += 1.0;\n    return x;\n}\n";
+    let mut events = Vec::new();
+    for (calls, x) in [("main > f", 1.0), ("main > f [2]", 5.0)] {
+        events.push(called(calls, 1, Act::Argument, "x", &[x]));
+        for more in [1.0, 2.0] {
+            events.push(called(calls, 2, Act::Condition, "", &[1.0]));
+            events.push(called(calls, 3, Act::Store, "x", &[x + more]));
+        }
+        events.push(called(calls, 2, Act::Condition, "", &[0.0]));
+        events.push(called(calls, 4, Act::Return, "", &[f32::NAN]));
+    }
+    add(&mut traces, &shaders(1, text), 1, events, &[1, 2, 3, 4]);
+    assert_eq!(texts(&traces, text)[..3], ["x = 1, 5 ×2", "4 rounds", "x = 2, 3, …, 7 ×4"]);
+    traces.choice.call = Some("main > f [2]".to_owned());
+    assert_eq!(texts(&traces, text)[..3], ["x = 5", "2 rounds", "x = 6, 7 ×2"]);
+    traces.choice.time = Some(2);
+    assert_eq!(texts(&traces, text)[..3], ["", "1 round", "x = 7"]);
+    let rows = traces.rows(&"a.glsl".into(), text);
+    assert_eq!(rows[0].reach, Reach::Missed);
+    traces.choice.time = None;
+    assert!(traces.rows(&"a.glsl".into(), text)[3].notes[0].is_bad);
+    // A call that the next trace does not have counts no more.
+    traces.choice.call = Some("other".to_owned());
+    assert_eq!(texts(&traces, text)[0], "x = 1, 5 ×2");
+}
+
+#[test]
+fn lines_without_statements_are_dim_between_lines_that_are_missed() {
+    let mut traces = Traces::default();
+    let text = "a;\nif (x) {\n    b;\n    // why\n    c;\n}\nd;\n";
+    add(
+        &mut traces,
+        &shaders(1, text),
+        1,
+        vec![
+            event(1, Act::Store, "a", &[1.0]),
+            event(2, Act::Condition, "", &[0.0]),
+            event(7, Act::Store, "d", &[1.0]),
+        ],
+        &[1, 2, 3, 5, 7],
+    );
+    let reach: Vec<Reach> = traces.rows(&"a.glsl".into(), text).iter().map(|row| row.reach).collect();
+    use Reach::{Missed, Reached, Unknown};
+    assert_eq!(reach, [Reached, Reached, Missed, Missed, Missed, Unknown, Reached]);
+}
+
+#[test]
+fn a_command_is_answered_with_the_trace_of_the_picture() {
+    let mut traces = Traces::default();
+    traces.expect();
+    assert_eq!(traces.answer(), None);
+    traces.progress = Progress::NoPixel;
+    assert!(traces.answer().unwrap().unwrap_err().contains("no pixel is pinned"));
+    traces.expect();
+    (0..MOST_UNSEEN).for_each(|_| traces.unseen());
+    assert_eq!(traces.answer(), None, "the panel is about to open");
+    traces.unseen();
+    assert!(traces.answer().unwrap().unwrap_err().contains("not in sight"));
+    add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1]);
+    assert_eq!(traces.answer().unwrap().unwrap()["pixel"], json!([3, 4]));
+    traces.ask(subject(&shaders(2, NEW)), 2);
+    assert_eq!(traces.answer(), None);
+    traces.fail("the trace failed");
+    assert_eq!(traces.answer(), Some(Err("the trace failed".to_owned())));
+    assert!(traces.before().is_some(), "the last good trace stays for the next save");
+}

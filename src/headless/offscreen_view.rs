@@ -1,0 +1,64 @@
+//! A view with targets of its own, which draws without a window.
+
+use std::sync::Arc;
+
+use super::HeadlessError;
+use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, SetLayouts, Use};
+use crate::render::{BoundFrame, Output, Redraw, View};
+
+/// A view and the image that it draws to.
+pub struct OffscreenView {
+    /// The view.
+    pub view: View,
+    /// Its submissions, one at a time.
+    pub frames: Frames,
+    output: Option<Arc<Image>>,
+}
+
+impl OffscreenView {
+    /// Creates the view. Its targets come with the first frame.
+    ///
+    /// # Errors
+    /// No memory left.
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>) -> Result<Self, GpuError> {
+        Ok(Self { view: View::new(gpu, layouts, 1)?, frames: Frames::new(gpu, 1)?, output: None })
+    }
+
+    /// Draws a frame, records `more`, and waits for both. Loops that did not end are told by [`Self::endless_loop`].
+    ///
+    /// # Errors
+    /// A device error.
+    pub fn draw<T>(
+        &mut self,
+        frame: &BoundFrame,
+        redraw: Redraw,
+        more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
+    ) -> Result<T, HeadlessError> {
+        self.view.prepare(frame)?;
+        let fits = |image: &Arc<Image>| (image.desc().width, image.desc().height) == frame.state.size;
+        let image = match self.output.take().filter(fits) {
+            Some(image) => image,
+            None => self.view.output_image(frame.state.size)?,
+        };
+        self.output = Some(image.clone());
+        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        let drawn = self.view.draw(&mut encoder, slot, frame, &output, redraw);
+        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &image));
+        let result = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
+        if result.is_err() {
+            self.view.forget();
+        }
+        let result = result?;
+        // SYNC: this thread reads the picture, or draws the next over it.
+        self.frames.wait()?;
+        self.view.take_range_sample(slot);
+        Ok(result)
+    }
+
+    /// The words of a loop of the last frame that did not end.
+    pub fn endless_loop(&self) -> Option<[u32; 2]> {
+        self.frames.endless_loop(self.frames.current())
+    }
+}

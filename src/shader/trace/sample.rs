@@ -1,0 +1,25 @@
+//! Traces for tests.
+
+use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
+
+/// An event in the file `a.glsl`, in the call `f`.
+pub(crate) fn event(line: u32, act: Act, name: &str, numbers: &[f32]) -> Event {
+    called("f", line, act, name, numbers)
+}
+
+/// An event in the file `a.glsl`, in a call.
+pub(crate) fn called(calls: &str, line: u32, act: Act, name: &str, numbers: &[f32]) -> Event {
+    let value = match numbers {
+        [] => None,
+        [number] => Some(TracedValue::float(*number)),
+        numbers => Some(TracedValue::floats(numbers)),
+    };
+    Event { doing: Doing { file: "a.glsl".into(), line, act, name: name.into() }, value, calls: calls.into() }
+}
+
+/// A trace of one fragment, whose color is the picture's. These lines of `a.glsl` have statements.
+pub(crate) fn trace(events: Vec<Event>, statements: &[u32]) -> Trace {
+    let code = statements.iter().map(|line| (("a.glsl".to_owned(), *line), format!("line {line};")));
+    let fragment = Fragment { depth: 0.5, color: Some([0; 4]), events, left_out: Vec::new() };
+    Trace { fragments: vec![fragment], left_out: 0, picture: [0; 4], redrawn: [0; 4], code: code.collect() }
+}

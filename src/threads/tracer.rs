@@ -1,0 +1,149 @@
+//! The tracer draws the pinned pixel with a stage that logs what its statements do, while the panel Source is open. The newest request wins.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::message::{Message, MessageSender, TaskKind};
+use super::newest::{Newest, Turn};
+use super::results::Traced;
+use crate::frame::Clock;
+use crate::gpu::Gpu;
+use crate::headless::{HeadlessError, PixelTracer, TraceTools, TracedPixel};
+use crate::pipeline::PipelineSet;
+use crate::render::{BoundFrame, Resources, View};
+use crate::session::Session;
+use crate::shader::trace::Trace;
+use crate::shader::{Compiler, ShaderSet, Source};
+
+/// Copies of what the picture is drawn with, the pixel, and the file whose statements are traced.
+pub(crate) struct TraceRequest {
+    pub(crate) compiler: Arc<Compiler>,
+    pub(crate) session: Session,
+    pub(crate) resources: Resources,
+    pub(crate) source: Source,
+    pub(crate) clock: Clock,
+    pub(crate) size: (u32, u32),
+    pub(crate) at: (u32, u32),
+    /// `None`: that of the stage itself.
+    pub(crate) file: Option<String>,
+}
+
+/// An older version of the shaders.
+pub(crate) struct OlderVersion {
+    pub(crate) shaders: Arc<ShaderSet>,
+    pub(crate) set: Arc<PipelineSet>,
+    /// A frame with the light that its shaders baked, if there is one.
+    pub(crate) like: Option<BoundFrame>,
+}
+
+/// What the thread is asked for.
+enum Asked {
+    /// A trace, and an older version of the shaders to compare with.
+    Trace(Box<TraceRequest>, Option<OlderVersion>),
+    /// The panel is closed: the memory is free for other things.
+    Release,
+}
+
+/// The thread. Dropping this ends its trace before the next step and waits for that.
+pub(crate) struct Tracer {
+    gpu: Arc<Gpu>,
+    thread: Newest<Asked>,
+    /// Whether the thread may hold memory of the device.
+    is_used: bool,
+}
+
+impl Tracer {
+    pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
+        Self { gpu: gpu.clone(), thread: Newest::new(TaskKind::PixelTracer, sender), is_used: false }
+    }
+
+    /// Traces a pixel, then the same in an older version, and drops the previous request. Returns the number of the request.
+    pub(crate) fn trace(&mut self, request: TraceRequest, before: Option<OlderVersion>) -> u64 {
+        self.is_used = true;
+        self.ask(Asked::Trace(Box::new(request), before))
+    }
+
+    /// Ends what is under way, and releases the memory.
+    pub(crate) fn release(&mut self) {
+        if std::mem::take(&mut self.is_used) {
+            self.ask(Asked::Release);
+        }
+    }
+
+    fn ask(&mut self, asked: Asked) -> u64 {
+        self.thread.request(asked, || {
+            let (gpu, mut tracer) = (self.gpu.clone(), None);
+            move |sender: &MessageSender, turn: &Turn<'_>, asked| match asked {
+                Asked::Release => tracer = None,
+                Asked::Trace(mut request, before) => {
+                    let start = Instant::now();
+                    let number = turn.number;
+                    let result = trace(&gpu, &mut tracer, &mut request, None, turn);
+                    if turn.is_superseded() {
+                        return;
+                    }
+                    let is_good = result.trace.is_ok();
+                    let ms = start.elapsed().as_secs_f64() * 1e3;
+                    sender.send(Message::Traced(number, Box::new(Traced { ms, ..result })));
+                    let Some(before) = before.filter(|_| is_good) else { return };
+                    let result = trace(&gpu, &mut tracer, &mut request, Some(&before), turn);
+                    // Without it, the newer trace stands alone: the older version may lack the file, or its light is gone.
+                    if let (Ok(trace), false) = (result.trace, turn.is_superseded()) {
+                        sender.send(Message::TracedBefore(number, Box::new((before.shaders, trace))));
+                    }
+                }
+            }
+        })
+    }
+}
+
+/// Traces the pixel in the newest version of the shaders, or in an older one.
+fn trace(
+    gpu: &Arc<Gpu>,
+    tracer: &mut Option<PixelTracer>,
+    request: &mut TraceRequest,
+    older: Option<&OlderVersion>,
+    turn: &Turn<'_>,
+) -> Traced {
+    let mut traced = Traced::default();
+    traced.trace = run(gpu, tracer, request, older, turn, &mut traced).map_err(|error| error.to_string());
+    traced
+}
+
+/// Writes what is known before the trace to `traced`.
+fn run(
+    gpu: &Arc<Gpu>,
+    tracer: &mut Option<PixelTracer>,
+    request: &mut TraceRequest,
+    older: Option<&OlderVersion>,
+    turn: &Turn<'_>,
+    traced: &mut Traced,
+) -> Result<Trace, HeadlessError> {
+    let lacks = |what: &str| HeadlessError::Settings(what.to_owned());
+    request.session.settings.view.msaa = 1;
+    let target = View::target_format(gpu, 1, true).map_err(HeadlessError::Settings)?;
+    let TraceRequest { session, resources, compiler, source, clock, size, at, file } = request;
+    let newest = resources.pipelines().cloned().ok_or_else(|| lacks("there are no shaders yet"))?;
+    let set = older.map_or(&newest, |older| &older.set);
+    let shaders = older.map_or(&newest.shaders, |older| &older.shaders);
+    let slug = &session.settings.mode;
+    let mode = shaders.modes.iter().find(|mode| mode.slug == *slug);
+    let mode = mode.ok_or_else(|| lacks(&format!("the shaders have no mode {slug}")))?;
+    let whole = session.frame_state_of(shaders, *clock, *size, target);
+    let tracer = match tracer {
+        Some(tracer) => tracer,
+        none => none.insert(PixelTracer::new(gpu, resources.layouts())?),
+    };
+    let (settings, revisions) = (&session.settings, session.revisions);
+    let older = older.map(|older| older.like.as_ref());
+    let pixel = TracedPixel { whole: &whole, set, older, settings, revisions, clock: *clock, at: *at, mode };
+    let mut tools = TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() };
+    let end_if_superseded = || if turn.is_superseded() { Err(HeadlessError::Canceled) } else { Ok(()) };
+    (traced.stage, traced.files) = tracer.files(&pixel, &tools)?;
+    let file = file.clone().unwrap_or_else(|| traced.stage.clone());
+    traced.file.clone_from(&file);
+    end_if_superseded()?;
+    let shown = tracer.value(&pixel, &mut tools)?;
+    end_if_superseded()?;
+    tracer.trace(&pixel, &mut tools, &[&file], &shown)
+}

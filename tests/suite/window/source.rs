@@ -1,0 +1,72 @@
+//! The panel Source: values beside the code are those of `specula trace`, and a save shows old and new ones.
+
+use serde_json::{Value, json};
+
+use super::NDF;
+use crate::support::process::run;
+use crate::support::window::Viewer;
+use crate::support::{Tree, line_of};
+
+#[test]
+fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "shader-ball"]);
+    viewer.running.event("ready");
+    let ask = |more: Value| {
+        let mut command = json!({ "command": "source", "file": NDF });
+        more.as_object().unwrap().iter().for_each(|(field, value)| command[field] = value.clone());
+        command
+    };
+    let refused = viewer.running.refused(ask(json!({})));
+    assert!(refused.contains("no pixel is pinned; name one with `at`"), "{refused}");
+    let refused = viewer.running.refused(json!({ "command": "source", "file": "brdf/ndff.glsl" }));
+    assert!(refused.contains("Did you mean `brdf/ndf.glsl`?"), "{refused}");
+    // The panel is open, so the picture has its size.
+    let picture = viewer.screenshot();
+    let (width, height) = picture.dimensions();
+    let refused = viewer.running.refused(ask(json!({ "at": [width, 0] })));
+    assert!(refused.contains("outside of the picture"), "{refused}");
+
+    let (x, y) = (width / 2, height / 2);
+    let found = viewer.running.done(ask(json!({ "at": [x, y] })));
+    assert_eq!((&found["proof"]["equal"], &found["pixel"]), (&true.into(), &json!([x, y])), "{found}");
+    assert_eq!((&found["stage"], &found["changed"]), (&"pbr.frag".into(), &json!([])), "{found}");
+    assert!(found["files"].as_array().unwrap().contains(&NDF.into()), "{found}");
+    // The same pixel of the same picture on the command line, bit by bit.
+    let (at, size) = (format!("{x},{y}"), format!("{width}x{height}"));
+    let args = ["trace", "shader-ball", "--json", "--at", &at, "--size", &size, "--env", "none", "--file", NDF];
+    let traced = run(&viewer.tree.beside(""), &[&args[..], &["--shaders", "shaders"]].concat()).expect(0, &[]).json();
+    for part in ["lines", "not_reached", "fragments", "proof"] {
+        assert_eq!(found[part], traced[part], "{part}");
+    }
+    assert!(viewer.screenshot() == picture, "the trace changes the picture");
+
+    // One call of several.
+    let call = found["calls"].as_array().unwrap().last().unwrap().clone();
+    let line = |of: &Value, line: u32| of["lines"].as_array().unwrap().iter().find(|of| of["line"] == line).cloned();
+    let original = viewer.tree.read(NDF);
+    let place = line_of(&original, "float a2 = alpha * alpha;");
+    assert!(line(&found, place).is_some_and(|line| line["done"][0]["name"] == "a2"), "{found}");
+    assert!(call.as_str().unwrap().contains(" > "), "{call}");
+
+    // A save: old and new values, also of lines that moved.
+    let edit = original.replace("float a2 = alpha * alpha;", "\n    float a2 = 4.0 * alpha * alpha;");
+    viewer.tree.write(NDF, &edit);
+    viewer.running.reload(true);
+    let is_edit = |event: &Value| event["event"] == "traced" && event["generation"] == 2;
+    let traced = viewer.running.until("the trace of the edit", is_edit);
+    assert_eq!((&traced["equal"], &traced["file"]), (&true.into(), &NDF.into()), "{traced}");
+    let edited = viewer.running.done(ask(json!({})));
+    let changed = edited["changed"].as_array().unwrap();
+    let a2 = changed.iter().find(|change| change["name"] == "a2").unwrap_or_else(|| panic!("{changed:?}"));
+    assert_eq!((&a2["line"], &a2["first"]), (&(place + 1).into(), &true.into()), "{changed:?}");
+    let number = |text: &Value| text.as_str().unwrap().split([' ', ',']).next().unwrap().parse::<f64>().unwrap();
+    let factor = number(&a2["now"]) / number(&a2["before"]);
+    assert!((factor - 4.0).abs() < 1e-3, "{a2}");
+
+    // What does not compile leaves the values.
+    viewer.tree.write(NDF, &edit.replace("4.0 * alpha", "4.0 * alfa"));
+    viewer.running.reload(false);
+    viewer.tree.write(NDF, &edit);
+    viewer.running.reload(true);
+    viewer.quit();
+}
