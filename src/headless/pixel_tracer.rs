@@ -52,12 +52,29 @@ pub struct TraceTools<'a> {
     pub is_canceled: &'a dyn Fn() -> bool,
 }
 
+/// Lists of constants with which a stage is specialized.
+type Constants = BTreeSet<Vec<(u32, u32)>>;
+
 /// A stage that logs, and the statements of a group of its files.
 struct Kept {
     shaders: Arc<ShaderSet>,
     stage: String,
     logging: LoggingStage,
+    /// The files whose statements the stage keeps, by the constants.
+    files: Vec<(Constants, Vec<String>)>,
     groups: VecDeque<Group>,
+}
+
+impl Kept {
+    /// The files whose statements the stage keeps with these constants.
+    fn files_of(&mut self, constants: Constants) -> Vec<String> {
+        if let Some((_, files)) = self.files.iter().find(|(of, _)| *of == constants) {
+            return files.clone();
+        }
+        let files = self.logging.files(&constants.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        self.files.push((constants, files.clone()));
+        files
+    }
 }
 
 struct Group {
@@ -107,10 +124,8 @@ impl PixelTracer {
         tools: &TraceTools<'_>,
     ) -> Result<(String, Vec<String>), HeadlessError> {
         let Plan { state, .. } = plan(pixel)?;
-        let constants = constants(&state);
-        let constants: Vec<&[(u32, u32)]> = constants.iter().map(Vec::as_slice).collect();
         let kept = self.stage(pixel, &state, tools)?;
-        Ok((kept.stage.clone(), kept.logging.files(&constants)))
+        Ok((kept.stage.clone(), kept.files_of(constants(&state))))
     }
 
     /// The value of the pixel in the picture.
@@ -171,7 +186,7 @@ impl PixelTracer {
         pixel: &TracedPixel<'_>,
         state: &FrameState,
         tools: &TraceTools<'_>,
-    ) -> Result<&Kept, HeadlessError> {
+    ) -> Result<&mut Kept, HeadlessError> {
         let (shaders, stage) = (&pixel.whole.shaders, &state.pipelines.stage);
         let is_it = |kept: &Kept| Arc::ptr_eq(&kept.shaders, shaders) && kept.stage == *stage;
         let kept = match self.kept.iter().position(is_it).and_then(|at| self.kept.remove(at)) {
@@ -179,12 +194,13 @@ impl PixelTracer {
             None => {
                 let logging = LoggingStage::new(shaders, stage, (tools.compiler, tools.source), self.log.address());
                 let logging = logging.map_err(HeadlessError::Settings)?;
-                Kept { shaders: shaders.clone(), stage: stage.clone(), logging, groups: VecDeque::new() }
+                let (shaders, stage) = (shaders.clone(), stage.clone());
+                Kept { shaders, stage, logging, files: Vec::new(), groups: VecDeque::new() }
             }
         };
         self.kept.push_front(kept);
         self.kept.truncate(MOST_STAGES);
-        Ok(&self.kept[0])
+        Ok(&mut self.kept[0])
     }
 
     /// Draws the pixel with a log of these files. Returns the words of the log, and the value of the pixel. The group is then the first of
@@ -275,7 +291,7 @@ fn plan(pixel: &TracedPixel<'_>) -> Result<Plan, HeadlessError> {
 }
 
 /// The constants with which the frame specializes its stage.
-fn constants(state: &FrameState) -> BTreeSet<Vec<(u32, u32)>> {
+fn constants(state: &FrameState) -> Constants {
     let keys: Vec<PipelineKey> = state.pipelines.model_keys().collect();
     keys.iter().map(|key| key.specialization.to_vec()).collect()
 }

@@ -6,7 +6,7 @@ use super::repair::replace;
 use crate::app::state::arrangement::Panel;
 
 /// Height of the panels below the picture, points.
-const BELOW: f32 = 280.0;
+const BELOW: f32 = 300.0;
 
 /// Puts a panel below the picture, beside those that are there. Returns whether there is a picture.
 pub(super) fn insert(tree: &mut Tree<Panel>, panel: Panel) -> bool {

@@ -134,14 +134,12 @@ fn is_type(word: &str) -> bool {
     let numbered = ["vec", "bvec", "ivec", "uvec", "dvec", "mat", "dmat"]
         .iter()
         .any(|of| word.strip_prefix(of).is_some_and(|rest| rest.starts_with(['2', '3', '4']) && rest.len() <= 3));
-    let opaque = word.trim_start_matches(['i', 'u']);
-    scalar
-        || numbered
-        || ["sampler", "image", "texture"].iter().any(|of| {
-            opaque
-                .strip_prefix(of)
-                .is_some_and(|rest| matches!(rest.as_bytes().first(), Some(b'1'..=b'3' | b'C' | b'B')))
-        })
+    // Of integers or not.
+    let opaque = |word: &str| {
+        let rest = ["sampler", "image", "texture"].iter().find_map(|of| word.strip_prefix(of));
+        rest.is_some_and(|rest| matches!(rest.as_bytes().first(), Some(b'1'..=b'3' | b'C' | b'B')))
+    };
+    scalar || numbered || opaque(word) || word.strip_prefix(['i', 'u']).is_some_and(opaque)
 }
 
 fn is_constant(word: &str) -> bool {

@@ -4,31 +4,11 @@ use egui::{ScrollArea, Ui, vec2};
 
 use super::find::Find;
 use super::model::CodeModel;
-use super::row::{Look, show_row};
+use super::row::{Look, ROW, show_row};
+use super::scroll::Scroll;
 use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::widgets::theme::small_mono_font;
-
-/// Height of a row, in points.
-pub(super) const ROW: f32 = 17.0;
-
-/// Where the list is, and where it goes.
-#[derive(Default)]
-pub(super) struct Scroll {
-    /// The line to bring into sight.
-    to: Option<usize>,
-    /// The first line in sight.
-    pub(super) first: usize,
-    /// The file whose lines were shown.
-    file: String,
-}
-
-impl Scroll {
-    /// Brings a line, by its index, into sight.
-    pub(super) fn to(&mut self, line: usize) {
-        self.to = Some(line);
-    }
-}
 
 /// Shows the lines.
 pub(super) fn show(
@@ -44,13 +24,13 @@ pub(super) fn show(
     let look = Look::new(letter, model.lines.len());
     let width = look.gutter + letter * model.longest as f32 + 40.0;
     let mut area = ScrollArea::both().id_salt("code").auto_shrink(false);
-    if scroll.file != path.as_str() {
-        path.as_str().clone_into(&mut scroll.file);
+    let has_values = model.lines.iter().any(|line| !line.row.notes.is_empty());
+    if scroll.is_news(path.as_str(), has_values) {
         // A file opens where the pixel reaches it.
         let first = model.first_change().or_else(|| model.lines.iter().position(|line| !line.row.notes.is_empty()));
-        scroll.to = Some(scroll.to.or(first).unwrap_or(0));
+        scroll.offer(first.unwrap_or(0));
     }
-    if let Some(line) = scroll.to.take() {
+    if let Some(line) = scroll.take() {
         let above = (ui.available_height() / 3.0).min(6.0 * ROW);
         area = area.vertical_scroll_offset((ROW * model.shown_at(line) as f32 - above).max(0.0));
     }

@@ -2,8 +2,8 @@
 
 use egui::{Key, Modifiers, RichText, TextEdit, Ui};
 
-use super::code::Scroll;
 use super::model::CodeModel;
+use super::scroll::Scroll;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon};
 
@@ -44,13 +44,6 @@ impl Find {
         if !self.is_open {
             return;
         }
-        let found: Vec<usize> = model
-            .lines
-            .iter()
-            .enumerate()
-            .filter(|(_, line)| !self.places(&line.text).is_empty())
-            .map(|of| of.0)
-            .collect();
         ui.horizontal(|ui| {
             let field = TextEdit::singleline(&mut self.text).desired_width(FIELD);
             let hint = format!("{}  Find in the file", icon::MAGNIFYING_GLASS);
@@ -60,6 +53,13 @@ impl Find {
             }
             let [enter, shift, escape] = ui
                 .input(|input| [input.key_pressed(Key::Enter), input.modifiers.shift, input.key_pressed(Key::Escape)]);
+            let found: Vec<usize> = model
+                .lines
+                .iter()
+                .enumerate()
+                .filter(|(_, line)| !self.places(&line.text).is_empty())
+                .map(|of| of.0)
+                .collect();
             let has_ended = field.lost_focus();
             if field.changed() {
                 // The first place at or below the lines in sight.

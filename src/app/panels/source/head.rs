@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use egui::{ComboBox, RichText, ScrollArea, Ui};
 
-use super::code::Scroll;
 use super::model::CodeModel;
+use super::scroll::Scroll;
 use crate::app::command::file::EDIT;
 use crate::app::command::scene::UNPIN;
 use crate::app::command::source::{CHOOSE_TRACE, SHOW_FILE};
@@ -40,12 +40,12 @@ pub(super) fn show(
         pixel(ui, state, commands);
         progress(ui, state, newest.map(|newest| &**newest));
         changes(ui, state, model, scroll);
+        let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
+        if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
+            choices(ui, &state.traces.choice, trace, fragment, commands);
+        }
         open_in_editor(ui, state, model, commands);
     });
-    let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
-    if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
-        choices(ui, &state.traces.choice, trace, fragment, commands);
-    }
     ui.add_space(2.0);
 }
 
@@ -143,7 +143,7 @@ fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
         return drop(ui.label(RichText::new(text).small().color(QUIET)));
     };
     let line = &model.lines[first].row;
-    let text = format!("▸ first change in line {}, {} in all", line.line, plural(model.changes(), "line"));
+    let text = format!("first change: line {} of {}", line.line, plural(model.changes(), "changed line"));
     let hint = "Values before and after the last edit stand beside the code. Click to go to the line that differs first, in the order of execution";
     let is_bad = line.notes.iter().any(|note| note.is_bad);
     let button = egui::Button::new(RichText::new(text).small().color(if is_bad { ERROR } else { ACCENT })).frame(false);
@@ -171,17 +171,15 @@ fn choices(ui: &mut Ui, now: &Choice, trace: &Trace, fragment: usize, commands: 
         return;
     }
     let mut choice = now.clone();
-    ui.horizontal_wrapped(|ui| {
-        if has[0] {
-            choose_fragment(ui, &mut choice, trace, fragment);
-        }
-        if has[1] {
-            choose_call(ui, &mut choice, &calls);
-        }
-        if has[2] {
-            choose_time(ui, &mut choice, times);
-        }
-    });
+    if has[0] {
+        choose_fragment(ui, &mut choice, trace, fragment);
+    }
+    if has[1] {
+        choose_call(ui, &mut choice, &calls);
+    }
+    if has[2] {
+        choose_time(ui, &mut choice, times);
+    }
     if choice != *now {
         commands.push(CHOOSE_TRACE.with(choice));
     }
@@ -211,7 +209,7 @@ fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: us
 fn choose_call(ui: &mut Ui, choice: &mut Choice, calls: &[std::sync::Arc<str>]) {
     let all = format!("All {}", plural(calls.len(), "call"));
     let shown = choice.call.clone().unwrap_or_else(|| all.clone());
-    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(260.0).truncate();
+    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(190.0).truncate();
     let list = list.show_ui(ui, |ui| {
         ui.set_min_width(360.0);
         ui.selectable_value(&mut choice.call, None, all);

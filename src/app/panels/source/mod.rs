@@ -6,6 +6,7 @@ mod head;
 mod hover;
 mod model;
 mod row;
+mod scroll;
 #[cfg(test)]
 mod tests;
 
@@ -16,9 +17,9 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::arrangement::Panel;
 use crate::app::widgets::theme::QUIET;
-use code::Scroll;
 use find::Find;
 use model::CodeModel;
+use scroll::Scroll;
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =

@@ -3,7 +3,6 @@
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, CursorIcon, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
-use super::code::ROW;
 use super::find::Find;
 use super::hover;
 use super::model::{CodeLine, CodeModel, Shown};
@@ -20,6 +19,8 @@ use crate::app::widgets::theme::{
 use crate::shader::trace::Act;
 use crate::shader::{Highlight, Severity, TreePath};
 
+/// Height of a row, in points.
+pub(super) const ROW: f32 = 17.0;
 /// Largest share of the row in sight that values cover while code lies below them.
 const MOST_VALUES: f32 = 0.6;
 /// Points between code and values, and between two values.

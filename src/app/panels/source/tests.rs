@@ -103,7 +103,8 @@ fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static
 
 /// The labels that a screen reader finds.
 fn labels(harness: &Harness<'_, Window>) -> Vec<String> {
-    harness.root().children_recursive().filter_map(|node| node.accesskit_node().label()).collect()
+    let texts = |node: egui_kittest::Node<'_>| [node.accesskit_node().label(), node.accesskit_node().value()];
+    harness.root().children_recursive().flat_map(texts).flatten().collect()
 }
 
 #[test]
@@ -119,7 +120,7 @@ fn values_stand_beside_the_code_and_change_with_a_save() {
     for text in ["x = 1 → 2", "a = 2 → 4", "not taken", "return 2 → 4"] {
         harness.get_by_label(text);
     }
-    harness.get_by_label_contains("first change in line 2, 3 lines in all");
+    harness.get_by_label_contains("first change: line 2 of 3 changed lines");
     assert!(harness.state().asked.is_empty(), "the panel changes nothing by itself");
 }
 

@@ -92,7 +92,7 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let file = file.or_else(|| now.trace.files().next().map(str::to_owned)).unwrap_or_default();
     let statements: BTreeSet<u32> = now.trace.statement_lines(&file).collect();
     let traced = lines_before(&now.text, text);
-    let mut changed: BTreeMap<u32, usize> = BTreeMap::new();
+    let mut changed = Vec::new();
     for (at, row) in rows.iter_mut().enumerate() {
         let Some(line) = traced.get(at).copied().flatten() else { continue };
         let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
@@ -103,9 +103,8 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
             (true, false) => Reach::Missed,
             (false, false) => Reach::Unknown,
         };
-        if row.notes.iter().any(|note| note.before.is_some()) {
-            changed.insert(line, at);
-        }
+        let differs = row.notes.iter().filter(|note| note.before.is_some());
+        changed.extend(differs.map(|note| Changed { line, act: note.done.act, name: note.done.name.clone(), row: at }));
     }
     if let Some(first) = first_change(now.trace, choice, &changed) {
         rows[first].is_first_change = true;
@@ -118,13 +117,27 @@ fn by_line(lines: Vec<LineOfTrace>) -> BTreeMap<u32, LineOfTrace> {
     lines.into_iter().map(|line| (line.line, line)).collect()
 }
 
-/// The row of the changed line that ran first. `changed`: the rows of traced lines.
-fn first_change(trace: &Trace, choice: &Choice, changed: &BTreeMap<u32, usize>) -> Option<usize> {
+/// A statement whose values differ from the version before.
+struct Changed {
+    /// The traced line, from 1.
+    line: u32,
+    act: Act,
+    name: String,
+    /// The index of its row.
+    row: usize,
+}
+
+/// The row of the changed statement that ran first.
+fn first_change(trace: &Trace, choice: &Choice, changed: &[Changed]) -> Option<usize> {
     let fragment = choice.fragment_of(trace)?;
     let call = choice.call_of(trace, fragment);
     let events = trace.fragments.get(fragment)?.events.iter();
     let mut of_choice = events.filter(|event| call.is_none_or(|call| is_related(&event.calls, call)));
-    of_choice.find_map(|event| changed.get(&event.doing.line).copied()).or(changed.values().next().copied())
+    let found = of_choice.find_map(|event| {
+        let doing = &event.doing;
+        changed.iter().find(|of| (of.line, of.act, &of.name) == (doing.line, doing.act, &doing.name))
+    });
+    found.or(changed.first()).map(|of| of.row)
 }
 
 /// Lines without statements between lines that are not reached belong to them.

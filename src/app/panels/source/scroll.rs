@@ -1,0 +1,41 @@
+//! Where the list of lines is, and where it goes.
+
+/// The place of the list.
+#[derive(Default)]
+pub(super) struct Scroll {
+    /// The line to bring into sight.
+    to: Option<usize>,
+    /// The first row in sight.
+    pub(super) first: usize,
+    /// The file whose lines were shown, and whether with values.
+    file: String,
+    has_values: bool,
+}
+
+impl Scroll {
+    /// Brings a line, by its index, into sight.
+    pub(super) fn to(&mut self, line: usize) {
+        self.to = Some(line);
+    }
+
+    /// The same, unless another line was asked for.
+    pub(super) fn offer(&mut self, line: usize) {
+        self.to = self.to.or(Some(line));
+    }
+
+    /// The line to bring into sight.
+    pub(super) fn take(&mut self) -> Option<usize> {
+        self.to.take()
+    }
+
+    /// Whether a file is not the one whose lines were shown, or has its first values. The next call with the same says no.
+    pub(super) fn is_news(&mut self, file: &str, has_values: bool) -> bool {
+        let is_other = self.file != file;
+        let is_news = is_other || (has_values && !self.has_values);
+        if is_other {
+            file.clone_into(&mut self.file);
+        }
+        self.has_values = has_values || (self.has_values && !is_other);
+        is_news
+    }
+}
