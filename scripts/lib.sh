@@ -15,8 +15,8 @@ PACKAGES_PLAY=(
     libvulkan1 mesa-vulkan-drivers
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
-# To test: validation layers, and an X server for the window tests.
-PACKAGES_TEST=(vulkan-validationlayers xauth xdotool xvfb)
+# To test: validation layers, an X server for the window tests, and an editor for the language server.
+PACKAGES_TEST=(neovim vulkan-validationlayers xauth xdotool xvfb)
 
 say() { printf '%s\n' "specula: $*" >&2; }
 

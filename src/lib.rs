@@ -20,6 +20,7 @@
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`picture_difference`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
+//! - [`lsp`]: a language server for editors.
 //! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - [`capture`]: contact sheets and animations of many pictures.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
@@ -47,6 +48,7 @@ pub mod gpu;
 pub mod headless;
 pub mod interface;
 pub mod learn;
+pub mod lsp;
 pub mod measure;
 pub mod message;
 pub mod picture;

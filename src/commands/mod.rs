@@ -15,6 +15,7 @@ mod help;
 mod info;
 mod learn;
 mod limits;
+mod lsp;
 mod modes;
 mod new;
 mod output;
@@ -83,6 +84,8 @@ enum Command {
     Probe(probe::Args),
     /// Print what every statement of the shader computes at a pixel, and check it; for CI
     Trace(trace::Args),
+    /// Serve an editor: errors, completion, hover, rename and values at a pixel (language server on stdio)
+    Lsp(lsp::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
 }
@@ -144,6 +147,7 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Brdf(args)) => brdf::run(args),
         Some(Command::Probe(args)) => probe::run(args),
         Some(Command::Trace(args)) => trace::run(args),
+        Some(Command::Lsp(args)) => lsp::run(args),
         Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
     let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));

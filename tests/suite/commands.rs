@@ -7,6 +7,7 @@ mod checks;
 mod cli;
 mod files;
 mod learn;
+mod lsp;
 mod probe;
 mod readme;
 mod trace;

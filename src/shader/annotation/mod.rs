@@ -27,6 +27,7 @@ mod cursor;
 mod mode;
 mod mode_list;
 mod name;
+pub mod options;
 mod parameter;
 mod parse;
 mod parse_pass;

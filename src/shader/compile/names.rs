@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::shader::glsl::{Code, Token, is_name, tokens};
+use crate::shader::glsl::{BUILT_IN, Code, Token, is_name, tokens};
 use crate::shader::source::TreePath;
 
 /// Where a declared name can be used.
@@ -42,7 +42,7 @@ impl Names {
         });
         let global = self.all().filter(|(_, declared)| declared.scope == Scope::Global);
         let names = local.chain(global).map(|(_, declared)| declared.name.as_str());
-        nearest(unknown, names.chain(BUILT_IN.iter().copied()))
+        nearest(unknown, names.chain(BUILT_IN.iter().map(|known| known.name)))
     }
 
     /// The member nearest to an unknown one of the value `base`: of the types that a variable or member of this name has, or of all
@@ -289,31 +289,6 @@ pub(super) const NO_TYPES: &[&str] = &[
     "readonly",
     "writeonly",
     "layout",
-];
-
-/// Functions, types and variables of GLSL that a shader is likely to use.
-#[rustfmt::skip]
-const BUILT_IN: &[&str] = &[
-    "radians", "degrees", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh",
-    "pow", "exp", "log", "exp2", "log2", "sqrt", "inversesqrt", "abs", "sign", "floor", "trunc", "round", "roundEven", "ceil",
-    "fract", "mod", "modf", "min", "max", "clamp", "mix", "step", "smoothstep", "isnan", "isinf", "fma", "frexp", "ldexp",
-    "floatBitsToInt", "floatBitsToUint", "intBitsToFloat", "uintBitsToFloat",
-    "packUnorm2x16", "packSnorm2x16", "packUnorm4x8", "packSnorm4x8", "packHalf2x16",
-    "unpackUnorm2x16", "unpackSnorm2x16", "unpackUnorm4x8", "unpackSnorm4x8", "unpackHalf2x16",
-    "length", "distance", "dot", "cross", "normalize", "faceforward", "reflect", "refract",
-    "matrixCompMult", "outerProduct", "transpose", "determinant", "inverse",
-    "lessThan", "lessThanEqual", "greaterThan", "greaterThanEqual", "equal", "notEqual", "any", "all", "not",
-    "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "bitCount", "findLSB", "findMSB",
-    "texture", "textureLod", "textureGrad", "textureOffset", "textureProj", "textureGather", "textureSize",
-    "textureQueryLod", "textureQueryLevels", "texelFetch", "texelFetchOffset", "imageLoad", "imageStore", "imageSize",
-    "atomicAdd", "atomicMin", "atomicMax", "atomicAnd", "atomicOr", "atomicXor", "atomicExchange", "atomicCompSwap",
-    "dFdx", "dFdy", "fwidth", "dFdxFine", "dFdyFine", "fwidthFine", "dFdxCoarse", "dFdyCoarse", "fwidthCoarse",
-    "barrier", "memoryBarrier", "memoryBarrierShared", "groupMemoryBarrier", "EmitVertex", "EndPrimitive",
-    "float", "int", "uint", "bool", "vec2", "vec3", "vec4", "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4",
-    "bvec2", "bvec3", "bvec4", "mat2", "mat3", "mat4", "true", "false",
-    "gl_FragCoord", "gl_FrontFacing", "gl_PointCoord", "gl_PrimitiveID", "gl_FragDepth", "gl_VertexIndex",
-    "gl_InstanceIndex", "gl_Position", "gl_PointSize", "gl_InvocationID", "gl_TessCoord", "gl_GlobalInvocationID",
-    "gl_LocalInvocationID", "gl_LocalInvocationIndex", "gl_WorkGroupID", "gl_NumWorkGroups", "gl_WorkGroupSize",
 ];
 
 #[cfg(test)]

@@ -24,8 +24,18 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
             library.set().map(|set| set.warnings.clone()).unwrap_or_default()
         }
     };
-    let snapshot = Snapshot::new(library.source());
     let known: BTreeSet<&TreePath> = library.stages().collect();
+    let rest: Vec<TreePath> = library.source().list().into_iter().filter(|path| !known.contains(path)).collect();
+    let found = check_alone(library, &rest);
+    out.extend(found);
+    out.sort_by_key(|diagnostic| diagnostic.severity);
+    folded(unique(out))
+}
+
+/// Compiles files that are no entry points of the library, each on its own. Files of other kinds, and libraries of mesh stages that no
+/// stage includes, have no diagnostics.
+pub fn check_alone(library: &Library, files: &[TreePath]) -> Vec<Diagnostic> {
+    let snapshot = Snapshot::new(library.source());
     let is_ours = |path: &TreePath| path.extension() == Some("glsl") || StageKind::of(path).is_some();
     let compiler = library.compiler();
     // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier(). The includes
@@ -47,10 +57,9 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let is_unused = |path: &TreePath| {
         StageKind::of(&path.stem().into()).is_some_and(StageKind::is_of_mesh_pipeline) && !kinds.contains_key(path)
     };
-    let all = library.source().list().into_iter();
-    let rest: Vec<TreePath> = all.filter(|path| is_ours(path) && !known.contains(path) && !is_unused(path)).collect();
-    let found: Vec<Diagnostic> = rest
+    files
         .par_iter()
+        .filter(|path| is_ours(path) && !is_unused(path))
         .flat_map_iter(|path| {
             let compiled = match StageKind::of(path) {
                 Some(_) => compiler.compile(&snapshot, path),
@@ -63,10 +72,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
             };
             judged.into_iter().chain(compiled.warnings)
         })
-        .collect();
-    out.extend(found);
-    out.sort_by_key(|diagnostic| diagnostic.severity);
-    folded(unique(out))
+        .collect()
 }
 
 #[cfg(test)]

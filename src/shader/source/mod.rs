@@ -44,11 +44,13 @@ pub struct Source {
     quarantine: Option<Arc<Quarantine>>,
     /// Texts that are not saved: see [`Source::with_draft`].
     draft: Option<Arc<BTreeMap<TreePath, DraftText>>>,
+    /// Texts of an editor: see [`Source::with_editor`].
+    editor: Option<Arc<BTreeMap<TreePath, Arc<str>>>>,
 }
 
 impl From<Tree> for Source {
     fn from(tree: Tree) -> Self {
-        Self { tree, quarantine: None, draft: None }
+        Self { tree, quarantine: None, draft: None, editor: None }
     }
 }
 
@@ -121,6 +123,9 @@ impl Source {
 
     /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
+        if let Some(text) = self.editor.as_ref().and_then(|texts| texts.get(path)) {
+            return read::check_text(text.as_bytes().to_vec());
+        }
         let good = self.quarantine.as_ref().and_then(|quarantine| quarantine.texts.get(path));
         let own = good.map_or_else(|| self.tree.read(path), |text| Ok(text.clone()))?;
         let draft = self.draft.as_ref().and_then(|texts| texts.get(path)).filter(|draft| *own == *draft.base);
@@ -147,6 +152,34 @@ impl Source {
         Self { draft: None, ..self.clone() }
     }
 
+    /// The tree with the texts that an editor has open, saved or not. They are read in place of the files, whether these exist or not.
+    #[must_use]
+    pub fn with_editor(&self, texts: BTreeMap<TreePath, Arc<str>>) -> Self {
+        Self { editor: Some(Arc::new(texts)), ..self.clone() }
+    }
+
+    /// All files, sorted, with those that only an editor has. See [`Tree::list`].
+    pub fn list(&self) -> Vec<TreePath> {
+        let mut files = self.tree.list();
+        files.extend(self.editor.iter().flat_map(|texts| texts.keys()).cloned());
+        files.sort();
+        files.dedup();
+        files
+    }
+
+    /// The names of the files in a folder, sorted, with those that only an editor has. See [`Tree::folder`].
+    pub fn folder(&self, folder: &str) -> Vec<String> {
+        let in_folder = |path: &TreePath| {
+            let (parent, name) = path.as_str().rsplit_once('/').unwrap_or(("", path.as_str()));
+            (parent == folder).then(|| name.to_owned())
+        };
+        let mut names = self.tree.folder(folder);
+        names.extend(self.editor.iter().flat_map(|texts| texts.keys()).filter_map(in_folder));
+        names.sort();
+        names.dedup();
+        names
+    }
+
     /// Whether some files may be quarantined, and none has a draft.
     pub fn is_quarantined(&self) -> bool {
         self.quarantine.is_some() && self.draft.is_none()
@@ -163,7 +196,7 @@ impl Source {
         let differs = |(path, text): &(&TreePath, &String)| tree.read(path).as_ref() != Ok(*text);
         let texts = good.iter().filter(differs).map(|(path, text)| (path.clone(), text.clone())).collect();
         let quarantine = Quarantine { texts, files: quarantined, cause: cause.to_owned() };
-        Self { tree: tree.tree.clone(), quarantine: Some(Arc::new(quarantine)), draft: None }
+        Self { tree: tree.tree.clone(), quarantine: Some(Arc::new(quarantine)), draft: None, editor: None }
     }
 
     /// The tree with fewer files replaced, and the paths whose texts this changes. `None` if nothing can be released. All quarantined
@@ -239,6 +272,19 @@ mod tests {
         write("edited");
         assert_eq!(draft.read(&a), Ok("edited".to_owned()));
         assert_eq!(draft.without_draft().read(&a), Ok("edited".to_owned()));
+    }
+
+    #[test]
+    fn the_texts_of_an_editor_win_also_without_a_file() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("a.glsl"), "old").unwrap();
+        let texts = [("a.glsl", "new"), ("lib/b.glsl", "\u{feff}only here")];
+        let texts = texts.map(|(path, text)| (TreePath::from(path), Arc::from(text)));
+        let source = Source::disk(directory.path()).with_editor(BTreeMap::from(texts));
+        let read = |path: &str| source.read(&path.into());
+        assert_eq!((read("a.glsl"), read("lib/b.glsl")), (Ok("new".to_owned()), Ok("only here".to_owned())));
+        assert_eq!(source.list(), ["a.glsl", "lib/b.glsl"].map(TreePath::from));
+        assert_eq!((source.folder(""), source.folder("lib")), (vec!["a.glsl".to_owned()], vec!["b.glsl".to_owned()]));
     }
 
     #[test]

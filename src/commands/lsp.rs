@@ -1,0 +1,97 @@
+//! `specula lsp`: a language server for editors.
+
+use std::io::BufReader;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use specula::control::socket_path;
+use specula::gpu::{Gpu, GpuOptions};
+use specula::headless::Headless;
+use specula::lsp::{Config, OpenTree, serve, text_of};
+use specula::pipeline::DiskPipelines;
+use specula::shader::Compiler;
+
+use super::common::frames::Frames;
+use super::common::{Common, Models, compiler};
+use super::{Failure, limits};
+
+/// Options of `lsp`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "An editor starts this command and talks to it on stdin and stdout. It finds the shader tree of each file that is open, \
+    so --shaders has no effect.\n\
+    Model and options are those of the picture whose pixel the command specula.pinPixel traces, as `specula trace` has them."
+)]
+pub struct Args {
+    #[command(flatten)]
+    models: Models,
+    /// Talk on stdin and stdout, as always; for editors that name the way
+    #[arg(long)]
+    stdio: bool,
+    /// Window that shows expressions over the model: the --socket of `specula view` [default: any that listens]
+    #[arg(long, value_name = "NAME|PATH")]
+    socket: Option<PathBuf>,
+    #[command(flatten)]
+    frames: Frames,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the command until the editor ends it.
+pub fn run(mut args: Args) -> Result<(), Failure> {
+    // Editors pass --stdio, which is the only way.
+    let _ = args.stdio;
+    args.common.take_files(&mut args.models)?;
+    args.common.settings()?;
+    args.frames.sequence()?;
+    limits::check()?;
+    let socket = args.socket.as_deref().map(socket_path).transpose().map_err(Failure::Usage)?;
+    let compiler = compiler()?;
+    let (size, open) = (args.common.size(), opening(args, compiler.clone()));
+    let config = Config { open, size, socket };
+    match serve(config, compiler, BufReader::new(std::io::stdin()), std::io::stdout()) {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Failure::Printed),
+        Err(error) => Err(Failure::Device(format!("cannot start the language server: {error}"))),
+    }
+}
+
+/// Opens trees as `specula trace` does, on a device that is opened once.
+fn opening(args: Args, compiler: Arc<Compiler>) -> OpenTree {
+    let mut device: Option<Arc<Gpu>> = None;
+    Box::new(move |source| {
+        let mut settings = args.common.settings().map_err(text)?;
+        settings.view.msaa = 1;
+        let gpu = match &device {
+            Some(gpu) => gpu.clone(),
+            None => {
+                // Without the limit of time that ends other commands: the editor keeps its server.
+                let options = GpuOptions {
+                    device: args.common.device.clone(),
+                    validation: args.common.validate,
+                    display: None,
+                    pipelines: Some(&DiskPipelines),
+                };
+                device.insert(Gpu::new(&options).map_err(|error| error.to_string())?).clone()
+            }
+        };
+        let model = args.common.model(args.models.model.as_deref()).map_err(text)?;
+        args.common.fit(&model, &mut settings).map_err(text)?;
+        let (mode, size) = (settings.mode.clone(), args.common.size());
+        let opened = Headless::new(&gpu, &compiler, source, model, settings, size);
+        let (mut headless, _) = opened.map_err(|error| text_of(&error))?;
+        headless.set_sequence(args.frames.sequence().map_err(text)?);
+        Ok((headless, mode))
+    })
+}
+
+/// A failure in words.
+fn text(failure: Failure) -> String {
+    match failure {
+        Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => message,
+        Failure::Shaders(diagnostics) => {
+            diagnostics.first().map_or_else(|| "the shaders are wrong".to_owned(), |first| first.one_line())
+        }
+        Failure::Printed | Failure::Window(_) => "it failed".to_owned(),
+    }
+}

@@ -1,0 +1,35 @@
+//! Code actions: fixes of misspelled names, sliders from numbers, and expressions over the model.
+
+mod quick_fix;
+mod show;
+mod slider;
+
+use std::collections::HashMap;
+
+use lsp_types::{CodeActionOrCommand, Range as Span, TextEdit, Uri, WorkspaceEdit};
+
+use super::view::View;
+use crate::shader::Diagnostic;
+
+pub use show::SHOW;
+
+/// What can be done with the code at a span. `diagnostics`: of the file. `has_window`: whether a window can be asked.
+pub fn actions(view: &View, span: Span, diagnostics: &[Diagnostic], has_window: bool) -> Vec<CodeActionOrCommand> {
+    let mut out = quick_fix::fixes(view, span, diagnostics);
+    if view.file().is_too_long() {
+        return out;
+    }
+    out.extend(slider::slider(view, span));
+    out.extend(show::show(view, span).filter(|_| has_window));
+    out
+}
+
+/// An edit of several files.
+#[allow(clippy::mutable_key_type, reason = "the protocol's map has URIs as keys")]
+fn edit(of_files: impl IntoIterator<Item = (Uri, TextEdit)>) -> WorkspaceEdit {
+    let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+    for (uri, edit) in of_files {
+        changes.entry(uri).or_default().push(edit);
+    }
+    WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
+}

@@ -1,0 +1,22 @@
+//! What the threads of the server tell.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use lsp_server::RequestId;
+
+use super::diagnostics::ByFile;
+use super::pixel_trace::Traced;
+
+/// A message to the server's thread.
+#[derive(Debug)]
+pub enum Event {
+    /// A tree was compiled.
+    Diagnosed(PathBuf, ByFile),
+    /// Files of a tree have changed on disk.
+    Changed(PathBuf, BTreeSet<PathBuf>),
+    /// A window has answered a request.
+    Answered(RequestId, Result<(), String>),
+    /// A pixel was traced.
+    Traced(Traced),
+}

@@ -1,0 +1,89 @@
+//! Inlay hints: what the lines of a file computed at the pinned pixel, at their ends.
+
+use std::collections::BTreeMap;
+
+use lsp_types::{InlayHint, InlayHintLabel, InlayHintTooltip, Range as Span};
+use similar::{Algorithm, DiffOp, capture_diff_slices};
+
+use super::pixel_trace::TracedFile;
+use super::source_text::SourceText;
+use crate::shader::trace::LineOfTrace;
+
+/// The longest hint, in characters.
+const LONGEST: usize = 100;
+
+/// The hints of a file within a span. Values of lines that have changed since they were traced are left out; the others are where their
+/// lines are now.
+pub fn hints(traced: &TracedFile, source: &SourceText, span: Span) -> Vec<InlayHint> {
+    let places = places(&traced.text, &source.text);
+    let hint = |line: &LineOfTrace| {
+        let now = *places.get(&(line.line as usize).checked_sub(1)?)?;
+        let number = u32::try_from(now).ok()?;
+        let bytes = source.line(now);
+        let end = bytes.start + source.text[bytes].trim_end().len();
+        (span.start.line..=span.end.line).contains(&number).then(|| InlayHint {
+            position: source.place(end),
+            label: InlayHintLabel::String(short(&line.text())),
+            kind: None,
+            text_edits: None,
+            tooltip: Some(InlayHintTooltip::String(calls(line))),
+            padding_left: Some(true),
+            padding_right: None,
+            data: None,
+        })
+    };
+    traced.lines.iter().filter_map(hint).collect()
+}
+
+/// The values of a line of the text as it is now, from 0, in words.
+pub fn values_of(traced: &TracedFile, source: &SourceText, line: usize) -> Option<String> {
+    let places = places(&traced.text, &source.text);
+    let is_it = |of: &&LineOfTrace| (of.line as usize).checked_sub(1).and_then(|of| places.get(&of)) == Some(&line);
+    traced.lines.iter().find(is_it).map(LineOfTrace::text)
+}
+
+/// Where the lines of `old` that have not changed are in `new`, from 0.
+fn places(old: &str, new: &str) -> BTreeMap<usize, usize> {
+    let lines = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim_end().to_owned()).collect() };
+    let operations = capture_diff_slices(Algorithm::Myers, &lines(old), &lines(new));
+    let mut out = BTreeMap::new();
+    for operation in operations {
+        if let DiffOp::Equal { old_index, new_index, len } = operation {
+            out.extend((0..len).map(|at| (old_index + at, new_index + at)));
+        }
+    }
+    out
+}
+
+fn short(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text.to_owned(),
+    }
+}
+
+/// The calls that led to the values of a line.
+fn calls(line: &LineOfTrace) -> String {
+    let each = line.done.iter().map(|done| {
+        let once = done.first.iter().chain(&done.last).map(|once| {
+            let value = once.value.map(|value| value.text()).unwrap_or_default();
+            format!("  {value}  in {}", once.calls)
+        });
+        format!("{}\n{}", done.text(), once.collect::<Vec<_>>().join("\n"))
+    });
+    each.collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_have_changed_have_no_place() {
+        let old = "a\nb\nc\nd\n";
+        let moved = |new: &str| places(old, new).into_iter().collect::<Vec<_>>();
+        assert_eq!(moved("x\na\r\nb\nC\nd"), [(0, 1), (1, 2), (3, 4)]);
+        assert_eq!(moved(""), []);
+        assert_eq!(short(&"ä".repeat(200)).chars().count(), LONGEST + 1);
+    }
+}

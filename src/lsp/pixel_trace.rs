@@ -1,0 +1,165 @@
+//! Traces a pixel of the saved tree on a thread of its own, for the values beside the lines.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use lsp_server::RequestId;
+
+use super::event::Event;
+use crate::headless::{Headless, HeadlessError};
+use crate::message::catch_panic;
+use crate::shader::trace::LineOfTrace;
+use crate::shader::{Change, Diagnostic, Mode, Source, TreePath};
+
+/// Opens a tree on the device, with the model and the settings of the command line. Returns the name of the mode that is traced, too.
+pub type OpenTree = Box<dyn FnMut(Source) -> Result<(Headless, String), String> + Send>;
+
+/// A pixel of a tree, and the files whose values are asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    /// The folder of the tree.
+    pub root: PathBuf,
+    /// Counted from the upper left corner.
+    pub at: (u32, u32),
+    /// The files.
+    pub files: BTreeSet<TreePath>,
+    /// Files that have changed on disk.
+    pub changed: BTreeSet<TreePath>,
+    /// The requests that this answers.
+    pub requests: Vec<RequestId>,
+}
+
+/// A file with the values of its lines.
+#[derive(Clone, Debug)]
+pub struct TracedFile {
+    /// Its path in the tree.
+    pub path: TreePath,
+    /// The text that was traced.
+    pub text: Arc<str>,
+    /// The lines that the pixel reaches.
+    pub lines: Vec<LineOfTrace>,
+}
+
+/// The values at a pixel.
+#[derive(Clone, Debug)]
+pub struct Traced {
+    /// What was asked.
+    pub asked: Asked,
+    /// The values by files, and whether the color is the picture's; or why there are none.
+    pub result: Result<(Vec<TracedFile>, String), String>,
+}
+
+/// The thread. It ends with this value.
+#[derive(Debug)]
+pub struct PixelTrace {
+    jobs: Sender<Asked>,
+}
+
+impl PixelTrace {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// The system grants none.
+    pub fn start(open: OpenTree, events: Sender<Event>) -> std::io::Result<Self> {
+        let (jobs, receiver) = unbounded();
+        let work = move || Thread { open, jobs: receiver, tree: None }.run(&events);
+        std::thread::Builder::new().name("specula-lsp-trace".to_owned()).stack_size(16 << 20).spawn(work)?;
+        Ok(Self { jobs })
+    }
+
+    /// Asks for values. They come as an event; questions that wait are answered together.
+    pub fn ask(&self, asked: Asked) {
+        let _ = self.jobs.send(asked);
+    }
+}
+
+struct Tree {
+    root: PathBuf,
+    headless: Headless,
+    mode: String,
+}
+
+struct Thread {
+    open: OpenTree,
+    jobs: Receiver<Asked>,
+    tree: Option<Tree>,
+}
+
+impl Thread {
+    fn run(mut self, events: &Sender<Event>) {
+        while let Ok(first) = self.jobs.recv() {
+            let asked = self.jobs.try_iter().fold(first, joined);
+            let result = catch_panic(|| self.trace(&asked)).unwrap_or_else(|panic| {
+                self.tree = None;
+                Err(format!("the trace failed: {panic}"))
+            });
+            if events.send(Event::Traced(Traced { asked, result })).is_err() {
+                return;
+            }
+        }
+    }
+
+    fn trace(&mut self, asked: &Asked) -> Result<(Vec<TracedFile>, String), String> {
+        let (headless, mode) = self.opened(asked)?;
+        let shaders = headless.shaders();
+        let mode: Mode = shaders
+            .modes
+            .iter()
+            .find(|of| of.slug == *mode)
+            .cloned()
+            .ok_or_else(|| format!("the shaders have no mode {mode}"))?;
+        let (mut files, mut proof, mut problem) = (Vec::new(), String::new(), None);
+        for path in &asked.files {
+            let Some(text) = shaders.texts.get(path).cloned() else { continue };
+            match headless.trace(asked.at, &mode, &[path.as_str()]) {
+                Ok(trace) => match trace.visible() {
+                    Some(fragment) => {
+                        proof = trace.proof_text(fragment);
+                        files.push(TracedFile { path: path.clone(), text, lines: trace.lines(fragment) });
+                    }
+                    None => problem = Some("every fragment of the model is discarded at this pixel".to_owned()),
+                },
+                Err(error) => problem = Some(text_of(&error)),
+            }
+        }
+        match problem {
+            Some(problem) if files.is_empty() => Err(problem),
+            _ => Ok((files, proof)),
+        }
+    }
+
+    /// The tree on the device, as it is on disk. While it has an error, its last good version.
+    fn opened(&mut self, asked: &Asked) -> Result<(&mut Headless, String), String> {
+        if self.tree.as_ref().is_some_and(|tree| tree.root != asked.root) {
+            self.tree = None;
+        }
+        if self.tree.is_none() {
+            let (headless, mode) = (self.open)(Source::disk(&asked.root))?;
+            self.tree = Some(Tree { root: asked.root.clone(), headless, mode });
+        } else if let Some(tree) = self.tree.as_mut().filter(|_| !asked.changed.is_empty()) {
+            tree.headless.update(Change::Paths(asked.changed.clone()));
+        }
+        let tree = self.tree.as_mut().ok_or_else(|| "there is no tree".to_owned())?;
+        Ok((&mut tree.headless, tree.mode.clone()))
+    }
+}
+
+/// Two questions as one: the newer pixel, the files of both if they are of one tree.
+fn joined(older: Asked, newer: Asked) -> Asked {
+    let is_same = older.root == newer.root;
+    let files = older.files.into_iter().filter(|_| is_same).chain(newer.files).collect();
+    let changed = older.changed.into_iter().filter(|_| is_same).chain(newer.changed).collect();
+    Asked { files, changed, requests: older.requests.into_iter().chain(newer.requests).collect(), ..newer }
+}
+
+/// An error in words.
+pub fn text_of(error: &HeadlessError) -> String {
+    match error {
+        HeadlessError::Shaders(diagnostics) => {
+            diagnostics.first().map_or_else(|| error.to_string(), Diagnostic::one_line)
+        }
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,216 @@
+//! What one file sees: the files of its tree, and the declarations that a name in it can mean.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::source_file::SourceFile;
+use super::types;
+use crate::shader::TreePath;
+use crate::shader::glsl::{Token, TokenKind, is_word, tokens};
+use crate::shader::symbols::{Symbol, SymbolKind};
+
+/// The files of a tree, and the one that is asked about.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The folder of the tree.
+    pub root: PathBuf,
+    /// All files with GLSL.
+    pub files: BTreeMap<TreePath, Arc<SourceFile>>,
+    /// The file that is asked about.
+    pub current: TreePath,
+}
+
+/// A declaration in a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<'a> {
+    /// The file's path.
+    pub path: &'a TreePath,
+    /// The file.
+    pub file: &'a SourceFile,
+    /// The declaration.
+    pub symbol: &'a Symbol,
+}
+
+impl Found<'_> {
+    /// Whether both are the same declaration.
+    pub fn is(&self, other: &Found<'_>) -> bool {
+        self.path == other.path && self.symbol.bytes == other.symbol.bytes
+    }
+}
+
+impl View {
+    /// A view of these files.
+    pub fn new(root: PathBuf, files: BTreeMap<TreePath, Arc<SourceFile>>, current: TreePath) -> Self {
+        Self { root, files, current }
+    }
+
+    /// The file that is asked about.
+    pub fn file(&self) -> &SourceFile {
+        &self.files[&self.current]
+    }
+
+    /// The file that an include means: beside the file, or from the root.
+    pub fn included(&self, from: &TreePath, name: &str) -> Option<&TreePath> {
+        let mut places = from.sibling(name).into_iter().chain(TreePath::parse(name));
+        places.find_map(|place| self.files.get_key_value(&place)).map(|(path, _)| path)
+    }
+
+    /// A file and all that it includes.
+    pub fn closure<'a>(&'a self, path: &'a TreePath) -> Vec<&'a TreePath> {
+        let (mut out, mut seen) = (vec![path], BTreeSet::from([path]));
+        let mut next = 0;
+        while let Some(path) = out.get(next).copied() {
+            next += 1;
+            let Some(file) = self.files.get(path) else { continue };
+            let included = file.symbols.includes.iter().filter_map(|(name, _)| self.included(path, name));
+            out.extend(included.filter(|path| seen.insert(path)));
+        }
+        out
+    }
+
+    /// The files that include a file, directly or not, and the file.
+    pub fn includers<'a>(&'a self, path: &'a TreePath) -> BTreeSet<&'a TreePath> {
+        let mut direct: BTreeMap<&TreePath, Vec<&TreePath>> = BTreeMap::new();
+        for (from, file) in &self.files {
+            for (name, _) in &file.symbols.includes {
+                direct.entry(self.included(from, name).unwrap_or(from)).or_default().push(from);
+            }
+        }
+        let (mut seen, mut open) = (BTreeSet::from([path]), vec![path]);
+        while let Some(next) = open.pop() {
+            open.extend(direct.get(next).into_iter().flatten().copied().filter(|from| seen.insert(from)));
+        }
+        seen
+    }
+
+    /// The files whose declarations a file may use, in the order in which they count: itself, what it includes, and what the files
+    /// include that include it.
+    pub fn visible<'a>(&'a self, path: &'a TreePath) -> Vec<&'a TreePath> {
+        let mut out = self.closure(path);
+        let mut seen: BTreeSet<&TreePath> = out.iter().copied().collect();
+        for includer in self.includers(path) {
+            out.extend(self.closure(includer).into_iter().filter(|path| seen.insert(path)));
+        }
+        out
+    }
+
+    /// A declaration of a file.
+    pub fn found<'a>(&'a self, path: &'a TreePath, symbol: &'a Symbol) -> Option<Found<'a>> {
+        Some(Found { path, file: self.files.get(path)?, symbol })
+    }
+
+    /// The declarations with a name that all of these files have for others.
+    pub fn globals<'a>(&'a self, files: &[&'a TreePath], name: &str) -> Vec<Found<'a>> {
+        let mut out = Vec::new();
+        for path in files {
+            let Some(file) = self.files.get(*path) else { continue };
+            let named = file.symbols.globals().filter(|symbol| symbol.name == name);
+            out.extend(named.map(|symbol| Found { path, file, symbol }));
+        }
+        out
+    }
+
+    /// The members of a type, in these files.
+    pub fn members<'a>(&'a self, files: &[&'a TreePath], owner: &str) -> Vec<Found<'a>> {
+        let mut out: Vec<Found<'a>> = Vec::new();
+        for path in files {
+            let Some(file) = self.files.get(*path) else { continue };
+            let all =
+                file.symbols.all.iter().filter(|symbol| symbol.kind == SymbolKind::Member && symbol.owner == owner);
+            out.extend(all.map(|symbol| Found { path, file, symbol }));
+            if !out.is_empty() {
+                break;
+            }
+        }
+        out
+    }
+
+    /// The declarations that the name at a byte of the current file means: several of an overloaded function.
+    pub fn meant(&self, byte: usize) -> Vec<Found<'_>> {
+        let Some(name) = name_at(self.file().text(), byte) else { return Vec::new() };
+        self.meant_by(&self.current, &name)
+    }
+
+    /// The same for a name in any file.
+    pub fn meant_by<'a>(&'a self, path: &'a TreePath, name: &NameAt) -> Vec<Found<'a>> {
+        let Some(file) = self.files.get(path) else { return Vec::new() };
+        let own = file.symbols.all.iter().find(|symbol| symbol.bytes == name.bytes);
+        if let Some(symbol) = own.filter(|symbol| !symbol.is_global()) {
+            return vec![Found { path, file, symbol }];
+        }
+        let files = self.visible(path);
+        if own.is_none() {
+            if name.is_member {
+                let owner = types::before_dot(self, path, name.bytes.start);
+                let Some(owner) = owner else { return Vec::new() };
+                let members = self.members(&files, &owner.name);
+                return members.into_iter().filter(|found| found.symbol.name == name.text).collect();
+            }
+            if let Some(symbol) = file.symbols.locals(name.bytes.start).find(|symbol| symbol.name == name.text) {
+                return vec![Found { path, file, symbol }];
+            }
+        }
+        self.globals(&files, &name.text)
+    }
+}
+
+/// A name in a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NameAt {
+    /// The name.
+    pub text: String,
+    /// Its bytes.
+    pub bytes: std::ops::Range<usize>,
+    /// Whether it stands behind a dot.
+    pub is_member: bool,
+}
+
+/// The name that holds a byte of a text or ends there: in code, in a directive, or in an annotation.
+pub fn name_at(text: &str, byte: usize) -> Option<NameAt> {
+    let holds = |token: &Token<'_>| token.bytes.start <= byte && byte <= token.bytes.end;
+    let mut before = None;
+    let mut in_comment = None;
+    for token in tokens(text).take_while(|token| token.bytes.start <= byte) {
+        match token.kind {
+            TokenKind::Word if holds(&token) => {
+                let is_member = before == Some(".");
+                return Some(NameAt { text: token.text.to_owned(), bytes: token.bytes, is_member });
+            }
+            TokenKind::Comment if holds(&token) => in_comment = Some(token.bytes.clone()),
+            _ => {}
+        }
+        if token.kind != TokenKind::Comment {
+            before = Some(token.text);
+        }
+    }
+    // A name in an annotation, as behind `when=`.
+    let comment = in_comment.filter(|bytes| text[bytes.clone()].starts_with("//@"))?;
+    if !text.is_char_boundary(byte) {
+        return None;
+    }
+    let start = byte - text[comment.start..byte].chars().rev().take_while(|c| is_word(*c)).count();
+    let end = byte + text[byte..comment.end.max(byte)].chars().take_while(|c| is_word(*c)).count();
+    let is_name = start < end && !text[start..end].starts_with(|c: char| c.is_ascii_digit());
+    is_name.then(|| NameAt { text: text[start..end].to_owned(), bytes: start..end, is_member: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_where_they_begin_and_end() {
+        let text = "a.b1 + ä; // c\n#define D e\nf; //@ui when=BLOOM = 1\n";
+        let name = |part: &str, plus: usize| {
+            name_at(text, text.find(part).unwrap() + plus).map(|name| (name.text, name.is_member))
+        };
+        assert_eq!(name("a.", 0), Some(("a".to_owned(), false)));
+        assert_eq!(name("b1", 1), Some(("b1".to_owned(), true)));
+        assert_eq!(name("b1", 2), Some(("b1".to_owned(), true)));
+        assert_eq!((name("+", 1), name("c\n", 0)), (None, None));
+        assert_eq!(name("e\nf", 0), Some(("e".to_owned(), false)));
+        assert_eq!(name("BLOOM", 2), Some(("BLOOM".to_owned(), false)));
+        assert_eq!((name_at(text, text.len()), name_at(text, 8)), (None, None));
+    }
+}

@@ -1,0 +1,35 @@
+//! The names that `//@pass`, `//@texture` and `//@mode` declare.
+
+use super::symbol::{Symbol, SymbolKind};
+use crate::shader::glsl::{TokenKind, tokens};
+
+/// The names in the annotations of a text.
+pub(super) fn annotated(text: &str) -> impl Iterator<Item = Symbol> {
+    let comments = tokens(text).filter(|token| token.kind == TokenKind::Comment);
+    comments.filter_map(|comment| {
+        let rest = comment.text.strip_prefix("//@")?;
+        let (keyword, after) = rest.split_once(char::is_whitespace)?;
+        let kind = match keyword {
+            "pass" => SymbolKind::Pass,
+            "texture" => SymbolKind::Texture,
+            "mode" => SymbolKind::Mode,
+            _ => return None,
+        };
+        let name = after.split_whitespace().next()?;
+        let start = comment.bytes.start + comment.text.len() - after.trim_start().len();
+        let whole = comment.bytes.start..comment.bytes.start + comment.text.trim_end().len();
+        Some(Symbol {
+            name: name.to_owned(),
+            kind,
+            bytes: start..start + name.len(),
+            signature: whole.clone(),
+            whole,
+            type_name: String::new(),
+            dimensions: 0,
+            owner: String::new(),
+            scope: None,
+            parameters: Vec::new(),
+            has_body: false,
+        })
+    })
+}

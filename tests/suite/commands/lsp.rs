@@ -1,0 +1,10 @@
+//! `specula lsp`: the language server, over the real program's stdin and stdout.
+
+mod actions;
+mod client;
+mod corners;
+mod diagnostics;
+mod hints;
+mod names;
+mod neovim;
+mod rename;

@@ -1,0 +1,101 @@
+//! Values at a pinned pixel beside the lines.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::client::{Opened, uri};
+use crate::support::process::run;
+
+const OPTIONS: [&str; 5] = ["--env", "none", "--size", "96x64", "--validate"];
+const PIN: [u32; 2] = [50, 30];
+
+/// The hints of the open file by their lines, from 0.
+fn hints(opened: &mut Opened) -> BTreeMap<u64, String> {
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 1000, "character": 0 } });
+    let params = json!({ "textDocument": { "uri": uri(&opened.path) }, "range": range });
+    let all = opened.client.ask("textDocument/inlayHint", params);
+    let of = |hint: &Value| (hint["position"]["line"].as_u64().unwrap(), hint["label"].as_str().unwrap().to_owned());
+    all.as_array().unwrap().iter().map(of).collect()
+}
+
+/// What `specula trace --json` says of each line, in the words of a hint, from 0.
+fn traced(opened: &Opened) -> BTreeMap<u64, String> {
+    let root = opened.tree.root();
+    let at = format!("{},{}", PIN[0], PIN[1]);
+    let more = ["--shaders", root.to_str().unwrap(), "--at", &at, "--file", "brdf/ndf.glsl", "--json"];
+    let trace = run(&root, &[&["trace"][..], &more, &OPTIONS].concat()).expect(0, &[]).json();
+    let done = |done: &Value| {
+        let times = match done["count"].as_u64().unwrap() {
+            1 => String::new(),
+            count => format!(" ×{count}"),
+        };
+        (done["act"].as_str().unwrap().to_owned(), done["name"].as_str().unwrap().to_owned(), times)
+    };
+    let line = |line: &Value| {
+        let words: Vec<String> = line["done"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(done)
+            .map(|(act, name, times)| format!("{act} {name}{times}"))
+            .collect();
+        (line["line"].as_u64().unwrap() - 1, words.join(";"))
+    };
+    trace["lines"].as_array().unwrap().iter().map(line).collect()
+}
+
+#[test]
+fn hints_are_those_of_the_trace_and_follow_edits() {
+    let mut opened = Opened::with("brdf/ndf.glsl", &OPTIONS);
+    assert!(hints(&mut opened).is_empty(), "no pixel is pinned");
+    let pinned =
+        opened.client.ask("workspace/executeCommand", json!({ "command": "specula.pinPixel", "arguments": PIN }));
+    assert_eq!(
+        (&pinned["pixel"], &pinned["files"], &pinned["proof"]),
+        (&json!(PIN), &json!(["brdf/ndf.glsl"]), &json!("equal to the picture"))
+    );
+    opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
+    let shown = hints(&mut opened);
+    let trace = traced(&opened);
+    assert!(shown.len() > 2 && shown.keys().eq(trace.keys()), "{shown:#?} {trace:#?}");
+    let squared = u64::from(opened.line("float a2 = alpha"));
+    assert_eq!(trace[&squared], "store a2 ×2");
+    assert!(shown[&squared].starts_with("a2 = 0.") && shown[&squared].ends_with(" ×2"), "{shown:#?}");
+
+    // Two lines above move all; the changed one has none.
+    opened.edit("// D: the normal", "// More.\n// Lines.\n// D: the normal");
+    opened.edit("float a2 = alpha * alpha;", "float a2 = alpha * alpha * 0.5;");
+    let moved = hints(&mut opened);
+    let expected: BTreeMap<u64, String> =
+        shown.iter().filter(|(line, _)| **line != squared).map(|(line, text)| (line + 2, text.clone())).collect();
+    assert_eq!(moved, expected);
+    let hover = opened.ask("hover", "float spread = n_dot_h", 7);
+    assert!(hover["contents"]["value"].as_str().unwrap().contains("At the pinned pixel: `spread = "), "{hover:#}");
+
+    // A save is traced again.
+    let text = opened.text.clone();
+    opened.tree.write("brdf/ndf.glsl", &text);
+    opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
+    let saved = hints(&mut opened);
+    assert!(saved.contains_key(&(squared + 2)) && saved[&(squared + 2)] != shown[&squared], "{saved:#?}");
+    assert!(saved.keys().eq(traced(&opened).keys()));
+
+    opened.client.ask("workspace/executeCommand", json!({ "command": "specula.unpinPixel" }));
+    assert!(hints(&mut opened).is_empty());
+    opened.client.quit();
+}
+
+#[test]
+fn a_pixel_that_cannot_be_traced_says_why() {
+    let mut opened = Opened::with("brdf/ndf.glsl", &OPTIONS);
+    let mut pin = |arguments: Value| {
+        opened
+            .client
+            .refused("workspace/executeCommand", json!({ "command": "specula.pinPixel", "arguments": arguments }))
+    };
+    assert!(pin(json!([96, 0])).contains("outside of the picture (96x64)"));
+    assert!(pin(json!(["a"])).contains("expected a pixel"));
+    assert!(pin(json!([0, 0])).contains("the model does not cover the pixel 0,0"));
+    opened.client.quit();
+}
