@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use lsp_types::{Location, Position, Range as Span};
 
+use super::source_file::SourceFile;
 use super::view::{Found, NameAt, View, name_at};
 use crate::shader::TreePath;
 use crate::shader::glsl::{TokenKind, tokens};
@@ -77,16 +78,28 @@ pub fn uses(view: &View, meant: &[Found<'_>]) -> Vec<Use> {
         if (is_local && path != first.path) || !file.text().contains(name.as_str()) || file.is_too_long() {
             continue;
         }
-        let is_use = |of: &NameAt| {
-            let found = view.meant_by(path, of);
-            found.iter().any(|found| meant.iter().any(|known| known.is(found)))
+        let names = names(file.text(), name);
+        let is_meant = |found: Vec<Found<'_>>| found.iter().any(|found| meant.iter().any(|known| known.is(found)));
+        let used: Vec<NameAt> = match first.symbol.is_global() {
+            // Where the file sees them, all that nothing nearer hides.
+            true if names.is_empty() || !is_meant(view.globals(&view.visible(path), name)) => continue,
+            true => names.into_iter().filter(|of| !of.is_member && !is_hidden(file, of)).collect(),
+            false => names.into_iter().filter(|of| is_meant(view.meant_by(path, of))).collect(),
         };
-        let names = names(file.text(), name).into_iter().filter(is_use);
-        out.extend(names.map(|of| Use { path: path.clone(), bytes: of.bytes }));
+        out.extend(used.into_iter().map(|of| Use { path: path.clone(), bytes: of.bytes }));
     }
     let mut seen = BTreeSet::new();
     out.retain(|of: &Use| seen.insert((of.path.clone(), of.bytes.start)));
     out
+}
+
+/// Whether a name means something nearer than a global declaration.
+fn is_hidden(file: &SourceFile, name: &NameAt) -> bool {
+    let own = file.symbols.all.iter().find(|symbol| symbol.bytes == name.bytes);
+    match own {
+        Some(symbol) => !symbol.is_global(),
+        None => file.symbols.locals(name.bytes.start).any(|symbol| symbol.name == name.text),
+    }
 }
 
 /// All places of a name in a text: in code, in directives, and behind `when=` in annotations.

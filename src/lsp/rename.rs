@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use lsp_types::{Position, Range as Span, TextEdit, Uri, WorkspaceEdit};
 
 use super::navigation::{annotated, names, uses};
-use super::view::{Found, View, name_at};
+use super::types::before_dot;
+use super::view::{Found, NameAt, View, name_at};
 use crate::shader::TreePath;
 use crate::shader::glsl::{built_in, is_name, is_reserved, is_word};
 use crate::shader::symbols::SymbolKind;
@@ -51,6 +52,7 @@ pub fn rename(view: &View, place: Position, new: &str) -> Result<WorkspaceEdit, 
     if new != name.text {
         check_free(view, &meant, &uses.iter().map(|of| &of.path).collect(), new)?;
     }
+    check_told(view, &meant)?;
     let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
     for of in uses {
         if let Some(file) = view.files.get(&of.path) {
@@ -80,6 +82,23 @@ fn check_old(view: &View, name: &str, meant: &[Found<'_>]) -> Result<(), String>
     let is_image = first.symbol.type_name.starts_with("sampler") && first.symbol.is_global();
     if let Some(pass) = annotated(view, name).next().filter(|_| is_image) {
         return Err(format!("`{name}` is the image that {} declares", pass.path));
+    }
+    Ok(())
+}
+
+/// Checks that no member of an unknown value may be the one that is renamed.
+fn check_told(view: &View, meant: &[Found<'_>]) -> Result<(), String> {
+    let Some(first) = meant.first().filter(|found| found.symbol.kind == SymbolKind::Member) else { return Ok(()) };
+    let seeing: BTreeSet<&TreePath> = meant.iter().flat_map(|found| view.includers(found.path)).collect();
+    for path in seeing {
+        let Some(file) = view.files.get(path) else { continue };
+        let members = names(file.text(), &first.symbol.name).into_iter().filter(|of| of.is_member);
+        let is_untold =
+            |of: &NameAt| view.meant_by(path, of).is_empty() && before_dot(view, path, of.bytes.start).is_none();
+        if let Some(of) = members.into_iter().find(is_untold) {
+            let line = file.source.line_of(of.bytes.start) + 1;
+            return Err(format!("the type of the value before `.{}` at {path}:{line} cannot be told", of.text));
+        }
     }
     Ok(())
 }

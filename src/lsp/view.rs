@@ -19,6 +19,9 @@ pub struct View {
     pub files: BTreeMap<TreePath, Arc<SourceFile>>,
     /// The file that is asked about.
     pub current: TreePath,
+    /// What each file includes itself, and which files include it.
+    includes: BTreeMap<TreePath, Vec<TreePath>>,
+    included_by: BTreeMap<TreePath, Vec<TreePath>>,
 }
 
 /// A declaration in a file.
@@ -42,7 +45,19 @@ impl Found<'_> {
 impl View {
     /// A view of these files.
     pub fn new(root: PathBuf, files: BTreeMap<TreePath, Arc<SourceFile>>, current: TreePath) -> Self {
-        Self { root, files, current }
+        let mut view = Self { root, files, current, includes: BTreeMap::new(), included_by: BTreeMap::new() };
+        let of = |(path, file): (&TreePath, &Arc<SourceFile>)| {
+            let found = file.symbols.includes.iter().filter_map(|(name, _)| view.included(path, name).cloned());
+            (path.clone(), found.collect::<Vec<_>>())
+        };
+        let includes: BTreeMap<TreePath, Vec<TreePath>> = view.files.iter().map(of).collect();
+        for (path, included) in &includes {
+            for other in included {
+                view.included_by.entry(other.clone()).or_default().push(path.clone());
+            }
+        }
+        view.includes = includes;
+        view
     }
 
     /// The file that is asked about.
@@ -58,30 +73,12 @@ impl View {
 
     /// A file and all that it includes.
     pub fn closure<'a>(&'a self, path: &'a TreePath) -> Vec<&'a TreePath> {
-        let (mut out, mut seen) = (vec![path], BTreeSet::from([path]));
-        let mut next = 0;
-        while let Some(path) = out.get(next).copied() {
-            next += 1;
-            let Some(file) = self.files.get(path) else { continue };
-            let included = file.symbols.includes.iter().filter_map(|(name, _)| self.included(path, name));
-            out.extend(included.filter(|path| seen.insert(path)));
-        }
-        out
+        reached(path, &self.includes)
     }
 
     /// The files that include a file, directly or not, and the file.
-    pub fn includers<'a>(&'a self, path: &'a TreePath) -> BTreeSet<&'a TreePath> {
-        let mut direct: BTreeMap<&TreePath, Vec<&TreePath>> = BTreeMap::new();
-        for (from, file) in &self.files {
-            for (name, _) in &file.symbols.includes {
-                direct.entry(self.included(from, name).unwrap_or(from)).or_default().push(from);
-            }
-        }
-        let (mut seen, mut open) = (BTreeSet::from([path]), vec![path]);
-        while let Some(next) = open.pop() {
-            open.extend(direct.get(next).into_iter().flatten().copied().filter(|from| seen.insert(from)));
-        }
-        seen
+    pub fn includers<'a>(&'a self, path: &'a TreePath) -> Vec<&'a TreePath> {
+        reached(path, &self.included_by)
     }
 
     /// The files whose declarations a file may use, in the order in which they count: itself, what it includes, and what the files
@@ -153,6 +150,17 @@ impl View {
         }
         self.globals(&files, &name.text)
     }
+}
+
+/// A file, and the files that lead on from it, the nearest first.
+fn reached<'a>(path: &'a TreePath, next: &'a BTreeMap<TreePath, Vec<TreePath>>) -> Vec<&'a TreePath> {
+    let (mut out, mut seen) = (vec![path], BTreeSet::from([path]));
+    let mut at = 0;
+    while let Some(path) = out.get(at).copied() {
+        at += 1;
+        out.extend(next.get(path).into_iter().flatten().filter(|path| seen.insert(path)));
+    }
+    out
 }
 
 /// A name in a text.
