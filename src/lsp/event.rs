@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use lsp_server::RequestId;
 
 use super::diagnostics::ByFile;
-use super::pixel_trace::Traced;
+use super::traced::Traced;
 
 /// A message to the server's thread.
 #[derive(Debug)]

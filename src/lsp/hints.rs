@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use lsp_types::{InlayHint, InlayHintLabel, InlayHintTooltip, Range as Span};
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
-use super::pixel_trace::TracedFile;
 use super::source_text::SourceText;
+use super::traced::TracedFile;
 use crate::shader::trace::LineOfTrace;
 
 /// The longest hint, in characters.

@@ -2,7 +2,9 @@
 
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
 
-use super::view::{Found, NameAt, View, name_at};
+use super::meaning::meant_by;
+use super::name::{NameAt, name_at};
+use super::view::{Found, View};
 use crate::shader::annotation::options::{ANNOTATIONS, described};
 use crate::shader::glsl::{BuiltIn, TokenKind, built_in, tokens};
 use crate::shader::symbols::{SymbolKind, comment_of};
@@ -16,7 +18,7 @@ pub fn hover(view: &View, place: Position, values: Option<String>) -> Option<Hov
     let byte = file.source.byte(place);
     let name = name_at(file.text(), byte)?;
     let text = of_annotation(file.text(), &name).or_else(|| {
-        let meant = view.meant_by(&view.current, &name);
+        let meant = meant_by(view, &view.current, &name);
         let own =
             (!meant.is_empty()).then(|| meant.iter().take(4).map(explained).collect::<Vec<_>>().join("\n\n---\n\n"));
         own.or_else(|| built_in(&name.text).filter(|_| !name.is_member).map(of_language))

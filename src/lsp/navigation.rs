@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 
 use lsp_types::{Location, Position, Range as Span};
 
+use super::meaning::{meant, meant_by};
+use super::name::{NameAt, is_behind_dot, name_at};
 use super::source_file::SourceFile;
-use super::view::{Found, NameAt, View, name_at};
+use super::view::{Found, View};
 use crate::shader::TreePath;
 use crate::shader::glsl::{TokenKind, tokens};
 use crate::shader::symbols::SymbolKind;
@@ -28,7 +30,7 @@ pub fn definition(view: &View, place: Position) -> Vec<Location> {
         let included = view.included(&view.current, name).and_then(|path| view.files.get(path));
         return included.map(|file| Location::new(file.uri.clone(), Span::default())).into_iter().collect();
     }
-    let meant = view.meant(byte);
+    let meant = meant(view, byte);
     // A function without a body is where it is announced only.
     let has_body = |found: &&Found<'_>| found.symbol.has_body;
     let is_announced = meant.iter().any(|found| found.symbol.has_body);
@@ -55,7 +57,7 @@ pub fn annotated<'a>(view: &'a View, name: &'a str) -> impl Iterator<Item = Foun
 
 /// All uses of what the name at a place means, with or without its declarations.
 pub fn references(view: &View, place: Position, with_declarations: bool) -> Vec<Location> {
-    let meant = view.meant(view.file().source.byte(place));
+    let meant = meant(view, view.file().source.byte(place));
     let uses = uses(view, &meant);
     let declared = |of: &Use| meant.iter().any(|found| *found.path == of.path && found.symbol.bytes == of.bytes);
     let shown = uses.iter().filter(|of| with_declarations || !declared(of));
@@ -84,7 +86,7 @@ pub fn uses(view: &View, meant: &[Found<'_>]) -> Vec<Use> {
             // Where the file sees them, all that nothing nearer hides.
             true if names.is_empty() || !is_meant(view.globals(&view.visible(path), name)) => continue,
             true => names.into_iter().filter(|of| !of.is_member && !is_hidden(file, of)).collect(),
-            false => names.into_iter().filter(|of| is_meant(view.meant_by(path, of))).collect(),
+            false => names.into_iter().filter(|of| is_meant(meant_by(view, path, of))).collect(),
         };
         out.extend(used.into_iter().map(|of| Use { path: path.clone(), bytes: of.bytes }));
     }
@@ -105,7 +107,6 @@ fn is_hidden(file: &SourceFile, name: &NameAt) -> bool {
 /// All places of a name in a text: in code, in directives, and behind `when=` in annotations.
 pub fn names(text: &str, name: &str) -> Vec<NameAt> {
     let mut out = Vec::new();
-    let mut before = "";
     for token in tokens(text) {
         match token.kind {
             TokenKind::Comment if token.text.starts_with("//@") => {
@@ -122,9 +123,12 @@ pub fn names(text: &str, name: &str) -> Vec<NameAt> {
             TokenKind::Comment => {}
             _ => {
                 if token.kind == TokenKind::Word && token.text == name {
-                    out.push(NameAt { text: name.to_owned(), bytes: token.bytes.clone(), is_member: before == "." });
+                    out.push(NameAt {
+                        text: name.to_owned(),
+                        bytes: token.bytes.clone(),
+                        is_member: is_behind_dot(text, token.bytes.start),
+                    });
                 }
-                before = token.text;
             }
         }
     }

@@ -1,55 +1,16 @@
 //! Traces a pixel of the saved tree on a thread of its own, for the values beside the lines.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
-
-use crossbeam_channel::{Receiver, Sender, unbounded};
-use lsp_server::RequestId;
 
 use super::event::Event;
+use super::traced::{Asked, Traced, TracedFile};
 use crate::headless::{Headless, HeadlessError};
 use crate::message::catch_panic;
-use crate::shader::trace::LineOfTrace;
-use crate::shader::{Change, Diagnostic, Mode, Source, TreePath};
+use crate::shader::{Change, Diagnostic, Mode, Source};
+use crossbeam_channel::{Receiver, Sender, unbounded};
 
 /// Opens a tree on the device, with the model and the settings of the command line. Returns the name of the mode that is traced, too.
 pub type OpenTree = Box<dyn FnMut(Source) -> Result<(Headless, String), String> + Send>;
-
-/// A pixel of a tree, and the files whose values are asked for.
-#[derive(Clone, Debug, Default)]
-pub struct Asked {
-    /// The folder of the tree.
-    pub root: PathBuf,
-    /// Counted from the upper left corner.
-    pub at: (u32, u32),
-    /// The files.
-    pub files: BTreeSet<TreePath>,
-    /// Files that have changed on disk.
-    pub changed: BTreeSet<TreePath>,
-    /// The requests that this answers.
-    pub requests: Vec<RequestId>,
-}
-
-/// A file with the values of its lines.
-#[derive(Clone, Debug)]
-pub struct TracedFile {
-    /// Its path in the tree.
-    pub path: TreePath,
-    /// The text that was traced.
-    pub text: Arc<str>,
-    /// The lines that the pixel reaches.
-    pub lines: Vec<LineOfTrace>,
-}
-
-/// The values at a pixel.
-#[derive(Clone, Debug)]
-pub struct Traced {
-    /// What was asked.
-    pub asked: Asked,
-    /// The values by files, and whether the color is the picture's; or why there are none.
-    pub result: Result<(Vec<TracedFile>, String), String>,
-}
 
 /// The thread. It ends with this value.
 #[derive(Debug)]

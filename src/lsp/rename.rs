@@ -4,9 +4,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use lsp_types::{Position, Range as Span, TextEdit, Uri, WorkspaceEdit};
 
+use super::meaning::meant_by;
+use super::name::{NameAt, name_at};
 use super::navigation::{annotated, names, uses};
 use super::types::before_dot;
-use super::view::{Found, NameAt, View, name_at};
+use super::view::{Found, View};
 use crate::shader::TreePath;
 use crate::shader::glsl::{built_in, is_name, is_reserved, is_word};
 use crate::shader::symbols::SymbolKind;
@@ -32,7 +34,7 @@ const KNOWN: [&str; 8] = [
 pub fn prepare(view: &View, place: Position) -> Result<Span, String> {
     let file = view.file();
     let name = name_at(file.text(), file.source.byte(place)).ok_or("there is no name here")?;
-    let meant = view.meant_by(&view.current, &name);
+    let meant = meant_by(view, &view.current, &name);
     check_old(view, &name.text, &meant)?;
     Ok(file.source.span(name.bytes))
 }
@@ -45,7 +47,7 @@ pub fn prepare(view: &View, place: Position) -> Result<Span, String> {
 pub fn rename(view: &View, place: Position, new: &str) -> Result<WorkspaceEdit, String> {
     let file = view.file();
     let name = name_at(file.text(), file.source.byte(place)).ok_or("there is no name here")?;
-    let meant = view.meant_by(&view.current, &name);
+    let meant = meant_by(view, &view.current, &name);
     check_old(view, &name.text, &meant)?;
     check_new(new)?;
     let uses = uses(view, &meant);
@@ -94,7 +96,7 @@ fn check_told(view: &View, meant: &[Found<'_>]) -> Result<(), String> {
         let Some(file) = view.files.get(path) else { continue };
         let members = names(file.text(), &first.symbol.name).into_iter().filter(|of| of.is_member);
         let is_untold =
-            |of: &NameAt| view.meant_by(path, of).is_empty() && before_dot(view, path, of.bytes.start).is_none();
+            |of: &NameAt| meant_by(view, path, of).is_empty() && before_dot(view, path, of.bytes.start).is_none();
         if let Some(of) = members.into_iter().find(is_untold) {
             let line = file.source.line_of(of.bytes.start) + 1;
             return Err(format!("the type of the value before `.{}` at {path}:{line} cannot be told", of.text));

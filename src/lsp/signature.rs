@@ -2,7 +2,7 @@
 
 use lsp_types::{Documentation, ParameterInformation, ParameterLabel, Position, SignatureHelp, SignatureInformation};
 
-use super::view::{NameAt, View};
+use super::view::View;
 use crate::shader::glsl::{TokenKind, built_in, code, is_name};
 use crate::shader::symbols::{SymbolKind, comment_of};
 
@@ -28,8 +28,7 @@ pub fn signature_help(view: &View, place: Position) -> Option<SignatureHelp> {
         }
     };
     let name = tokens.get(name).filter(|token| token.kind == TokenKind::Word && is_name(token.text))?;
-    let at = NameAt { text: name.text.to_owned(), bytes: name.bytes.clone(), is_member: false };
-    let meant = view.meant_by(&view.current, &at);
+    let meant = view.plain(&view.current, name.text, &name.bytes);
     let functions = meant.iter().filter(|found| found.symbol.kind == SymbolKind::Function);
     let mut signatures: Vec<SignatureInformation> = functions
         .map(|found| {

@@ -1,6 +1,6 @@
 //! The types of the expressions in front of a dot, as far as they can be told without a compiler.
 
-use super::view::{NameAt, View};
+use super::view::View;
 use crate::shader::TreePath;
 use crate::shader::glsl::{Token, TokenKind, built_in, code, is_name};
 use crate::shader::symbols::{Symbol, SymbolKind};
@@ -105,11 +105,19 @@ fn of_expression(view: &View, path: &TreePath, tokens: &[Token<'_>], depth: usiz
             }
         }
         name if last.kind == TokenKind::Word && is_name(name) => match before.split_last() {
-            Some((dot, owner)) if dot.text == "." => of_member(view, path, owner, name, depth),
+            Some((dot, owner)) if dot.text == "." && is_on_line(view, path, dot, last) => {
+                of_member(view, path, owner, name, depth)
+            }
             _ => of_name(view, path, last),
         },
         _ => None,
     }
+}
+
+/// Whether a name stands on the line of the dot before it. A dot at the end of a line is being typed.
+fn is_on_line(view: &View, path: &TreePath, dot: &Token<'_>, name: &Token<'_>) -> bool {
+    let between = view.files.get(path).and_then(|file| file.text().get(dot.bytes.end..name.bytes.start));
+    between.is_none_or(|between| !between.contains(['\n', '\r']))
 }
 
 fn of_member(view: &View, path: &TreePath, owner: &[Token<'_>], name: &str, depth: usize) -> Option<TypeOf> {
@@ -121,8 +129,7 @@ fn of_member(view: &View, path: &TreePath, owner: &[Token<'_>], name: &str, dept
 }
 
 fn of_name(view: &View, path: &TreePath, token: &Token<'_>) -> Option<TypeOf> {
-    let name = NameAt { text: token.text.to_owned(), bytes: token.bytes.clone(), is_member: false };
-    let meant = view.meant_by(path, &name);
+    let meant = view.plain(path, token.text, &token.bytes);
     let value = meant.iter().find(|found| found.symbol.is_value());
     value.map(|found| TypeOf::of(found.symbol)).or_else(|| {
         let known = built_in(token.text).filter(|known| !known.is_function() && !known.forms.is_empty())?;

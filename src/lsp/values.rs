@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use lsp_server::RequestId;
 
-use super::pixel_trace::{Asked, Traced, TracedFile};
+use super::traced::{Asked, Traced, TracedFile};
 use crate::shader::TreePath;
 
 /// A pixel of a tree that is traced.

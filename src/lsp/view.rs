@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::source_file::SourceFile;
-use super::types;
 use crate::shader::TreePath;
-use crate::shader::glsl::{Token, TokenKind, is_word, tokens};
 use crate::shader::symbols::{Symbol, SymbolKind};
 
 /// The files of a tree, and the one that is asked about.
@@ -123,32 +121,15 @@ impl View {
         out
     }
 
-    /// The declarations that the name at a byte of the current file means: several of an overloaded function.
-    pub fn meant(&self, byte: usize) -> Vec<Found<'_>> {
-        let Some(name) = name_at(self.file().text(), byte) else { return Vec::new() };
-        self.meant_by(&self.current, &name)
-    }
-
-    /// The same for a name in any file.
-    pub fn meant_by<'a>(&'a self, path: &'a TreePath, name: &NameAt) -> Vec<Found<'a>> {
+    /// The declarations that a name at a place means if it stands behind no dot: several of an overloaded function.
+    pub fn plain<'a>(&'a self, path: &'a TreePath, name: &str, bytes: &std::ops::Range<usize>) -> Vec<Found<'a>> {
         let Some(file) = self.files.get(path) else { return Vec::new() };
-        let own = file.symbols.all.iter().find(|symbol| symbol.bytes == name.bytes);
-        if let Some(symbol) = own.filter(|symbol| !symbol.is_global()) {
-            return vec![Found { path, file, symbol }];
+        let own = file.symbols.all.iter().find(|symbol| symbol.bytes == *bytes);
+        let local = || file.symbols.locals(bytes.start).find(|symbol| symbol.name == name);
+        match own.filter(|symbol| !symbol.is_global()).or_else(|| local().filter(|_| own.is_none())) {
+            Some(symbol) => vec![Found { path, file, symbol }],
+            None => self.globals(&self.visible(path), name),
         }
-        let files = self.visible(path);
-        if own.is_none() {
-            if name.is_member {
-                let owner = types::before_dot(self, path, name.bytes.start);
-                let Some(owner) = owner else { return Vec::new() };
-                let members = self.members(&files, &owner.name);
-                return members.into_iter().filter(|found| found.symbol.name == name.text).collect();
-            }
-            if let Some(symbol) = file.symbols.locals(name.bytes.start).find(|symbol| symbol.name == name.text) {
-                return vec![Found { path, file, symbol }];
-            }
-        }
-        self.globals(&files, &name.text)
     }
 }
 
@@ -161,64 +142,4 @@ fn reached<'a>(path: &'a TreePath, next: &'a BTreeMap<TreePath, Vec<TreePath>>) 
         out.extend(next.get(path).into_iter().flatten().filter(|path| seen.insert(path)));
     }
     out
-}
-
-/// A name in a text.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NameAt {
-    /// The name.
-    pub text: String,
-    /// Its bytes.
-    pub bytes: std::ops::Range<usize>,
-    /// Whether it stands behind a dot.
-    pub is_member: bool,
-}
-
-/// The name that holds a byte of a text or ends there: in code, in a directive, or in an annotation.
-pub fn name_at(text: &str, byte: usize) -> Option<NameAt> {
-    let holds = |token: &Token<'_>| token.bytes.start <= byte && byte <= token.bytes.end;
-    let mut before = None;
-    let mut in_comment = None;
-    for token in tokens(text).take_while(|token| token.bytes.start <= byte) {
-        match token.kind {
-            TokenKind::Word if holds(&token) => {
-                let is_member = before == Some(".");
-                return Some(NameAt { text: token.text.to_owned(), bytes: token.bytes, is_member });
-            }
-            TokenKind::Comment if holds(&token) => in_comment = Some(token.bytes.clone()),
-            _ => {}
-        }
-        if token.kind != TokenKind::Comment {
-            before = Some(token.text);
-        }
-    }
-    // A name in an annotation, as behind `when=`.
-    let comment = in_comment.filter(|bytes| text[bytes.clone()].starts_with("//@"))?;
-    if !text.is_char_boundary(byte) {
-        return None;
-    }
-    let start = byte - text[comment.start..byte].chars().rev().take_while(|c| is_word(*c)).count();
-    let end = byte + text[byte..comment.end.max(byte)].chars().take_while(|c| is_word(*c)).count();
-    let is_name = start < end && !text[start..end].starts_with(|c: char| c.is_ascii_digit());
-    is_name.then(|| NameAt { text: text[start..end].to_owned(), bytes: start..end, is_member: false })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_found_where_they_begin_and_end() {
-        let text = "a.b1 + ä; // c\n#define D e\nf; //@ui when=BLOOM = 1\n";
-        let name = |part: &str, plus: usize| {
-            name_at(text, text.find(part).unwrap() + plus).map(|name| (name.text, name.is_member))
-        };
-        assert_eq!(name("a.", 0), Some(("a".to_owned(), false)));
-        assert_eq!(name("b1", 1), Some(("b1".to_owned(), true)));
-        assert_eq!(name("b1", 2), Some(("b1".to_owned(), true)));
-        assert_eq!((name("+", 1), name("c\n", 0)), (None, None));
-        assert_eq!(name("e\nf", 0), Some(("e".to_owned(), false)));
-        assert_eq!(name("BLOOM", 2), Some(("BLOOM".to_owned(), false)));
-        assert_eq!((name_at(text, text.len()), name_at(text, 8)), (None, None));
-    }
 }

@@ -1,12 +1,11 @@
 //! Code actions: fixes of misspelled names, sliders from numbers, and expressions over the model.
 
+mod edit;
 mod quick_fix;
 mod show;
 mod slider;
 
-use std::collections::HashMap;
-
-use lsp_types::{CodeActionOrCommand, Range as Span, TextEdit, Uri, WorkspaceEdit};
+use lsp_types::{CodeActionOrCommand, Range as Span};
 
 use super::view::View;
 use crate::shader::Diagnostic;
@@ -22,14 +21,4 @@ pub fn actions(view: &View, span: Span, diagnostics: &[Diagnostic], has_window: 
     out.extend(slider::slider(view, span));
     out.extend(show::show(view, span).filter(|_| has_window));
     out
-}
-
-/// An edit of several files.
-#[allow(clippy::mutable_key_type, reason = "the protocol's map has URIs as keys")]
-fn edit(of_files: impl IntoIterator<Item = (Uri, TextEdit)>) -> WorkspaceEdit {
-    let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
-    for (uri, edit) in of_files {
-        changes.entry(uri).or_default().push(edit);
-    }
-    WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
 }

@@ -2,7 +2,7 @@
 
 use lsp_types::{CodeAction, CodeActionKind, CodeActionOrCommand, Range as Span, TextEdit};
 
-use super::edit;
+use super::edit::edit;
 use crate::lsp::diagnostics::{shown, span};
 use crate::lsp::view::View;
 use crate::shader::Diagnostic;

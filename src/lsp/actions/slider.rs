@@ -2,7 +2,7 @@
 
 use lsp_types::{CodeAction, CodeActionKind, CodeActionOrCommand, Range as Span, TextEdit};
 
-use super::edit;
+use super::edit::edit;
 use crate::lsp::navigation::names;
 use crate::lsp::source_file::SourceFile;
 use crate::lsp::view::View;

@@ -7,6 +7,7 @@ mod names;
 
 use lsp_types::{CompletionItem, Position};
 
+use super::name::is_behind_dot;
 use super::view::View;
 use crate::shader::glsl::{Token, TokenKind, tokens};
 
@@ -31,11 +32,7 @@ pub fn completion(view: &View, place: Position) -> Vec<CompletionItem> {
         Some(directive) if directive.in_directive && is_keyword(&text[line..byte]) => annotations::directives(),
         word => {
             let start = word.filter(|word| word.kind == TokenKind::Word).map_or(byte, |word| word.bytes.start);
-            if text[..start].trim_end().ends_with('.') {
-                members::items(view, start)
-            } else {
-                names::items(view, start)
-            }
+            if is_behind_dot(text, start) { members::items(view, start) } else { names::items(view, start) }
         }
     }
 }

@@ -124,7 +124,12 @@ impl Source {
     /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         if let Some(text) = self.editor.as_ref().and_then(|texts| texts.get(path)) {
-            return read::check_text(text.as_bytes().to_vec());
+            let (bytes, most) = (text.len() as u64, error::MAX_FILE_BYTES);
+            return if bytes > most {
+                Err(SourceError::TooBig { bytes, most })
+            } else {
+                read::check_text(text.as_bytes().to_vec())
+            };
         }
         let good = self.quarantine.as_ref().and_then(|quarantine| quarantine.texts.get(path));
         let own = good.map_or_else(|| self.tree.read(path), |text| Ok(text.clone()))?;

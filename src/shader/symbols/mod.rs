@@ -4,6 +4,7 @@
 mod annotated;
 mod comment;
 mod scan;
+mod scanner;
 mod statements;
 mod symbol;
 

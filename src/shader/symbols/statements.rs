@@ -1,7 +1,7 @@
 //! Finds the declarations in the body of a function, statement by statement. A statement without its `;` ends where a line begins with
 //! another one.
 
-use super::scan::{Place, Scanner};
+use super::scanner::{Place, Scanner};
 
 /// Most statements in one another that are read. Deeper ones declare nothing.
 const DEPTH: usize = 100;

@@ -1,9 +1,14 @@
 //! Code actions: fixes, sliders, expressions over the model.
 
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::net::UnixStream;
+
 use serde_json::{Value, json};
 
-use super::client::{Opened, place, uri};
+use super::client::{Client, Opened, place, uri};
 use crate::support::process::run;
+use crate::support::window::Viewer;
+use crate::support::{Tree, glb};
 
 /// The actions at a place, by their titles.
 #[track_caller]
@@ -74,7 +79,7 @@ fn a_number_becomes_a_slider_and_the_tree_compiles() {
     }
     assert!(opened.tree.read("brdf/ndf.glsl").contains("max(h_ts.z * h_ts.z, cos2_amount)"));
     let root = opened.tree.root();
-    run(root.parent().unwrap(), &["check", "--shaders", root.to_str().unwrap()]).expect(0, &[]);
+    run(root.parent().unwrap(), &["modes", "--shaders", root.to_str().unwrap()]).expect(0, &[]);
     opened.client.quit();
 }
 
@@ -90,4 +95,43 @@ fn without_a_window_nothing_is_offered_to_show() {
     );
     assert!(why.contains("no window listens"), "{why}");
     opened.client.quit();
+}
+
+/// What a window answers to a command on its socket.
+fn asked(socket: &std::path::Path, command: &Value) -> Value {
+    let mut stream = UnixStream::connect(socket).unwrap();
+    writeln!(stream, "{command}").unwrap();
+    let lines = BufReader::new(stream).lines().map(|line| serde_json::from_str::<Value>(&line.unwrap()).unwrap());
+    lines.into_iter().find(|answer| answer["id"] == command["id"]).expect("an answer")
+}
+
+#[test]
+fn a_running_window_shows_the_value_at_the_cursor() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb", "--socket", "edited"]);
+    viewer.running.event("ready");
+    let socket = viewer.tree.beside("runtime/specula/edited.sock");
+    let path = viewer.tree.path("user.glsl");
+    let text = viewer.tree.read("user.glsl");
+    let client = Client::start(&viewer.tree.root(), &["--socket", socket.to_str().unwrap()]);
+    let mut opened = Opened { tree: Tree::new(), client, path, text };
+    let (path, text) = (opened.path.clone(), opened.text.clone());
+    opened.client.open(&path, &text);
+    let found = actions(&mut opened, "saturate(s.roughness", 12);
+    let show = titled(&found, "Show `s.roughness` over the model");
+    let line = opened.line("saturate(s.roughness") + 1;
+    assert_eq!(show["command"]["arguments"], json!([uri(&path), line, "s.roughness"]));
+    let (command, arguments) = (show["command"]["command"].clone(), show["command"]["arguments"].clone());
+    opened.client.ask("workspace/executeCommand", json!({ "command": command, "arguments": arguments }));
+    let settings = asked(&socket, &json!({ "id": 1, "command": "get" }))["result"].clone();
+    assert_eq!(settings["mode"], "expression");
+    assert_eq!(settings["expression"]["at"], format!("{}:{line}:s.roughness", path.display()));
+    viewer.until("the roughness of the model", |shot| {
+        // The same gray as in the mode of the roughness.
+        let pixel = shot.get_pixel(shot.width() / 2, shot.height() / 2);
+        pixel.0[0] == pixel.0[1] && pixel.0[1] == pixel.0[2]
+    });
+    opened.client.quit();
+    viewer.quit();
 }

@@ -19,30 +19,36 @@ fn hints(opened: &mut Opened) -> BTreeMap<u64, String> {
     all.as_array().unwrap().iter().map(of).collect()
 }
 
-/// What `specula trace --json` says of each line, in the words of a hint, from 0.
-fn traced(opened: &Opened) -> BTreeMap<u64, String> {
+/// The rows that `specula trace` prints for the lines of the file, from 0, and what its JSON says that they do.
+fn traced(opened: &Opened) -> BTreeMap<u64, (String, String)> {
     let root = opened.tree.root();
     let at = format!("{},{}", PIN[0], PIN[1]);
-    let more = ["--shaders", root.to_str().unwrap(), "--at", &at, "--file", "brdf/ndf.glsl", "--json"];
-    let trace = run(&root, &[&["trace"][..], &more, &OPTIONS].concat()).expect(0, &[]).json();
+    let more = ["--shaders", root.to_str().unwrap(), "--at", &at, "--file", "brdf/ndf.glsl"];
+    let trace = |json: &[&str]| run(&root, &[&["trace"][..], &more, json, &OPTIONS].concat());
+    let rows = trace(&[]).expect(0, &[]).stdout.clone();
     let done = |done: &Value| {
-        let times = match done["count"].as_u64().unwrap() {
-            1 => String::new(),
-            count => format!(" ×{count}"),
-        };
-        (done["act"].as_str().unwrap().to_owned(), done["name"].as_str().unwrap().to_owned(), times)
+        let text = |key: &str| done[key].as_str().unwrap().to_owned();
+        format!("{} {} {}", text("act"), text("name"), done["count"])
     };
     let line = |line: &Value| {
-        let words: Vec<String> = line["done"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(done)
-            .map(|(act, name, times)| format!("{act} {name}{times}"))
-            .collect();
-        (line["line"].as_u64().unwrap() - 1, words.join(";"))
+        let number = line["line"].as_u64().unwrap();
+        let is_row = |row: &&str| row.trim_start().starts_with(&format!("{number}  "));
+        let row = rows.lines().find(is_row).unwrap_or_else(|| panic!("no row {number} in {rows}"));
+        let words: Vec<String> = line["done"].as_array().unwrap().iter().map(done).collect();
+        (number - 1, (row.to_owned(), words.join("; ")))
     };
-    trace["lines"].as_array().unwrap().iter().map(line).collect()
+    trace(&["--json"]).expect(0, &[]).json()["lines"].as_array().unwrap().iter().map(line).collect()
+}
+
+/// Fails unless the hints are what `specula trace` says.
+#[track_caller]
+fn assert_traced(opened: &Opened, shown: &BTreeMap<u64, String>) -> BTreeMap<u64, (String, String)> {
+    let trace = traced(opened);
+    assert!(shown.len() > 2 && shown.keys().eq(trace.keys()), "{shown:#?} {trace:#?}");
+    for (line, text) in shown {
+        assert!(trace[line].0.ends_with(&format!("  {text}")), "line {line}: {text}, but {:?}", trace[line]);
+    }
+    trace
 }
 
 #[test]
@@ -57,10 +63,9 @@ fn hints_are_those_of_the_trace_and_follow_edits() {
     );
     opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
     let shown = hints(&mut opened);
-    let trace = traced(&opened);
-    assert!(shown.len() > 2 && shown.keys().eq(trace.keys()), "{shown:#?} {trace:#?}");
+    let trace = assert_traced(&opened, &shown);
     let squared = u64::from(opened.line("float a2 = alpha"));
-    assert_eq!(trace[&squared], "store a2 ×2");
+    assert_eq!(trace[&squared].1, "store a2 2");
     assert!(shown[&squared].starts_with("a2 = 0.") && shown[&squared].ends_with(" ×2"), "{shown:#?}");
 
     // Two lines above move all; the changed one has none.
@@ -79,7 +84,7 @@ fn hints_are_those_of_the_trace_and_follow_edits() {
     opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
     let saved = hints(&mut opened);
     assert!(saved.contains_key(&(squared + 2)) && saved[&(squared + 2)] != shown[&squared], "{saved:#?}");
-    assert!(saved.keys().eq(traced(&opened).keys()));
+    assert_traced(&opened, &saved);
 
     opened.client.ask("workspace/executeCommand", json!({ "command": "specula.unpinPixel" }));
     assert!(hints(&mut opened).is_empty());
