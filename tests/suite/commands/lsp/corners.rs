@@ -22,7 +22,7 @@ fn malformed_and_unknown_messages_are_answered() {
     client.ask("initialize", json!({ "capabilities": {} }));
     assert!(client.refused("initialize", json!({ "capabilities": {} })).contains("comes once"));
     assert!(client.refused("textDocument/no_such", json!({})).contains("no method"));
-    assert!(client.refused("textDocument/hover", json!({ "textDocument": 7 })).contains("missing field"));
+    assert!(client.refused("textDocument/hover", json!({ "textDocument": 7 })).contains("expected struct"));
     client.notify("textDocument/didOpen", json!([1, 2]));
     client.notify("$/unknown", json!(null));
     client.send(&json!({ "jsonrpc": "2.0", "id": 99, "result": null }));
