@@ -1,4 +1,4 @@
-//! What GLSL has built in: functions, types and variables that a shader is likely to use.
+//! What GLSL has built in: functions, types and variables that a shader is likely to use. With them `assert` and `print`, which Specula adds.
 
 /// A name of the language.
 #[derive(Clone, Copy, Debug)]
@@ -174,6 +174,8 @@ pub const BUILT_IN: &[BuiltIn] = &[
     of("groupMemoryBarrier", &["void groupMemoryBarrier()"], "Orders accesses of memory within the workgroup."),
     of("EmitVertex", &["void EmitVertex()"], "Adds a vertex with the current outputs. Geometry stages only."),
     of("EndPrimitive", &["void EndPrimitive()"], "Ends the current strip. Geometry stages only."),
+    of("assert", &["void assert(bool condition)", "void assert(bool condition, text message)"], "Fails `specula check MODEL` and `render` where the condition does not hold. Costs nothing in the window. The message stands in quotes."),
+    of("print", &["void print(text name, value)"], "Tells a value in `specula check MODEL` and `render`. The name stands in quotes."),
     of("float", &[], "A number with 24 bits of precision."),
     of("int", &[], "A whole number of 32 bits."),
     of("uint", &[], "A whole number of 32 bits that is not negative."),
