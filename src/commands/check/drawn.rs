@@ -9,7 +9,7 @@ use specula::message::{grouped, tell, warn};
 use specula::shader::Diagnostic;
 use specula::shader::checks::Broken;
 
-use super::Args;
+use super::args::Args;
 use crate::commands::common::chosen_modes::Modes;
 use crate::commands::common::{check_mode, check_validation, compiler};
 use crate::commands::progress::Progress;

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::support::process::{Finished, run};
-use crate::support::{Tree, glb, is_long, open_image};
+use crate::support::{Session, Tree, assert_same, failed, glb, is_long, line_of, model, open_image, ready, settings};
 
 const VIEW: [&str; 5] = ["--size", "48x32", "--env", "none", "--validate"];
 /// `zero`, `izero` and `uzero` are 0, which the compiler does not know. Each line breaks one rule, and has its name and operands.
@@ -226,4 +226,38 @@ fn a_tree_may_have_functions_of_these_names() {
     );
     checked.expect(0, &[]);
     assert!(checked.stdout.contains("with 0 assertions: none failed"), "{}", checked.stdout);
+}
+
+#[test]
+fn edits_with_assertions_are_reloads_like_others() {
+    let mut session = Session::new(model("sphere-grid"), settings(&["environment.name=none"]));
+    let before = session.render();
+    let (user, frag) = (session.tree.read("user.glsl"), session.tree.read("pbr.frag"));
+    let line = "    s.roughness = saturate";
+    let with = |statement: &str| user.replace(line, &format!("    {statement}\n{line}"));
+    for statement in
+        ["assert(s.roughness > 0.25, \"is rough\");", "assert(s.roughness > 0.5);", "print(\"metallic\", s.metallic);"]
+    {
+        ready(&session.save("user.glsl", &with(statement)));
+        assert_same(&session.render(), &before, statement);
+    }
+    // A stage that includes the calls and has some of its own. Errors have the lines of the author.
+    let own =
+        frag.replace("void main() {", "void main() {\n    assert(true, \"always\");\n    float unknown = missing;");
+    let reload = session.save("pbr.frag", &own);
+    let errors = failed(&reload);
+    let expected = line_of(&own, "float unknown = missing;");
+    assert!(
+        errors.len() == 1 && errors[0].line == Some(expected) && errors[0].message.contains("missing"),
+        "{errors:?}"
+    );
+    ready(&session.save("pbr.frag", &own.replace("float unknown = missing;", "")));
+    // A wrong use is an error at its line.
+    let wrong = with("assert(s.roughness, \"no condition\");");
+    let reload = session.save("user.glsl", &wrong);
+    let errors = failed(&reload);
+    assert!(errors.iter().any(|error| error.line == Some(line_of(&wrong, "no condition"))), "{errors:?}");
+    session.save("pbr.frag", &frag);
+    ready(&session.save("user.glsl", &user));
+    assert_same(&session.render(), &before, "restored");
 }

@@ -8,6 +8,7 @@ mod operands;
 mod operations;
 mod rule;
 mod statements;
+mod suspect;
 
 use std::collections::BTreeSet;
 
@@ -15,8 +16,8 @@ use super::module::{Function, Id, Instruction, Module};
 use super::op::Op;
 use super::reach::file_of;
 use super::trace::NumberKind;
-use operands::Suspect;
 pub use rule::Rule;
+use suspect::{Selected, Suspect, selected};
 
 /// Words of the array of bits.
 pub const MASK_WORDS: usize = 128;
@@ -72,7 +73,7 @@ pub fn check(words: &[u32], names: &Names<'_>, undefined: bool, chosen: Option<&
     for function in &mut functions {
         let is_silent = silent.contains(&function.id);
         function.head.retain(|i| !is_line(*i));
-        checker.selected = operands::selected(checker.module, function);
+        checker.selected = selected(checker.module, function);
         for block in &mut function.blocks {
             match is_silent {
                 true => block.body.retain(|i| !is_line(*i)),
@@ -117,8 +118,8 @@ struct Checker<'a> {
     void: Id,
     uint: Id,
     uvec4: Id,
-    /// Results that only a select reads, which computes both sides: see [`operands::selected`].
-    selected: operands::Selected,
+    /// Results that only a select reads, which computes both sides: see [`selected`].
+    selected: Selected,
     /// What waits for the select that reads its result.
     waiting: Vec<(Id, Suspect, usize)>,
     checks: Vec<Check>,
@@ -137,7 +138,7 @@ impl<'a> Checker<'a> {
         let void = module.declare(Op::TypeVoid, &[]);
         let uint = module.declare(Op::TypeInt, &[32, 0]);
         let uvec4 = module.declare(Op::TypeVector, &[uint, 4]);
-        let (selected, waiting, checks) = (operands::Selected::default(), Vec::new(), Vec::new());
+        let (selected, waiting, checks) = (Selected::default(), Vec::new(), Vec::new());
         Self { module, to, extended, undefined, asserts, prints, void, uint, uvec4, selected, waiting, checks }
     }
 

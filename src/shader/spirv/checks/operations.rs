@@ -1,6 +1,6 @@
 //! The operations that may break a rule, and when they do.
 
-use super::operands::Suspect;
+use super::suspect::Suspect;
 use super::{Checker, Rule};
 use crate::shader::spirv::enums::extended;
 use crate::shader::spirv::module::{Id, Instruction, Type};

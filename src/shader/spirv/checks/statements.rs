@@ -1,8 +1,8 @@
 //! The author's `assert()` and `print()`, which are calls of functions without effect.
 
 use super::Checker;
-use super::operands::Suspect;
 use super::rule::Rule;
+use super::suspect::Suspect;
 use crate::shader::spirv::module::{Id, Instruction};
 use crate::shader::spirv::op::Op;
 
