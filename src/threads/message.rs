@@ -52,6 +52,8 @@ pub(crate) enum Message {
     VersionWritten(u64, Result<String, String>),
     /// A summary of the edits that were written to the shader files with the files, or the reason why none were.
     Written(Result<(String, Written), String>),
+    /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
+    TypedWritten(TreePath, Arc<str>, Result<(String, Written), String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.

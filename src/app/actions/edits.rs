@@ -9,10 +9,11 @@ use crate::app::actions::restored::follow_restored;
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::shaders::edits::{Draft, NO_FOLDER};
+use crate::app::state::trace::saved::WrittenText;
 use crate::shader::rewrite::{Edit, applied};
 use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
-use crate::shader::{Change, Expression, ShaderSet};
+use crate::shader::{Change, Expression, ShaderSet, TreePath};
 use crate::threads::Message;
 use crate::write_back::{self, Written};
 
@@ -98,6 +99,46 @@ pub(in crate::app) fn write_edits(state: &mut State, engine: &mut Engine, edits:
         let written = write_back::write(&root, &edits);
         Some(Message::Written(written.map(|written| (told(&edits), written))))
     });
+}
+
+/// Writes a text that the user has typed into a file of the tree, on a thread of its own. `base`: the text with which the typing began.
+pub(in crate::app) fn save_typed(
+    state: &mut State,
+    engine: &mut Engine,
+    path: TreePath,
+    base: Arc<str>,
+    text: Arc<str>,
+) {
+    let Some(root) = state.source.root().map(Path::to_owned) else { return state.say(NO_FOLDER) };
+    engine.threads.wait(move || {
+        let written = write_back::write_text(&root, &path, &base, &text);
+        Some(Message::TypedWritten(path, text, written))
+    });
+}
+
+/// Takes the result of writing a typed text.
+pub(in crate::app) fn on_typed_written(
+    state: &mut State,
+    path: TreePath,
+    typed: Arc<str>,
+    written: Result<(String, Written), String>,
+) {
+    let text = match written {
+        Ok((text, written)) => {
+            state.history.record_files(&state.session.shared_settings(), written);
+            state.say(if *typed == *text {
+                format!("Saved {path}")
+            } else {
+                format!("Saved {path} with the changes of another program")
+            });
+            Some(text.into())
+        }
+        Err(message) => {
+            state.say(message);
+            None
+        }
+    };
+    state.traces.written = Some(WrittenText { path, typed, text });
 }
 
 /// Takes the result of writing.

@@ -9,7 +9,8 @@ use crate::app::state::State;
 use crate::app::state::trace::Progress;
 use crate::app::state::trace::subject::Subject;
 use crate::events::{Event, emit};
-use crate::shader::TreePath;
+use crate::settings::{ExpressionSettings, Settings};
+use crate::shader::{TreePath, expression};
 use crate::threads::tracer::{OlderVersion, TraceRequest};
 use crate::threads::{Message, Traced};
 
@@ -48,9 +49,11 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
         return Some(left);
     }
     let before = if state.traces.lacks_before(&subject) { version_before(state, engine) } else { None };
+    let mut session = state.session.clone();
+    session.settings.clone_from(&subject.settings);
     let request = TraceRequest {
         compiler: engine.compiler.clone(),
-        session: state.session.clone(),
+        session,
         resources: engine.resources.clone(),
         source: state.source.clone(),
         clock: state.picture.clock,
@@ -95,11 +98,12 @@ fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     // While the picture moves, the trace of a moment stays.
     let last = state.traces.asked().filter(|_| moves(state));
     let time_s = last.map_or(state.picture.clock.time_s, |last| last.time_s);
-    let settings = last.filter(|last| is_same_but_lights(last, state)).map(|last| last.settings.clone());
+    let now = settings(state);
+    let same = last.filter(|last| is_same_but_lights(last, &now)).map(|last| last.settings.clone());
     Some(Subject {
         at,
         size: shown.size,
-        settings: settings.unwrap_or_else(|| state.session.shared_settings()),
+        settings: same.unwrap_or(now),
         shaders,
         revisions: state.session.revisions,
         model: state.session.model().map_or(0, |model| Arc::as_ptr(model) as usize),
@@ -109,11 +113,21 @@ fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     })
 }
 
-/// Whether the settings differ from those of a trace in the places of the orbiting lights alone.
-fn is_same_but_lights(last: &Subject, state: &State) -> bool {
-    let mut settings = state.session.settings.clone();
-    settings.lights.orbit.clone_from(&last.settings.lights.orbit);
-    settings == *last.settings
+/// The settings of the traced picture. While an expression is watched, that is the picture without it.
+fn settings(state: &State) -> Arc<Settings> {
+    let shared = state.session.shared_settings();
+    if shared.expression == ExpressionSettings::default() && shared.mode != expression::MODE {
+        return shared;
+    }
+    let mode = if shared.mode == expression::MODE { Settings::default().mode } else { shared.mode.clone() };
+    Arc::new(Settings { mode, expression: ExpressionSettings::default(), ..Settings::clone(&shared) })
+}
+
+/// Whether settings differ from those of a trace in the places of the orbiting lights alone.
+fn is_same_but_lights(last: &Subject, now: &Settings) -> bool {
+    let mut now = now.clone();
+    now.lights.orbit.clone_from(&last.settings.lights.orbit);
+    now == *last.settings
 }
 
 /// The version before that on screen.

@@ -59,6 +59,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &scene::FOLLOW_MOUSE,
     &source::SOURCE,
     &source::SHOW_FILE,
+    &source::SAVE_FILE,
     &source::CHOOSE_TRACE,
     &shaders::ASK_EXPRESSION,
     &shaders::ASK_DEFAULTS,

@@ -1,8 +1,11 @@
 //! Commands of the panel Source: the file, the pixel, and which of what happened there is shown.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 
 use super::spec::{Outcome, Spec, Until};
+use crate::app::actions::edits::save_typed;
 use crate::app::engine::Engine;
 use crate::app::source_line::SourceLine;
 use crate::app::state::State;
@@ -29,6 +32,19 @@ pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).tak
      the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `files` of the stage, `calls`, and \
      `changed`: values that the last edit has changed",
 );
+
+/// A text that was typed into a file of the tree.
+#[derive(Clone, Debug)]
+pub(in crate::app) struct Typed {
+    pub(in crate::app) path: TreePath,
+    /// The text with which the typing began.
+    pub(in crate::app) base: Arc<str>,
+    pub(in crate::app) text: Arc<str>,
+}
+
+/// Writes a typed text into its file.
+pub(in crate::app) static SAVE_FILE: Spec<Typed> =
+    Spec::act("save-file", |state, engine, Typed { path, base, text }| save_typed(state, engine, path, base, text));
 
 /// Shows a file in the panel Source.
 pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file| {

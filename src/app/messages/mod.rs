@@ -9,7 +9,7 @@ use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
 use crate::app::actions::compare::tree::{on_second_tree, on_second_tree_found};
 use crate::app::actions::compare::write::on_version_written;
-use crate::app::actions::edits::on_written;
+use crate::app::actions::edits::{on_typed_written, on_written};
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
 use crate::app::actions::files::on_tree_found;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
@@ -67,6 +67,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
         Message::Traced(number, traced) => on_traced(state, number, *traced),
         Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
+        Message::TypedWritten(path, typed, written) => on_typed_written(state, path, typed, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),

@@ -63,6 +63,14 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     let factor = number(&a2["now"]) / number(&a2["before"]);
     assert!((factor - 4.0).abs() < 1e-3, "{a2}");
 
+    // A value over the model is another mode; the values are still those of the picture.
+    let expression = json!({ "expression.at": format!("{NDF}:{}:a2", place + 1), "mode": "expression" });
+    viewer.running.done(json!({ "command": "set", "values": expression }));
+    let watched = viewer.running.done(ask(json!({})));
+    assert_eq!((&watched["mode"], &watched["proof"]), (&"final".into(), &edited["proof"]), "{watched}");
+    assert_eq!(watched["changed"], edited["changed"]);
+    viewer.running.done(json!({ "command": "set", "values": { "expression.at": "", "mode": "final" } }));
+
     // What does not compile leaves the values.
     viewer.tree.write(NDF, &edit.replace("4.0 * alpha", "4.0 * alfa"));
     viewer.running.reload(false);

@@ -2,9 +2,11 @@
 
 use egui::{ScrollArea, Ui, vec2};
 
+use super::colors::ROW;
+use super::edit::Editor;
 use super::find::Find;
 use super::model::CodeModel;
-use super::row::{Look, ROW, show_row};
+use super::row::{Look, show_row};
 use super::scroll::Scroll;
 use crate::app::commands::Commands;
 use crate::app::state::State;
@@ -15,14 +17,13 @@ pub(super) fn show(
     ui: &mut Ui,
     state: &State,
     model: &CodeModel,
-    find: &Find,
-    scroll: &mut Scroll,
+    (find, editor, scroll): (&Find, &mut Editor, &mut Scroll),
     commands: &mut Commands,
 ) {
-    let Some(path) = model.path() else { return };
+    let Some((path, text)) = model.path().zip(model.text()) else { return };
     let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&small_mono_font(), '0'));
     let look = Look::new(letter, model.lines.len());
-    let width = look.gutter + letter * model.longest as f32 + 40.0;
+    let width = look.width(model.longest);
     let mut area = ScrollArea::both().id_salt("code").auto_shrink(false);
     let has_values = model.lines.iter().any(|line| !line.row.notes.is_empty());
     if scroll.is_news(path.as_str(), has_values) {
@@ -39,7 +40,10 @@ pub(super) fn show(
         ui.set_min_width(width.max(ui.available_width()));
         scroll.first = range.start;
         for shown in &model.shown[range] {
-            show_row(ui, (state, path), model, shown, (&look, find), commands);
+            let begins = show_row(ui, (state, path), model, shown, (&look, find), commands);
+            if let Some(line) = begins.filter(|_| state.has_folder()) {
+                editor.begin(path, text, line);
+            }
         }
     });
     ui.spacing_mut().item_spacing = spacing;

@@ -4,24 +4,26 @@ use std::path::PathBuf;
 
 use egui::{ComboBox, RichText, ScrollArea, Ui};
 
+use super::edit::Editor;
 use super::model::CodeModel;
 use super::scroll::Scroll;
 use crate::app::command::file::EDIT;
 use crate::app::command::scene::UNPIN;
-use crate::app::command::source::{CHOOSE_TRACE, SHOW_FILE};
+use crate::app::command::source::{CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
 use crate::app::commands::Commands;
 use crate::app::editor::Place;
 use crate::app::state::State;
+use crate::app::state::shaders::edits::NO_FOLDER;
 use crate::app::state::trace::choice::{Choice, calls, most_times};
 use crate::app::state::trace::{PixelTrace, Progress};
 use crate::app::widgets::plural;
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, small_mono};
+use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, icon, small_mono};
 use crate::shader::trace::Trace;
 use crate::shader::{ShaderSet, TreePath};
 
 /// Width of the list of files, points.
-const FILES: f32 = 190.0;
+const FILES: f32 = 176.0;
 /// Height of the list of files, points.
 const MENU: f32 = 380.0;
 
@@ -29,9 +31,8 @@ const MENU: f32 = 380.0;
 pub(super) fn show(
     ui: &mut Ui,
     state: &State,
-    shaders: &ShaderSet,
-    model: &CodeModel,
-    scroll: &mut Scroll,
+    (shaders, model): (&ShaderSet, &CodeModel),
+    (editor, scroll): (&mut Editor, &mut Scroll),
     commands: &mut Commands,
 ) {
     let newest = state.traces.newest();
@@ -44,6 +45,7 @@ pub(super) fn show(
         if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
             choices(ui, &state.traces.choice, trace, fragment, commands);
         }
+        edit(ui, state, model, (editor, scroll), commands);
         open_in_editor(ui, state, model, commands);
     });
     ui.add_space(2.0);
@@ -96,7 +98,8 @@ fn pixel(ui: &mut Ui, state: &State, commands: &mut Commands) {
         Some([x, y]) => {
             let text = small_mono(format!("{x}, {y}")).strong();
             ui.label(text).on_hover_text("The pinned pixel, from the upper left corner of the picture");
-            if ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
+            let unpin = named(ui.small_button(icon::X), "Unpin");
+            if unpin.on_hover_text("Unpin the pixel: Esc, or a click on the marker").clicked() {
                 commands.push(UNPIN.with(()));
             }
         }
@@ -143,12 +146,47 @@ fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
         return drop(ui.label(RichText::new(text).small().color(QUIET)));
     };
     let line = &model.lines[first].row;
-    let text = format!("first change: line {} of {}", line.line, plural(model.changes(), "changed line"));
+    let text = format!("first change: line {}, {} in all", line.line, model.changes());
     let hint = "Values before and after the last edit stand beside the code. Click to go to the line that differs first, in the order of execution";
     let is_bad = line.notes.iter().any(|note| note.is_bad);
     let button = egui::Button::new(RichText::new(text).small().color(if is_bad { ERROR } else { ACCENT })).frame(false);
     if ui.add(button).on_hover_text(hint).clicked() {
         scroll.to(first);
+    }
+}
+
+/// The buttons that begin to type into the file, save it and end that.
+fn edit(
+    ui: &mut Ui,
+    state: &State,
+    model: &CodeModel,
+    (editor, scroll): (&mut Editor, &Scroll),
+    commands: &mut Commands,
+) {
+    let Some((path, text)) = model.path().zip(model.text()) else { return };
+    if !editor.has(path) {
+        let button = ui.add_enabled(state.has_folder(), egui::Button::new("Edit").small());
+        let hint = "Type into the file. A double click on a line does the same";
+        if button.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
+            editor.begin(path, text, scroll.first);
+        }
+        return;
+    }
+    let is_unsaved = editor.is_unsaved(path);
+    let save = ui.add_enabled(is_unsaved, egui::Button::new("Save").small());
+    let hint = "Ctrl+S. Changes that another program has made since are kept, unless they are in the same lines";
+    if save.on_hover_text(hint).clicked() {
+        editor.save(path).into_iter().for_each(|typed| commands.push(SAVE_FILE.with(typed)));
+    }
+    let (name, hint) = match is_unsaved {
+        true => ("Revert", "Drop the changes that were not saved"),
+        false => ("Done", "Show the file without typing into it"),
+    };
+    if ui.small_button(name).on_hover_text(hint).clicked() {
+        editor.end(path);
+    }
+    if is_unsaved {
+        ui.label(RichText::new("not saved").small().color(WARNING));
     }
 }
 
@@ -158,7 +196,10 @@ fn open_in_editor(ui: &mut Ui, state: &State, model: &CodeModel, commands: &mut 
     if display.starts_with("embedded:") {
         return;
     }
-    if ui.small_button("Open in editor").on_hover_text(format!("Open {display} in your editor")).clicked() {
+    if named(ui.small_button("Open"), "Open in editor")
+        .on_hover_text(format!("Open {display} in your editor"))
+        .clicked()
+    {
         commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None }));
     }
 }
@@ -209,7 +250,7 @@ fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: us
 fn choose_call(ui: &mut Ui, choice: &mut Choice, calls: &[std::sync::Arc<str>]) {
     let all = format!("All {}", plural(calls.len(), "call"));
     let shown = choice.call.clone().unwrap_or_else(|| all.clone());
-    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(190.0).truncate();
+    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(150.0).truncate();
     let list = list.show_ui(ui, |ui| {
         ui.set_min_width(360.0);
         ui.selectable_value(&mut choice.call, None, all);

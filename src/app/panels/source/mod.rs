@@ -1,6 +1,8 @@
 //! The panel Source: a file of the shader tree with the values that its statements have at the pinned pixel, now and before the last edit.
 
 mod code;
+mod colors;
+mod edit;
 mod find;
 mod head;
 mod hover;
@@ -17,6 +19,7 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::arrangement::Panel;
 use crate::app::widgets::theme::QUIET;
+use edit::Editor;
 use find::Find;
 use model::CodeModel;
 use scroll::Scroll;
@@ -34,6 +37,7 @@ pub(super) static PANEL: PanelSpec =
 #[derive(Default)]
 struct SourceState {
     model: CodeModel,
+    editor: Editor,
     find: Find,
     scroll: Scroll,
 }
@@ -46,10 +50,15 @@ impl PanelUi for SourceState {
             ui.label(RichText::new("Compiling shaders…").small().color(QUIET));
             return;
         };
-        self.model.update(state, shaders);
-        self.find.take_keys(ui);
-        head::show(ui, state, shaders, &self.model, &mut self.scroll, commands);
-        self.find.show(ui, &self.model, &mut self.scroll);
-        code::show(ui, state, &self.model, &self.find, &mut self.scroll, commands);
+        let Self { model, editor, find, scroll } = self;
+        editor.update(state);
+        model.update(state, shaders, |path| editor.text(path));
+        find.take_keys(ui);
+        head::show(ui, state, (shaders, model), (editor, scroll), commands);
+        find.show(ui, model, scroll);
+        match model.path().is_some_and(|path| editor.has(path)) {
+            true => editor.show(ui, state, model, (find, scroll), commands),
+            false => code::show(ui, state, model, (find, editor, scroll), commands),
+        }
     }
 }

@@ -17,8 +17,8 @@ pub(super) struct CodeLine {
     /// The file that the line includes.
     pub(super) include: Option<TreePath>,
     pub(super) row: Row,
-    /// Whether there is an error or a warning about the line.
-    pub(super) severity: Option<Severity>,
+    /// The first error or warning about the line.
+    pub(super) message: Option<(Severity, String)>,
 }
 
 /// A row of the list.
@@ -56,11 +56,17 @@ impl CodeModel {
         self.inputs.as_ref().map(|inputs| &inputs.path)
     }
 
-    /// Makes the rows anew if something has changed.
-    pub(super) fn update(&mut self, state: &State, shaders: &ShaderSet) {
+    /// The text of the file.
+    pub(super) fn text(&self) -> Option<&Arc<str>> {
+        self.inputs.as_ref().map(|inputs| &inputs.text)
+    }
+
+    /// Makes the rows anew if something has changed. `typed`: the text that the user has typed into a file.
+    pub(super) fn update(&mut self, state: &State, shaders: &ShaderSet, typed: impl Fn(&TreePath) -> Option<Arc<str>>) {
         let Some((path, text)) = shown_file(state, shaders) else {
             return *self = Self::default();
         };
+        let text = typed(&path).unwrap_or(text);
         let address = |trace: Option<&Arc<PixelTrace>>| trace.map_or(0, |trace| Arc::as_ptr(trace) as usize);
         let display = state.source.display_path(&path);
         let diagnostics = state.session.diagnostics.iter().filter(|found| found.file == display);
@@ -129,7 +135,7 @@ fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs) -> Vec<CodeLine> {
             parts: own,
             include: include.and_then(|include| included(shaders, path, include.name)),
             row,
-            severity: None,
+            message: None,
         }
     };
     with_breaks.zip(state.traces.rows(path, text)).map(line).collect()
@@ -150,7 +156,8 @@ fn rows(lines: &mut [CodeLine], diagnostics: &[Diagnostic]) -> Vec<Shown> {
     for (index, line) in lines.iter_mut().enumerate() {
         shown.push(Shown::Line(index));
         shown.extend(about(Some(line.row.line)).map(message));
-        line.severity = about(Some(line.row.line)).map(|found| found.severity).min();
+        let first = about(Some(line.row.line)).min_by_key(|found| found.severity);
+        line.message = first.map(|found| (found.severity, found.message.replace('\n', " ")));
     }
     shown
 }

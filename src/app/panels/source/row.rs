@@ -1,8 +1,11 @@
 //! A row of the code: its number, its code in colors, and its values at the right.
 
-use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align2, Color32, CursorIcon, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use std::ops::Range;
 
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, WidgetType, pos2, vec2};
+
+use super::colors::{ROW, colored};
 use super::find::Find;
 use super::hover;
 use super::model::{CodeLine, CodeModel, Shown};
@@ -13,14 +16,11 @@ use crate::app::state::State;
 use crate::app::state::trace::rows::{Note, Reach};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{
-    ACCENT, CODE_COMMENT, CODE_DIRECTIVE, CODE_FUNCTION, CODE_KEYWORD, CODE_NUMBER, CODE_TYPE, CODE_VALUE, ERROR,
-    PANEL, QUIET, TEXT, WARNING, small_font, small_mono_font,
+    ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, PANEL, QUIET, TEXT, WARNING, small_font, small_mono_font,
 };
 use crate::shader::trace::Act;
-use crate::shader::{Highlight, Severity, TreePath};
+use crate::shader::{Severity, TreePath};
 
-/// Height of a row, in points.
-pub(super) const ROW: f32 = 17.0;
 /// Largest share of the row in sight that values cover while code lies below them.
 const MOST_VALUES: f32 = 0.6;
 /// Points between code and values, and between two values.
@@ -41,9 +41,14 @@ impl Look {
         let digits = lines.max(100).to_string().len() as f32;
         Self { letter, gutter: letter * digits + 26.0 }
     }
+
+    /// The width of a line with this many letters, and of its number.
+    pub(super) fn width(&self, letters: usize) -> f32 {
+        self.gutter + self.letter * letters as f32 + 40.0
+    }
 }
 
-/// Shows a row.
+/// Shows a row. Returns the index of its line, if a double click begins to type there.
 pub(super) fn show_row(
     ui: &mut Ui,
     of: (&State, &TreePath),
@@ -51,16 +56,18 @@ pub(super) fn show_row(
     shown: &Shown,
     (look, find): (&Look, &Find),
     commands: &mut Commands,
-) {
+) -> Option<usize> {
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
     match shown {
         Shown::Line(index) => {
-            if let Some(line) = model.lines.get(*index) {
-                show_line(ui, of, line, rect, (look, find), commands);
-            }
+            let line = model.lines.get(*index)?;
+            show_line(ui, of, line, rect, (look, find), commands).then_some(*index)
         }
-        Shown::Message(severity, text) => message(ui, rect, *severity, text, look),
+        Shown::Message(severity, text) => {
+            message(ui, rect, *severity, text, look);
+            None
+        }
     }
 }
 
@@ -80,6 +87,7 @@ fn message(ui: &mut Ui, rect: Rect, severity: Severity, text: &str, look: &Look)
     response.on_hover_text(text);
 }
 
+/// Shows a line. Returns whether it was clicked twice.
 fn show_line(
     ui: &mut Ui,
     (state, path): (&State, &TreePath),
@@ -87,22 +95,18 @@ fn show_line(
     rect: Rect,
     (look, find): (&Look, &Find),
     commands: &mut Commands,
-) {
+) -> bool {
     let (row, sight) = (&line.row, in_sight(ui, rect));
     let background = background(line);
     if let Some(color) = background {
         ui.painter().rect_filled(sight, 0.0, color);
     }
-    let response = ui.interact(sight, ui.id().with(("line", row.line)), Sense::hover());
+    let response = ui.interact(sight, ui.id().with(("line", row.line)), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("{}: {}", row.line, line.text)));
     let opacity = if row.reach == Reach::Missed { MISSED } else { 1.0 };
     let left = rect.left() + look.gutter;
-    for place in find.places(&line.text) {
-        let x = |byte: usize| left + look.letter * line.text[..byte].chars().count() as f32;
-        let found = Rect::from_x_y_ranges(x(place.start)..=x(place.end), rect.y_range());
-        ui.painter().rect_filled(found, 2.0, ACCENT.color().gamma_multiply(0.3));
-    }
-    let galley = ui.painter().layout_job(code(line, opacity));
+    ui.painter().add(found(line, find, (left, rect), look));
+    let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity));
     let code_end = left + galley.size().x;
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
     gutter(ui, line, sight, background, look);
@@ -110,11 +114,54 @@ fn show_line(
         include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);
     }
     values(ui, (state, path), line, (sight, code_end, background), commands);
+    response.double_clicked()
+}
+
+/// What is behind the places of a line that the search has found. `left`: where its code begins.
+fn found(line: &CodeLine, find: &Find, (left, rect): (f32, Rect), look: &Look) -> Shape {
+    let x = |byte: usize| left + look.letter * line.text[..byte].chars().count() as f32;
+    let place = |place: Range<usize>| {
+        let rect = Rect::from_x_y_ranges(x(place.start)..=x(place.end), rect.y_range());
+        Shape::rect_filled(rect, 2.0, ACCENT.color().gamma_multiply(0.3))
+    };
+    Shape::Vec(find.places(&line.text).into_iter().map(place).collect())
+}
+
+/// Shows what stands beside a line that is typed: its number, and its values or the message about it. `left`: where its code begins.
+/// Returns what is behind it.
+pub(super) fn beside(
+    ui: &mut Ui,
+    of: (&State, &TreePath),
+    line: &CodeLine,
+    (sight, left): (Rect, f32),
+    (look, find): (&Look, &Find),
+    commands: &mut Commands,
+) -> Shape {
+    let background = background(line);
+    let end = left + look.letter * line.text.chars().count() as f32;
+    gutter(ui, line, sight, background, look);
+    match &line.message {
+        Some((severity, text)) => {
+            let color = if *severity == Severity::Error { ERROR } else { WARNING }.color();
+            let mut job = LayoutJob::simple_singleline(text.clone(), small_font(), color);
+            job.wrap =
+                TextWrapping::truncate_at_width((sight.right() - end - 2.0 * GAP).max(MOST_VALUES * sight.width()));
+            let galley = ui.painter().layout_job(job);
+            let at = pos2(sight.right() - 8.0 - galley.size().x, sight.center().y - galley.size().y / 2.0);
+            if at.x < end + GAP {
+                cover(ui, sight.with_min_x(at.x - GAP), background);
+            }
+            ui.painter().galley(at, galley, color);
+        }
+        None => values(ui, of, line, (sight, end, background), commands),
+    }
+    let behind = background.map_or(Shape::Noop, |color| Shape::rect_filled(sight, 0.0, color));
+    Shape::Vec(vec![behind, found(line, find, (left, sight), look)])
 }
 
 /// The color behind a line.
 fn background(line: &CodeLine) -> Option<Color32> {
-    match line.severity {
+    match line.message.as_ref().map(|(severity, _)| *severity) {
         Some(Severity::Error) => Some(ERROR.color().gamma_multiply(0.12)),
         Some(Severity::Warning) => Some(WARNING.color().gamma_multiply(0.1)),
         None if line.row.is_first_change => Some(ACCENT.color().gamma_multiply(0.13)),
@@ -131,11 +178,12 @@ fn gutter(ui: &Ui, line: &CodeLine, sight: Rect, background: Option<Color32>, lo
     let is_changed = line.row.notes.iter().any(|note| note.before.is_some());
     let is_bad = line.row.notes.iter().any(|note| note.is_bad);
     let mark = pos2(sight.left() + 6.0, sight.center().y);
-    let color = if is_bad || line.severity == Some(Severity::Error) { ERROR } else { ACCENT }.color();
+    let is_wrong = matches!(line.message, Some((Severity::Error, _)));
+    let color = if is_bad || is_wrong { ERROR } else { ACCENT }.color();
     if line.row.is_first_change {
         let points = vec![mark + vec2(-3.0, -4.0), mark + vec2(4.0, 0.0), mark + vec2(-3.0, 4.0)];
         painter.add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
-    } else if is_changed || is_bad || line.severity.is_some() {
+    } else if is_changed || is_bad || line.message.is_some() {
         painter.circle_filled(mark, 2.5, color);
     }
     let number = pos2(sight.left() + look.gutter - 14.0, sight.center().y);
@@ -148,38 +196,6 @@ fn gutter(ui: &Ui, line: &CodeLine, sight: Rect, background: Option<Color32>, lo
         let bar = Rect::from_x_y_ranges(x..=x + 2.0, sight.top()..=sight.bottom());
         painter.rect_filled(bar, 0.0, CODE_VALUE.color().gamma_multiply(0.55));
     }
-}
-
-/// The code in colors.
-fn code(line: &CodeLine, opacity: f32) -> LayoutJob {
-    let mut job = LayoutJob::default();
-    let mut add = |text: &str, color: Color32| {
-        let format =
-            TextFormat { font_id: small_mono_font(), color: color.gamma_multiply(opacity), ..TextFormat::default() };
-        job.append(text, 0.0, format);
-    };
-    let mut at = 0;
-    for (bytes, highlight) in &line.parts {
-        add(&line.text[at..bytes.start], TEXT.color());
-        add(&line.text[bytes.clone()], color(*highlight));
-        at = bytes.end;
-    }
-    add(&line.text[at..], TEXT.color());
-    job.wrap.max_width = f32::INFINITY;
-    job
-}
-
-fn color(highlight: Highlight) -> Color32 {
-    match highlight {
-        Highlight::Keyword => CODE_KEYWORD,
-        Highlight::Type => CODE_TYPE,
-        Highlight::Function => CODE_FUNCTION,
-        Highlight::Number | Highlight::Constant => CODE_NUMBER,
-        Highlight::Text => ACCENT,
-        Highlight::Directive | Highlight::Annotation => CODE_DIRECTIVE,
-        Highlight::Comment => CODE_COMMENT,
-    }
-    .color()
 }
 
 fn include_link(ui: &mut Ui, line: u32, include: &TreePath, rect: Rect, commands: &mut Commands) {

@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::SourceState;
-use crate::app::command::source::{CHOOSE_TRACE, SHOW_FILE};
+use crate::app::command::source::{CHOOSE_TRACE, SAVE_FILE, SHOW_FILE, Typed};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -18,6 +18,7 @@ use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::readings::Readings;
 use crate::app::state::State;
 use crate::app::state::trace::choice::Choice;
+use crate::app::state::trace::saved::WrittenText;
 use crate::app::state::trace::subject::Subject;
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
@@ -177,4 +178,39 @@ fn a_call_is_chosen_where_there_are_more() {
     harness.run_steps(2);
     let chosen = Choice { call: Some("main > f [2]".to_owned()), ..Choice::default() };
     assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
+}
+
+#[test]
+fn a_file_is_typed_and_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    crate::shader::embedded::write_to(&folder.path().join("tree"), None).unwrap();
+    let mut harness = window(TEXT, events(2.0), &[2, 3]);
+    harness.state_mut().state.source = Source::disk(folder.path().join("tree"));
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    let field = harness.get_by_label("Text of the file");
+    assert_eq!(field.accesskit_node().value().unwrap(), TEXT);
+    field.type_text("// new");
+    harness.run_steps(1);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    harness.get_by_label("not saved");
+    // The values go with their lines.
+    harness.get_by_label("a = 2");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(2);
+    let (path, base): (TreePath, Arc<str>) = ("a.glsl".into(), TEXT.into());
+    let text: Arc<str> = format!("// new\n{TEXT}").into();
+    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { path: path.clone(), base, text: text.clone() })]);
+    // Another program has added a line, which the merged text has.
+    let merged: Arc<str> = format!("{text}// theirs\n").into();
+    let written = WrittenText { path, typed: text, text: Some(merged.clone()) };
+    harness.state_mut().state.traces.written = Some(written);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("not saved").is_none());
+    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), *merged);
+    harness.get_by_role_and_label(Role::Button, "Done").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Text of the file").is_none());
 }

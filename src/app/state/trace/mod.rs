@@ -3,7 +3,7 @@
 
 pub(in crate::app) mod choice;
 pub(in crate::app) mod rows;
-mod saved;
+pub(in crate::app) mod saved;
 pub(in crate::app) mod subject;
 
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::shader::trace::Trace;
 use crate::shader::{ShaderSet, TreePath};
 use choice::Choice;
 use rows::{Row, Side, Sources, rows};
-use saved::SavedText;
+use saved::{SavedText, WrittenText};
 use subject::Subject;
 
 /// Frames within which the panel comes into sight after it was asked for.
@@ -74,6 +74,8 @@ pub(in crate::app) struct Traces {
     pub(in crate::app) progress: Progress,
     /// The shown file as it was saved, while it does not compile.
     pub(in crate::app) saved: SavedText,
+    /// The text that was typed and written last.
+    pub(in crate::app) written: Option<WrittenText>,
     /// What was asked for last, and the number of that request.
     asked: Option<Subject>,
     number: u64,

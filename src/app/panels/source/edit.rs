@@ -1,0 +1,203 @@
+//! The file as the user types it: text in colors, with the values beside it. Ctrl+S saves it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use egui::text::{CCursor, CCursorRange, LayoutJob};
+use egui::text_edit::TextEditState;
+use egui::{
+    Event, Frame, Id, Key, Modifiers, Rect, ScrollArea, Sense, Shape, TextBuffer, TextEdit, Ui, UiBuilder, pos2, vec2,
+};
+
+use super::colors::{ROW, colored};
+use super::find::Find;
+use super::model::CodeModel;
+use super::row::{Look, beside};
+use super::scroll::Scroll;
+use crate::app::command::source::{SAVE_FILE, Typed};
+use crate::app::commands::Commands;
+use crate::app::state::State;
+use crate::app::widgets::spoken::named;
+use crate::app::widgets::theme::small_mono_font;
+use crate::shader::{TreePath, highlights};
+
+/// The spaces that Tab types.
+const INDENT: &str = "    ";
+
+/// A file that is typed.
+struct Typing {
+    /// The text with which the typing began, or that was saved last.
+    base: Arc<str>,
+    text: String,
+    /// The text that is being written.
+    sent: Option<Arc<str>>,
+    /// The text that the tree had last.
+    known: Arc<str>,
+}
+
+/// The files that are typed.
+#[derive(Default)]
+pub(super) struct Editor {
+    files: BTreeMap<TreePath, Typing>,
+    /// The character where the cursor goes, once the file is shown.
+    cursor: Option<usize>,
+    /// The last text in colors.
+    colored: LayoutJob,
+}
+
+impl Editor {
+    /// Begins to type into a file with this text, at the begin of a line, from 0.
+    pub(super) fn begin(&mut self, path: &TreePath, text: &Arc<str>, line: usize) {
+        self.cursor = Some(text.split_inclusive('\n').take(line).map(|line| line.chars().count()).sum());
+        let new = || Typing { base: text.clone(), text: text.to_string(), sent: None, known: text.clone() };
+        self.files.entry(path.clone()).or_insert_with(new);
+    }
+
+    /// Ends the typing. Changes that were not saved are dropped.
+    pub(super) fn end(&mut self, path: &TreePath) {
+        self.files.remove(path);
+    }
+
+    /// Whether a file is typed.
+    pub(super) fn has(&self, path: &TreePath) -> bool {
+        self.files.contains_key(path)
+    }
+
+    /// Whether a file has changes that were not saved.
+    pub(super) fn is_unsaved(&self, path: &TreePath) -> bool {
+        self.files.get(path).is_some_and(|file| *file.base != *file.text)
+    }
+
+    /// The typed text of a file.
+    pub(super) fn text(&self, path: &TreePath) -> Option<Arc<str>> {
+        self.files.get(path).map(|file| file.text.as_str().into())
+    }
+
+    /// Follows what was written, and what other programs write to files that have no changes of the user.
+    pub(super) fn update(&mut self, state: &State) {
+        let Some(shaders) = &state.session.shaders else { return };
+        if let Some(saved) = &state.traces.written
+            && let Some(file) = self.files.get_mut(&saved.path)
+            && let Some(sent) = file.sent.take_if(|sent| *sent == saved.typed)
+        {
+            match &saved.text {
+                // With the changes of other programs, unless the user has gone on.
+                Some(text) if *sent == *file.text => (file.base, file.text) = (text.clone(), text.to_string()),
+                Some(_) => file.base = sent,
+                None => {}
+            }
+        }
+        for (path, file) in &mut self.files {
+            let now = state.traces.saved.of(path).or_else(|| shaders.texts.get(path));
+            let Some(now) = now.filter(|now| **now != file.known) else { continue };
+            file.known = now.clone();
+            if *file.base == *file.text && file.sent.is_none() {
+                (file.base, file.text) = (now.clone(), now.to_string());
+            }
+        }
+    }
+
+    /// The command that saves a file; `None` while it has no changes, or is being written.
+    pub(super) fn save(&mut self, path: &TreePath) -> Option<Typed> {
+        let file = self.files.get_mut(path).filter(|file| *file.base != *file.text && file.sent.is_none())?;
+        let text: Arc<str> = file.text.as_str().into();
+        file.sent = Some(text.clone());
+        Some(Typed { path: path.clone(), base: file.base.clone(), text })
+    }
+
+    /// Shows a file that is typed.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        state: &State,
+        model: &CodeModel,
+        (find, scroll): (&Find, &mut Scroll),
+        commands: &mut Commands,
+    ) {
+        let Some(path) = model.path() else { return };
+        if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::S)) {
+            self.save(path).into_iter().for_each(|typed| commands.push(SAVE_FILE.with(typed)));
+        }
+        let Self { files, cursor, colored } = self;
+        let Some(file) = files.get_mut(path) else { return };
+        let id = Id::new(("typed", path.as_str()));
+        // The click that begins to type is no click into the field, which would lose the keys.
+        let is_clicked = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
+        if cursor.is_some() && is_clicked {
+            ui.ctx().request_repaint();
+        }
+        match cursor.take_if(|_| !is_clicked) {
+            Some(at) => set_cursor(ui, id, at),
+            None if ui.memory(|memory| memory.has_focus(id)) => take_keys(ui, id, &file.text),
+            None => {}
+        }
+        let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&small_mono_font(), '0'));
+        let look = Look::new(letter, model.lines.len());
+        let mut area = ScrollArea::both().id_salt("typed").auto_shrink(false);
+        if let Some(line) = scroll.take() {
+            area = area.vertical_scroll_offset((ROW * line as f32 - ui.available_height() / 3.0).max(0.0));
+        }
+        let room = vec2(look.width(model.longest), ROW * (model.lines.len() + 2) as f32).max(ui.available_size());
+        area.show_viewport(ui, |ui, viewport| {
+            let whole = Rect::from_min_size(ui.max_rect().min, room);
+            let left = whole.left() + look.gutter;
+            ui.allocate_rect(whole, Sense::hover());
+            let behind = ui.painter().add(Shape::Noop);
+            let field = Rect::from_min_max(pos2(left, whole.top()), whole.max);
+            let top = show_field(&mut ui.new_child(UiBuilder::new().max_rect(field)), file, id, colored);
+            scroll.first = (viewport.top() / ROW) as usize;
+            let count = (viewport.height() / ROW) as usize + 2;
+            let mut shapes = Vec::new();
+            for (index, line) in model.lines.iter().enumerate().skip(scroll.first).take(count) {
+                let y = top + ROW * index as f32;
+                let sight = Rect::from_x_y_ranges(ui.clip_rect().x_range(), y..=y + ROW);
+                shapes.push(beside(ui, (state, path), line, (sight, left), (&look, find), commands));
+            }
+            ui.painter().set(behind, Shape::Vec(shapes));
+        });
+    }
+}
+
+/// Shows the text. Returns where it begins, points from the top of the window.
+fn show_field(ui: &mut Ui, file: &mut Typing, id: Id, last: &mut LayoutJob) -> f32 {
+    let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| {
+        if last.text != text.as_str() {
+            *last = colored(text.as_str(), &highlights(text.as_str()), 1.0);
+        }
+        ui.painter().layout_job(last.clone())
+    };
+    let field = TextEdit::multiline(&mut file.text).id(id).frame(Frame::NONE).margin(0.0).lock_focus(true);
+    let output = field.desired_width(f32::INFINITY).desired_rows(1).layouter(&mut layouter).show(ui);
+    named(output.response.response, "Text of the file");
+    output.galley_pos.y
+}
+
+/// Gives the field the keys, with the cursor before a character.
+fn set_cursor(ui: &Ui, id: Id, at: usize) {
+    let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(at))));
+    state.store(ui.ctx(), id);
+    ui.memory_mut(|memory| memory.request_focus(id));
+}
+
+/// Tab types spaces, and Enter indents the next line like the last one.
+fn take_keys(ui: &Ui, id: Id, text: &str) {
+    let cursor = TextEditState::load(ui.ctx(), id).and_then(|state| state.cursor.char_range());
+    let before = cursor.map_or(0, |range| range.as_sorted_char_range().start.0);
+    let before: String = text.chars().take(before).collect();
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    let indent: String = line.chars().take_while(|c| *c == ' ' || *c == '\t').collect();
+    let deeper = if line.trim_end().ends_with('{') { INDENT } else { "" };
+    let is_indented = !indent.is_empty() || !deeper.is_empty();
+    ui.input_mut(|input| {
+        for event in &mut input.events {
+            let Event::Key { key, pressed: true, modifiers, .. } = event else { continue };
+            let typed = match key {
+                Key::Tab if !modifiers.any() => INDENT.to_owned(),
+                Key::Enter if !modifiers.any() && is_indented => format!("\n{indent}{deeper}"),
+                _ => continue,
+            };
+            *event = Event::Text(typed);
+        }
+    });
+}
