@@ -13,12 +13,17 @@ use crate::shader::Highlight;
 /// Height of a row, in points.
 pub(super) const ROW: f32 = 17.0;
 
-/// A text with the colors of its parts, with this opacity.
-pub(super) fn colored(text: &str, parts: &[(Range<usize>, Highlight)], opacity: f32) -> LayoutJob {
+/// A text with the colors of its parts, with this opacity. `line_height`: that of its lines, if it has several.
+pub(super) fn colored(
+    text: &str,
+    parts: &[(Range<usize>, Highlight)],
+    opacity: f32,
+    line_height: Option<f32>,
+) -> LayoutJob {
     let mut job = LayoutJob::default();
     job.wrap.max_width = f32::INFINITY;
     let mut add = |text: &str, color: Color32| {
-        let (font_id, line_height) = (small_mono_font(), Some(ROW));
+        let font_id = small_mono_font();
         let color = color.gamma_multiply(opacity);
         job.append(text, 0.0, TextFormat { font_id, color, line_height, ..TextFormat::default() });
     };

@@ -133,7 +133,7 @@ impl Editor {
         }
         let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&small_mono_font(), '0'));
         let look = Look::new(letter, model.lines.len());
-        let mut area = ScrollArea::both().id_salt("typed").auto_shrink(false);
+        let mut area = ScrollArea::both().id_salt("code").auto_shrink(false);
         if let Some(line) = scroll.take() {
             area = area.vertical_scroll_offset((ROW * line as f32 - ui.available_height() / 3.0).max(0.0));
         }
@@ -143,8 +143,10 @@ impl Editor {
             let left = whole.left() + look.gutter;
             ui.allocate_rect(whole, Sense::hover());
             let behind = ui.painter().add(Shape::Noop);
-            let field = Rect::from_min_max(pos2(left, whole.top()), whole.max);
-            let top = show_field(&mut ui.new_child(UiBuilder::new().max_rect(field)), file, id, colored);
+            // A line of text stands at the top of its row.
+            let above = (ROW - ui.fonts_mut(|fonts| fonts.row_height(&small_mono_font()))) / 2.0;
+            let field = Rect::from_min_max(pos2(left, whole.top() + above), whole.max);
+            let top = -above + show_field(&mut ui.new_child(UiBuilder::new().max_rect(field)), file, id, colored);
             scroll.first = (viewport.top() / ROW) as usize;
             let count = (viewport.height() / ROW) as usize + 2;
             let mut shapes = Vec::new();
@@ -162,7 +164,7 @@ impl Editor {
 fn show_field(ui: &mut Ui, file: &mut Typing, id: Id, last: &mut LayoutJob) -> f32 {
     let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| {
         if last.text != text.as_str() {
-            *last = colored(text.as_str(), &highlights(text.as_str()), 1.0);
+            *last = colored(text.as_str(), &highlights(text.as_str()), 1.0, Some(ROW));
         }
         ui.painter().layout_job(last.clone())
     };

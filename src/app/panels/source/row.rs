@@ -106,7 +106,7 @@ fn show_line(
     let opacity = if row.reach == Reach::Missed { MISSED } else { 1.0 };
     let left = rect.left() + look.gutter;
     ui.painter().add(found(line, find, (left, rect), look));
-    let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity));
+    let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity, None));
     let code_end = left + galley.size().x;
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
     gutter(ui, line, sight, background, look);

@@ -121,7 +121,7 @@ fn values_stand_beside_the_code_and_change_with_a_save() {
     for text in ["x = 1 → 2", "a = 2 → 4", "not taken", "return 2 → 4"] {
         harness.get_by_label(text);
     }
-    harness.get_by_label_contains("first change: line 2 of 3 changed lines");
+    harness.get_by_label_contains("first change: line 2, 3 in all");
     assert!(harness.state().asked.is_empty(), "the panel changes nothing by itself");
 }
 
