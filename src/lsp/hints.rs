@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use lsp_types::{InlayHint, InlayHintLabel, InlayHintTooltip, Range as Span};
-use similar::{Algorithm, DiffOp, capture_diff_slices};
 
 use super::source_text::SourceText;
 use super::traced::TracedFile;
+use crate::shader::expression::lines_before;
 use crate::shader::trace::LineOfTrace;
 
 /// The longest hint, in characters.
@@ -44,15 +44,12 @@ pub fn values_of(traced: &TracedFile, source: &SourceText, line: usize) -> Optio
 
 /// Where the lines of `old` that have not changed are in `new`, from 0.
 fn places(old: &str, new: &str) -> BTreeMap<usize, usize> {
-    let lines = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim_end().to_owned()).collect() };
-    let operations = capture_diff_slices(Algorithm::Myers, &lines(old), &lines(new));
-    let mut out = BTreeMap::new();
-    for operation in operations {
-        if let DiffOp::Equal { old_index, new_index, len } = operation {
-            out.extend((0..len).map(|at| (old_index + at, new_index + at)));
-        }
-    }
-    out
+    let (old_lines, new_lines): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
+    let same = |(now, before): (usize, Option<u32>)| {
+        let before = (before? as usize).checked_sub(1)?;
+        (old_lines.get(before)?.trim() == new_lines.get(now)?.trim()).then_some((before, now))
+    };
+    lines_before(old, new).into_iter().enumerate().filter_map(same).collect()
 }
 
 fn short(text: &str) -> String {

@@ -41,3 +41,6 @@ mod window;
 
 pub use pixel_trace::{OpenTree, text_of};
 pub use server::{Config, serve};
+
+#[cfg(test)]
+mod tests;

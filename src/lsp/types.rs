@@ -157,8 +157,10 @@ fn of_call(
     let known = built_in(name)?;
     match known.type_name() {
         "gvec4" => Some(TypeOf::plain("vec4")),
+        // Of arrays, and of images with three dimensions; others have two.
+        "ivec" => Some(TypeOf::plain("ivec3")),
         // As its first argument.
-        of if of.starts_with("gen") || matches!(of, "vec" | "bvec" | "ivec" | "mat") => {
+        of if of.starts_with("gen") || matches!(of, "vec" | "bvec" | "mat") => {
             let inside = &tokens[first..tokens.len() - 1];
             let mut nested = 0_i32;
             let comma = inside.iter().position(|token| {

@@ -89,7 +89,7 @@ impl Scanner<'_> {
         }
         function.parameters = parameters.iter().map(|(from, to)| self.start(*from)..self.end(to - 1)).collect();
         self.out.push(function);
-        for (from, to) in parameters.into_iter().filter(|_| has_body) {
+        for (from, to) in parameters {
             self.declaration(from, to, &Place::Parameters(scope.clone()));
         }
     }

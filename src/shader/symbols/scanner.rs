@@ -6,7 +6,7 @@ use super::symbol::{Symbol, SymbolKind};
 use crate::shader::glsl::{Token, TokenKind, is_name};
 
 /// Words that can precede a type.
-const QUALIFIERS: [&str; 23] = [
+const QUALIFIERS: [&str; 25] = [
     "const",
     "in",
     "out",
@@ -30,6 +30,8 @@ const QUALIFIERS: [&str; 23] = [
     "restrict",
     "readonly",
     "writeonly",
+    "perprimitiveEXT",
+    "taskPayloadSharedEXT",
 ];
 
 /// Words that can precede a name and are no type.

@@ -45,6 +45,7 @@ fn declarations_are_found_with_kind_and_type() {
         "Constant GAIN float",
         "Constant OFFSET float",
         "Function later float",
+        "Parameter v vec3",
         "Function luminance float",
         "Parameter radiance vec3",
         "Parameter more float",

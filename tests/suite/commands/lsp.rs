@@ -8,3 +8,4 @@ mod hints;
 mod names;
 mod neovim;
 mod rename;
+mod vscode;
