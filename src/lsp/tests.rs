@@ -35,7 +35,7 @@ fn view(example: Option<Example>) -> View {
 }
 
 /// The names of a file whose declaration is not found.
-fn unknown<'a>(view: &'a View, path: &'a TreePath) -> Vec<String> {
+fn unknown(view: &View, path: &TreePath) -> Vec<String> {
     let file = &view.files[path];
     let visible = view.visible(path);
     let globals: BTreeSet<&str> = visible
@@ -63,7 +63,7 @@ fn unknown<'a>(view: &'a View, path: &'a TreePath) -> Vec<String> {
 }
 
 /// Words that mean something in their places alone: qualifiers of layouts and attributes of loops.
-const OF_PLACES: [&str; 40] = [
+const OF_PLACES: [&str; 42] = [
     "set",
     "binding",
     "scalar",
@@ -104,6 +104,8 @@ const OF_PLACES: [&str; 40] = [
     "index",
     "r8",
     "lines",
+    "perprimitiveEXT",
+    "taskPayloadSharedEXT",
 ];
 
 #[test]
