@@ -40,6 +40,10 @@ pub fn texels(bytes: &[u8], largest: u32) -> Result<(u32, u32, Texels), String> 
         None => Texels::Basis(Basis::read(bytes, header.level_count)?),
         // ASTC of less than 8 bits a channel needs the transcoder where the device does not sample it.
         Some(format) if astc_block(format).is_some() => Texels::Basis(Basis::read(bytes, header.level_count)?),
+        // So do those of floats, which Basis Universal calls UASTC HDR and ASTC HDR.
+        Some(Format::ASTC_4x4_SFLOAT_BLOCK | Format::ASTC_6x6_SFLOAT_BLOCK) => {
+            Texels::Basis(Basis::read(bytes, header.level_count)?)
+        }
         Some(format) => stored(bytes, &header, format)?,
     };
     Ok((width, height, texels))
@@ -246,6 +250,7 @@ mod tests {
 
     const NO_MODEL: u8 = 1;
     const UASTC: u8 = 166;
+    const UASTC_HDR: u8 = 167;
 
     /// The form on a device that samples `forms`, and its texels.
     fn opened_on(forms: &TexelForms, file: &[u8]) -> Result<(TexelForm, Vec<u8>), String> {
@@ -283,8 +288,8 @@ mod tests {
         assert_eq!(kept(opened(Format::R16G16B16A16_SFLOAT, &halves)), expected);
         let floats: Vec<u8> = floats.iter().flat_map(|value| value.to_le_bytes()).collect();
         assert_eq!(kept(opened(Format::R32G32B32A32_SFLOAT, &floats)), expected);
-        let refused = texels_of(Format::ASTC_4x4_SFLOAT_BLOCK);
-        assert!(refused.unwrap_err().contains("ASTC_4x4_SFLOAT_BLOCK"));
+        let refused = texels_of(Format::ASTC_5x4_SFLOAT_BLOCK);
+        assert!(refused.unwrap_err().contains("ASTC_5x4_SFLOAT_BLOCK"));
     }
 
     fn texels_of(format: Format) -> Result<(u32, u32, Texels), String> {
@@ -332,6 +337,23 @@ mod tests {
     /// UASTC mode 8 is a block of one color: its 5 bits of code, then red, green, blue and alpha.
     fn uastc([r, g, b, a]: [u8; 4]) -> [u8; 16] {
         (0x17_u128 | u128::from(r) << 5 | u128::from(g) << 13 | u128::from(b) << 21 | u128::from(a) << 29).to_le_bytes()
+    }
+
+    #[test]
+    fn blocks_of_floats_keep_what_is_above_1() {
+        // A block of one color (void extent) with half floats, as the specification of ASTC has it: 13 ones of the code, then the extent.
+        let color = [4.0, 0.5, 65504.0, 1.0].map(f16::from_f32);
+        let block: Vec<u8> =
+            [0xfc, 0xff].into_iter().chain([0xff; 6]).chain(color.iter().flat_map(|half| half.to_le_bytes())).collect();
+        let hdr = file(Format::ASTC_4x4_SFLOAT_BLOCK.value(), 0, (4, 4), UASTC_HDR, &[&block], 16);
+        let (form, bytes) = opened_on(&TexelForms::default(), &hdr).unwrap();
+        let expected: Vec<u8> = color.iter().flat_map(|half| half.to_le_bytes()).collect();
+        assert_eq!((form, &bytes[..8 * 16]), (TexelForm::Half, &expected.repeat(16)[..]));
+        // With all levels, it stays compressed where the device samples such blocks.
+        let levels: [&[u8]; 3] = [&block, &block, &block];
+        let hdr = file(Format::ASTC_4x4_SFLOAT_BLOCK.value(), 0, (4, 4), UASTC_HDR, &levels, 16);
+        let on_bc6 = opened_on(&TexelForms::of(|form| form == TexelForm::Bc6hUnsigned), &hdr).unwrap();
+        assert_eq!(on_bc6.0, TexelForm::Bc6hUnsigned);
     }
 
     #[test]
