@@ -18,11 +18,13 @@ pub struct CheckedPicture {
     pub checks: usize,
     /// Stages that the device cannot let write to buffers.
     pub left_out: BTreeSet<String>,
+    /// Operations that are not checked, since a stage has too many.
+    pub dropped: usize,
 }
 
 impl Headless {
-    /// Draws the frames of the sequence with stages that check their assertions, and, with `undefined`, their operations: those of the model, of the passes, and of joints and morph
-    /// targets. The light of the environment is baked by stages of its own, which are not checked.
+    /// Draws the frames of the sequence with stages that check their assertions, and, with `undefined`, their operations: those of the model,
+    /// of the passes, and of joints and morph targets. The light of the environment is baked by stages of its own, which are not checked.
     ///
     /// # Errors
     /// As [`Headless::render`]; a stage cannot be checked.
@@ -60,7 +62,7 @@ impl Headless {
         }
         let with_diagnostic = |broken: Broken| (broken.clone(), checked.diagnostic(&broken));
         let broken = broken.into_iter().map(with_diagnostic).collect();
-        Ok(CheckedPicture { broken, checks: checked.check_count(), left_out })
+        Ok(CheckedPicture { broken, checks: checked.check_count(), left_out, dropped: checked.left_out() })
     }
 
     /// Draws the frames of the sequence with other modules of the same stages, which write to a buffer.
@@ -77,6 +79,8 @@ impl Headless {
                 Some(set) => set,
                 None => variant.insert(set.variant(shaders.clone(), &state.pipelines)?),
             };
+            // A later frame may draw what the first one does not.
+            set.build_aside(&state.pipelines)?;
             let bound = self.resources.bind_variant(set, &state)?;
             let baking = || HeadlessError::Settings("the light of the picture is being baked".to_owned());
             let frame = bound.ok_or_else(baking)?;

@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 use specula::events::{Event, emit};
 use specula::headless::Headless;
-use specula::message::{grouped, tell, warn};
+use specula::message::{grouped, tell};
 use specula::shader::Diagnostic;
 use specula::shader::checks::Broken;
 
 use super::args::Args;
 use crate::commands::common::chosen_modes::Modes;
+use crate::commands::common::unchecked::warn_of_unchecked;
 use crate::commands::common::{check_mode, check_validation, compiler};
 use crate::commands::progress::Progress;
 use crate::commands::{Failure, print_diagnostics, print_json};
@@ -46,20 +47,18 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
         modes => modes.in_shaders(&shaders, args.paths)?.into_iter().map(|mode| mode.slug.clone()).collect(),
     };
     let (mut found, mut checks, mut left_out) = (Vec::<Found>::new(), 0, BTreeSet::new());
+    let mut dropped = 0;
     for slug in &slugs {
         progress.say(&format!("checking the mode {slug}"));
         headless.settings_mut().mode.clone_from(slug);
         let picture = headless.check_operations(args.undefined)?;
         checks = checks.max(picture.checks);
         left_out.extend(picture.left_out);
+        dropped = dropped.max(picture.dropped);
         picture.broken.into_iter().for_each(|(broken, diagnostic)| add(&mut found, broken, diagnostic, slug));
     }
     drop(progress);
-    let stages: Vec<&str> = left_out.iter().map(String::as_str).collect();
-    if !stages.is_empty() {
-        let (name, stages) = (&gpu.info().name, stages.join(", "));
-        warn(format_args!("{name} cannot write buffers from these stages, which are not checked: {stages}"));
-    }
+    warn_of_unchecked(&gpu.info().name, &left_out, dropped);
     found.sort_by(|a, b| (&a.broken.file, a.broken.line).cmp(&(&b.broken.file, b.broken.line)));
     let result = tell_of(args, &found, (checks, slugs.len()));
     drop(headless);
@@ -70,7 +69,10 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
 /// Adds something that was found, or a mode to what is known.
 fn add(found: &mut Vec<Found>, broken: Broken, diagnostic: Diagnostic, mode: &str) {
     let is_same = |known: &&mut Found| {
-        (&known.broken.file, known.broken.line, known.broken.rule) == (&broken.file, broken.line, broken.rule)
+        let (a, b) = (&known.broken, &broken);
+        let is_alike = (&a.file, a.line, a.rule, &a.text) == (&b.file, b.line, b.rule, &b.text);
+        // A line may have several in one stage, and its file may be in several stages.
+        is_alike && (a.stage != b.stage || a.key.1 == b.key.1)
     };
     match found.iter_mut().find(is_same) {
         Some(known) if known.modes.last().is_some_and(|last| last == mode) => {}

@@ -6,6 +6,7 @@ pub mod frames;
 mod look;
 pub mod names;
 pub mod parse;
+pub mod unchecked;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -7,6 +7,7 @@ use specula::shader::Diagnostic;
 use specula::shader::compile::asserts::has_calls;
 
 use super::Args;
+use crate::commands::common::unchecked::warn_of_unchecked;
 use crate::commands::{Failure, print_diagnostics};
 
 /// Draws the picture again with stages that check their assertions, if there are any.
@@ -14,7 +15,12 @@ pub(super) fn check(headless: &mut Headless, args: &Args) -> Result<(), Failure>
     if !headless.shaders().texts.values().any(|text| has_calls(text)) {
         return Ok(());
     }
-    let picture = headless.check_operations(false)?;
+    // As `specula check` counts: a fragment for each pixel, and not for each sample.
+    let msaa = std::mem::replace(&mut headless.settings_mut().view.msaa, 1);
+    let picture = headless.check_operations(false);
+    headless.settings_mut().view.msaa = msaa;
+    let picture = picture?;
+    warn_of_unchecked("the device", &picture.left_out, picture.dropped);
     let diagnostics: Vec<Diagnostic> = picture.broken.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();
     for diagnostic in &diagnostics {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));

@@ -29,17 +29,18 @@ fn fix(view: &View, diagnostic: &Diagnostic) -> Option<CodeAction> {
         }
         _ => {
             let line = unended(help)?;
-            let bytes = view.file().source.line(line as usize - 1);
+            let index = (line as usize).checked_sub(1)?;
+            let bytes = view.file().source.line(index);
             let code = crate::shader::glsl::lines(view.file().text());
-            let end = code.get(line as usize - 1)?.trimmed().end;
+            let end = code.get(index)?.trimmed().end;
             let place = view.file().source.place(bytes.start + end);
             (format!("End line {line} with `;`"), TextEdit::new(Span::new(place, place), ";".to_owned()))
         }
     };
     // The text may have changed since it was compiled.
     let is_same = diagnostic.line.zip(diagnostic.excerpt.as_deref()).is_some_and(|(line, excerpt)| {
-        let now = view.file().source.line(line as usize - 1);
-        view.file().text().get(now).is_some_and(|now| now.trim_end() == excerpt.trim_end())
+        let now = (line as usize).checked_sub(1).map(|index| view.file().source.line(index));
+        now.and_then(|now| view.file().text().get(now)).is_some_and(|now| now.trim_end() == excerpt.trim_end())
     });
     is_same.then(|| CodeAction {
         title,

@@ -36,13 +36,14 @@ struct CheckedStage {
     stage: Arc<Stage>,
     words: Vec<u32>,
     checks: Vec<Check>,
+    left_out: usize,
 }
 
 /// An operation that broke a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
-    /// Its stage, an index into the stages, and the number of its check there.
-    key: (usize, usize),
+    /// Its stage, an index into the stages of the picture, and the number of its check there.
+    pub key: (usize, usize),
     /// The file of the tree.
     pub file: String,
     /// From 1.
@@ -79,7 +80,7 @@ impl<'a> CheckedStages<'a> {
         let compiled = stages.map(|stage| {
             let (_, words) =
                 compile_listening(shaders, &stage.path, (compiler, source), (&text(stage.kind), EXTENSIONS))?;
-            Ok(CheckedStage { stage: stage.clone(), words, checks: Vec::new() })
+            Ok(CheckedStage { stage: stage.clone(), words, checks: Vec::new(), left_out: 0 })
         });
         let stages = compiled.collect::<Result<Vec<_>, String>>()?;
         Ok(Self { shaders, source, stages, address, undefined })
@@ -131,10 +132,15 @@ impl<'a> CheckedStages<'a> {
             let values = [part as u32, (part >> 32) as u32, used];
             let changes: Vec<(u32, u32)> = STANDING_FOR.into_iter().zip(values).collect();
             let words = with_constants(&checked.words, &changes).ok_or_else(lacks)?;
-            stage.checks = checked.checks;
+            (stage.checks, stage.left_out) = (checked.checks, checked.left_out);
             shaders.stages.insert(path.to_string(), Arc::new(stage.stage.with_module(words)));
         }
         Ok(Arc::new(shaders))
+    }
+
+    /// How many operations are not checked, since a stage has more than there are bits.
+    pub fn left_out(&self) -> usize {
+        self.stages.iter().map(|stage| stage.left_out).sum()
     }
 
     /// How many operations are checked.
@@ -202,6 +208,8 @@ impl Broken {
         let (x, y) = self.first;
         let (unit, first) = match self.kind {
             StageKind::Fragment => ("fragment", format!("at the pixel {x},{y}")),
+            // Larger numbers have no room.
+            StageKind::Compute if x == 0xffff => ("invocation", format!("of the invocation {x},{y} or a later one")),
             StageKind::Compute => ("invocation", format!("of the invocation {x},{y}")),
             StageKind::Vertex => ("invocation", format!("of the vertex {x}")),
             _ => ("invocation", format!("of the primitive {x}")),
@@ -235,7 +243,7 @@ fn text(kind: StageKind) -> String {
     let (place, counts) = match kind {
         // The pixels around a triangle run along for derivatives.
         StageKind::Fragment => ("(uint(gl_FragCoord.y) << 16 | uint(gl_FragCoord.x))", "!gl_HelperInvocation"),
-        StageKind::Compute => ("(gl_GlobalInvocationID.y << 16 | (gl_GlobalInvocationID.x & 0xffffu))", "true"),
+        StageKind::Compute => ("(gl_GlobalInvocationID.y << 16 | min(gl_GlobalInvocationID.x, 0xffffu))", "true"),
         StageKind::Vertex => ("uint(gl_VertexIndex)", "true"),
         StageKind::TessellationControl | StageKind::TessellationEvaluation => ("uint(gl_PrimitiveID)", "true"),
         StageKind::Geometry => ("uint(gl_PrimitiveIDIn)", "true"),

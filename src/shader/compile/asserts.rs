@@ -74,11 +74,16 @@ fn texts_of<'a, 'b>(code: &'b [Token<'a>]) -> Vec<&'b Token<'a>> {
 /// The text of a stage that has the functions, if a log says that they lack. No line moves.
 pub(super) fn with_functions(text: &str, log: &str) -> Option<String> {
     let lacks = |name: &str| log.contains(&format!("'{name}' : no matching overloaded function found"));
-    NAMES.into_iter().find(|name| lacks(name))?;
+    let lacking = NAMES.map(lacks);
+    if lacking == [false; 2] {
+        return None;
+    }
     let prints = PRINTED.iter().map(|kind| format!("void print(const in int name, const in {kind} value) {{}}"));
     let asserts = ["const in bool condition", "const in bool condition, const in int message"];
     let asserts = asserts.iter().map(|parameters| format!("void assert({parameters}) {{}}"));
-    let functions: String = asserts.chain(prints).collect::<Vec<_>>().join(" ");
+    // A tree may have one of them of its own.
+    let asserts = asserts.filter(|_| lacking[0]);
+    let functions: String = asserts.chain(prints.filter(|_| lacking[1])).collect::<Vec<_>>().join(" ");
     let start = after_extensions(text);
     let next = text[..start].lines().count() + 1;
     Some(format!("{}{functions}\n#line {next}\n{}", &text[..start], &text[start..]))

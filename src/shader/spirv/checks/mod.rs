@@ -56,6 +56,8 @@ pub struct Checked {
     pub words: Vec<u32>,
     /// Its checks. Both modules of a stage have the same ones.
     pub checks: Vec<Check>,
+    /// How many there are beyond the bits of the array.
+    pub left_out: usize,
 }
 
 /// Instruments a module with line information: its `assert()` and `print()`, and, with `undefined`, all operations. With `chosen`, these
@@ -81,12 +83,12 @@ pub fn check(words: &[u32], names: &Names<'_>, undefined: bool, chosen: Option<&
             }
         }
     }
-    let checks = checker.checks;
+    let Checker { checks, left_out, .. } = checker;
     module.functions = functions;
     // The passes that follow expect no lines.
     module.globals.retain(|i| !is_line(*i));
     module.debug.retain(|i| matches!(i.op, Op::Name | Op::MemberName));
-    Some(Checked { words: module.write(), checks })
+    Some(Checked { words: module.write(), checks, left_out })
 }
 
 /// An author's own function of the name may return something.
@@ -123,6 +125,7 @@ struct Checker<'a> {
     /// What waits for the select that reads its result.
     waiting: Vec<(Id, Suspect, usize)>,
     checks: Vec<Check>,
+    left_out: usize,
 }
 
 impl<'a> Checker<'a> {
@@ -138,8 +141,22 @@ impl<'a> Checker<'a> {
         let void = module.declare(Op::TypeVoid, &[]);
         let uint = module.declare(Op::TypeInt, &[32, 0]);
         let uvec4 = module.declare(Op::TypeVector, &[uint, 4]);
-        let (selected, waiting, checks) = (Selected::default(), Vec::new(), Vec::new());
-        Self { module, to, extended, undefined, asserts, prints, void, uint, uvec4, selected, waiting, checks }
+        let (selected, waiting, checks, left_out) = (Selected::default(), Vec::new(), Vec::new(), 0);
+        Self {
+            module,
+            to,
+            extended,
+            undefined,
+            asserts,
+            prints,
+            void,
+            uint,
+            uvec4,
+            selected,
+            waiting,
+            checks,
+            left_out,
+        }
     }
 
     /// The instructions of a block with checks between them, without lines.
@@ -168,6 +185,7 @@ impl<'a> Checker<'a> {
     /// Adds a check of an instruction, and reports now or where its result is selected.
     fn add(&mut self, out: &mut Vec<Instruction>, i: Instruction, suspect: Suspect, (file, line): (String, u32)) {
         if self.checks.len() == 32 * MASK_WORDS {
+            self.left_out += 1;
             return;
         }
         let shown = self.shown(&suspect);

@@ -73,7 +73,11 @@ impl Checker<'_> {
         let (broken, takes) = match (wide, narrow) {
             (a, b) if a == b => (suspect.broken, takes),
             // One condition for all components.
-            (_, 1) => (self.any(out, suspect.broken), takes),
+            (count, 1) => {
+                let bools = self.module.type_of(suspect.broken);
+                let all = self.module.emit(out, Op::CompositeConstruct, bools, &vec![takes; count as usize]);
+                (suspect.broken, all)
+            }
             _ => {
                 let takes = self.any(out, takes);
                 (self.any(out, suspect.broken), takes)

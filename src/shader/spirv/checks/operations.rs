@@ -97,7 +97,13 @@ impl Checker<'_> {
             }
         }
         let end = self.module.emit(out, Op::IAdd, kind, &unsigned);
-        let broken = self.compare(out, Op::UGreaterThan, end, 32);
+        // The sum may wrap around.
+        let [mut broken, first, length] =
+            [end, unsigned[0], unsigned[1]].map(|value| self.compare(out, Op::UGreaterThan, value, 32));
+        let kind = self.module.type_of(broken);
+        for more in [first, length] {
+            broken = self.module.emit(out, Op::LogicalOr, kind, &[broken, more]);
+        }
         vec![Suspect::new(Rule::Bits, broken, &[offset, count])]
     }
 
