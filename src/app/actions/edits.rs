@@ -109,7 +109,9 @@ pub(in crate::app) fn save_typed(
     base: Arc<str>,
     text: Arc<str>,
 ) {
-    let Some(root) = state.source.root().map(Path::to_owned) else { return state.say(NO_FOLDER) };
+    let Some(root) = state.source.root().map(Path::to_owned) else {
+        return on_typed_written(state, path, text, Err(NO_FOLDER.to_owned()));
+    };
     engine.threads.wait(move || {
         let written = write_back::write_text(&root, &path, &base, &text);
         Some(Message::TypedWritten(path, text, written))
