@@ -15,6 +15,7 @@ use super::find::Find;
 use super::model::CodeModel;
 use super::row::{Look, beside};
 use super::scroll::Scroll;
+use crate::app::closing::Unsaved;
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::commands::Commands;
 use crate::app::state::State;
@@ -86,6 +87,12 @@ impl Editor {
     /// Whether a file has changes that were not saved.
     pub(super) fn is_unsaved(&self, path: &TreePath) -> bool {
         self.typing(path).is_some_and(|file| *file.base != *file.text)
+    }
+
+    /// The texts that were not saved, those of other trees, too.
+    pub(super) fn unsaved(&self) -> Unsaved {
+        let unsaved = self.files.iter().filter(|(_, typing)| *typing.base != *typing.text);
+        unsaved.map(|(file, typing)| (file.clone(), typing.text.clone())).collect()
     }
 
     /// The typed text of a file.

@@ -235,6 +235,9 @@ fn typed_text_stays_in_its_tree() {
     harness.get_by_label("Text of the file").type_text("// of a");
     harness.run_steps(2);
     harness.get_by_label("not saved");
+    let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
+    let unsaved = [(file, format!("// of a{TEXT}"))].into();
+    assert_eq!(harness.state().panel.unsaved(), unsaved);
     // Another tree is opened. Until its shaders are in use, the file in sight is of neither.
     harness.state_mut().state.source = Source::disk(b.to_owned());
     harness.run_steps(2);
@@ -250,6 +253,7 @@ fn typed_text_stays_in_its_tree() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
     harness.run_steps(2);
     assert!(harness.state().asked.is_empty(), "nothing was typed in this tree");
+    assert_eq!(harness.state().panel.unsaved(), unsaved, "closing would still lose it");
     // The first tree has its text still, and saves it there. After a failure, it can be saved again.
     open(&mut harness, a);
     harness.run_steps(2);
