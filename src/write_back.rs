@@ -66,12 +66,22 @@ pub fn write(root: &Path, edits: &[Edit]) -> Result<Written, String> {
     Ok(Written(writes))
 }
 
-/// Writes a text that was typed into a file below `root`. `base` is the text with which the typing began. If another program has changed the
+/// A file of a tree on disk.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TreeFile {
+    /// The folder of the tree.
+    pub root: PathBuf,
+    /// The file below it.
+    pub path: TreePath,
+}
+
+/// Writes a text that was typed into a file. `base` is the text with which the typing began. If another program has changed the
 /// file since, its changes are merged, unless both have changed the same lines. Returns the text that the file then has.
 ///
 /// # Errors
 /// A message, if the same lines were changed, or the file cannot be read or written. The file then stays as it is.
-pub fn write_text(root: &Path, path: &TreePath, base: &str, text: &str) -> Result<(String, Written), String> {
+pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Written), String> {
+    let TreeFile { root, path } = file;
     let file = root.join(path.as_str());
     if leads_out(root, path.as_str()) {
         return Err(format!("cannot write {}: {}", file.display(), SourceError::Outside));
@@ -103,21 +113,22 @@ mod tests {
         let read = || std::fs::read_to_string(&file).unwrap();
         let base = "one\ntwo\nthree\nfour\n";
         std::fs::write(&file, base).unwrap();
-        let path = TreePath::from("a.glsl");
-        let (text, written) = write_text(tree.path(), &path, base, "one\ntwo!\nthree\nfour\n").unwrap();
+        let of_tree = TreeFile { root: tree.path().to_owned(), path: "a.glsl".into() };
+        let missing = TreeFile { path: "b.glsl".into(), ..of_tree.clone() };
+        let (text, written) = write_text(&of_tree, base, "one\ntwo!\nthree\nfour\n").unwrap();
         assert_eq!((text.as_str(), read().as_str()), ("one\ntwo!\nthree\nfour\n", "one\ntwo!\nthree\nfour\n"));
         written.take_back(false).unwrap();
         assert_eq!(read(), base);
         // Another program has changed the end.
         std::fs::write(&file, "one\ntwo\nthree\nfour\nfive\n").unwrap();
-        write_text(tree.path(), &path, base, "zero\none\ntwo\nthree\nfour\n").unwrap();
+        write_text(&of_tree, base, "zero\none\ntwo\nthree\nfour\n").unwrap();
         assert_eq!(read(), "zero\none\ntwo\nthree\nfour\nfive\n");
         // Both have changed a line.
         std::fs::write(&file, "one\n2\nthree\nfour\n").unwrap();
-        let error = write_text(tree.path(), &path, base, "one\nTWO\nthree\nfour\n").unwrap_err();
+        let error = write_text(&of_tree, base, "one\nTWO\nthree\nfour\n").unwrap_err();
         assert!(error.contains("changed by another program in the same place, at line 2"), "{error}");
         assert_eq!(read(), "one\n2\nthree\nfour\n");
-        assert!(write_text(tree.path(), &"b.glsl".into(), "", "").unwrap_err().contains("cannot read"));
+        assert!(write_text(&missing, "", "").unwrap_err().contains("cannot read"));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! them, in `actions`, `frames` and `messages`, carry out what commands and threads ask for. Only this file owns all of them.
 
 mod actions;
+mod closing;
 mod command;
 mod commands;
 mod comparison_labels;
@@ -51,6 +52,7 @@ use crate::pipeline::DiskPipelines;
 use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
+use closing::Closing;
 use engine::Engine;
 use frames::background::Next;
 use frames::draw::Drawing;
@@ -133,6 +135,7 @@ struct Open {
     title: String,
     /// Files that were dropped together, which come one by one.
     dropped: Vec<PathBuf>,
+    closing: Closing,
 }
 
 impl App {
@@ -163,7 +166,8 @@ impl App {
         window.set_visible(true);
         let (state, engine) = start(&gpu, &layouts, options, early, &self.sender)?;
         let (drawing, title, dropped) = (Drawing::new(screen, interface), String::new(), Vec::new());
-        Ok(Open { state, engine, drawing, gpu, window, title, dropped })
+        let closing = Closing::default();
+        Ok(Open { state, engine, drawing, gpu, window, title, dropped, closing })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
@@ -292,7 +296,7 @@ impl App {
             open.window.request_redraw();
         }
         match event {
-            WindowEvent::CloseRequested => return self.end(event_loop, Ok(())),
+            WindowEvent::CloseRequested => open.state.quits_by_hand = true,
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
                 open.drawing.screen.resized();
                 open.window.request_redraw();
@@ -328,6 +332,12 @@ impl App {
                     open.window.request_redraw();
                 }
             }
+        }
+        if std::mem::take(&mut open.state.quits_by_hand) {
+            let unsaved = open.drawing.interface.panels.unsaved();
+            open.state.quit |= open.closing.may_close(&mut open.state, unsaved);
+            open.drawing.interface.outdate();
+            open.window.request_redraw();
         }
         if open.state.quit {
             self.end(event_loop, Ok(()));

@@ -23,7 +23,7 @@ use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::trace::Trace;
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
-use crate::write_back::Written;
+use crate::write_back::{TreeFile, Written};
 
 /// The desktop shows no file dialog: no XDG portal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub(crate) enum Message {
     /// A summary of the edits that were written to the shader files with the files, or the reason why none were.
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
-    TypedWritten(TreePath, Arc<str>, Result<(String, Written), String>),
+    TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.

@@ -13,9 +13,9 @@ use crate::app::state::trace::saved::WrittenText;
 use crate::shader::rewrite::{Edit, applied};
 use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
-use crate::shader::{Change, Expression, ShaderSet, TreePath};
+use crate::shader::{Change, Expression, ShaderSet};
 use crate::threads::Message;
-use crate::write_back::{self, Written};
+use crate::write_back::{self, TreeFile, Written};
 
 /// Tells the worker of another watched expression. It reads the settings.
 pub(in crate::app) fn watch_expression(state: &mut State, engine: &mut Engine) {
@@ -105,24 +105,41 @@ pub(in crate::app) fn write_edits(state: &mut State, engine: &mut Engine, edits:
 pub(in crate::app) fn save_typed(
     state: &mut State,
     engine: &mut Engine,
-    path: TreePath,
+    file: TreeFile,
     base: Arc<str>,
     text: Arc<str>,
 ) {
-    let Some(root) = state.source.root().map(Path::to_owned) else { return state.say(NO_FOLDER) };
+    // The result of a save before, perhaps of the same text, is not that of this one.
+    state.traces.written = None;
+    if let Err(message) = check_open(state, &file) {
+        return on_typed_written(state, file, text, Err(message));
+    }
     engine.threads.wait(move || {
-        let written = write_back::write_text(&root, &path, &base, &text);
-        Some(Message::TypedWritten(path, text, written))
+        let written = write_back::write_text(&file, &base, &text);
+        Some(Message::TypedWritten(file, text, written))
     });
+}
+
+/// Refuses a file of another tree than the one that is open: a text must never be written into the file of the same name there.
+fn check_open(state: &State, file: &TreeFile) -> Result<(), String> {
+    match state.source.root() {
+        Some(root) if root == file.root => Ok(()),
+        Some(_) => {
+            let TreeFile { root, path } = file;
+            Err(format!("{path} was typed in {}, which is not open any more, so it is not saved", root.display()))
+        }
+        None => Err(NO_FOLDER.to_owned()),
+    }
 }
 
 /// Takes the result of writing a typed text.
 pub(in crate::app) fn on_typed_written(
     state: &mut State,
-    path: TreePath,
+    file: TreeFile,
     typed: Arc<str>,
     written: Result<(String, Written), String>,
 ) {
+    let path = &file.path;
     let text = match written {
         Ok((text, written)) => {
             state.history.record_files(&state.session.shared_settings(), written);
@@ -138,7 +155,7 @@ pub(in crate::app) fn on_typed_written(
             None
         }
     };
-    state.traces.written = Some(WrittenText { path, typed, text });
+    state.traces.written = Some(WrittenText { file, typed, text });
 }
 
 /// Takes the result of writing.
@@ -184,4 +201,26 @@ fn told(edits: &[Edit]) -> String {
     let changes: Vec<String> = edits.iter().map(change).collect();
     let files: BTreeSet<&str> = edits.iter().map(|edit| edit.path.as_str()).collect();
     format!("Wrote {} to {}", changes.join(", "), files.into_iter().collect::<Vec<_>>().join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::shader::Source;
+
+    #[test]
+    fn a_text_is_saved_only_into_the_tree_in_which_it_was_typed() {
+        let mut state = State::new(Settings::of_window(), Source::disk("trees/a"));
+        let file = TreeFile { root: "trees/a".into(), path: "brdf/ndf.glsl".into() };
+        assert_eq!(check_open(&state, &file), Ok(()));
+        state.source = Source::disk("trees/b");
+        let refused = check_open(&state, &file).unwrap_err();
+        assert!(refused.contains("brdf/ndf.glsl was typed in trees/a, which is not open"), "{refused}");
+        state.source = Source::embedded();
+        assert_eq!(check_open(&state, &file), Err(NO_FOLDER.to_owned()));
+        // The panel learns of the failure, so that it can save again.
+        on_typed_written(&mut state, file.clone(), "typed".into(), Err(refused));
+        assert!(state.traces.written.is_some_and(|written| written.file == file && written.text.is_none()));
+    }
 }

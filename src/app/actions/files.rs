@@ -104,6 +104,8 @@ pub(in crate::app) fn on_tree_found(
     // Versions of another tree must never be written into this one.
     forget_all_references(state, engine);
     state.edits.forget_draft();
+    // Nor is the text of a file that of the same file in another tree.
+    state.traces.saved.forget();
     watch_tree(state, engine, &source);
     engine.threads.worker.open_tree(source);
     engine.threads.worker.reloaded(edits);

@@ -38,7 +38,11 @@ use spec::{Command, Outcome};
 
 /// Carries out a command of keys, panels or the palette. The user is told if it is refused.
 pub(super) fn execute(state: &mut State, engine: &mut Engine, command: Command) {
+    let quits = state.quit;
     let outcome = command.run(state, engine);
+    if state.quit && !quits {
+        (state.quit, state.quits_by_hand) = (false, true);
+    }
     tell_when(state, engine, outcome);
     watch_files(state, engine);
 }

@@ -14,6 +14,7 @@ use crate::app::state::trace::choice::Choice;
 use crate::app::state::workspace::PanelRequest;
 use crate::message::did_you_mean;
 use crate::shader::TreePath;
+use crate::write_back::TreeFile;
 
 /// Fields of `source`.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -36,7 +37,7 @@ pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).tak
 /// A text that was typed into a file of the tree.
 #[derive(Clone, Debug)]
 pub(in crate::app) struct Typed {
-    pub(in crate::app) path: TreePath,
+    pub(in crate::app) file: TreeFile,
     /// The text with which the typing began.
     pub(in crate::app) base: Arc<str>,
     pub(in crate::app) text: Arc<str>,
@@ -44,7 +45,7 @@ pub(in crate::app) struct Typed {
 
 /// Writes a typed text into its file.
 pub(in crate::app) static SAVE_FILE: Spec<Typed> =
-    Spec::act("save-file", |state, engine, Typed { path, base, text }| save_typed(state, engine, path, base, text));
+    Spec::act("save-file", |state, engine, Typed { file, base, text }| save_typed(state, engine, file, base, text));
 
 /// Shows a file in the panel Source.
 pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file| {

@@ -67,7 +67,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
         Message::Traced(number, traced) => on_traced(state, number, *traced),
         Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
-        Message::TypedWritten(path, typed, written) => on_typed_written(state, path, typed, written),
+        Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),

@@ -110,6 +110,7 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             }
             // The worker drops requests for older sets, so those of a comparison are sent again.
             engine.threads.worker.built();
+            state.shader.root = state.source.root().map(Into::into);
             let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
             tell_expression(state, &set.shaders);

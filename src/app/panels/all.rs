@@ -7,6 +7,7 @@ use egui::{Ui, Vec2};
 
 use super::panel_ui::PanelUi;
 use super::{PANELS, baking, keys, open_gallery, overlay, parameters, status_bar, top_bar};
+use crate::app::closing::Unsaved;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -52,6 +53,11 @@ impl Panels {
             defaults: parameters::defaults::AskedDefaults::default(),
             overlay: overlay::Overlay::default(),
         }
+    }
+
+    /// The texts that were typed and not saved, also of panels that are closed.
+    pub(in crate::app) fn unsaved(&self) -> Unsaved {
+        self.docked.iter().flat_map(|(_, panel)| panel.unsaved()).collect()
     }
 
     /// Closes the list of keys or the gallery. Returns whether one was open.

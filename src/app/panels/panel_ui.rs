@@ -2,6 +2,7 @@
 
 use egui::Ui;
 
+use crate::app::closing::Unsaved;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::arrangement::Panel;
@@ -13,6 +14,11 @@ pub(in crate::app) trait PanelUi {
 
     /// Takes what the rest of the window asks panels for.
     fn on_request(&mut self, _: &PanelRequest) {}
+
+    /// The texts that were typed and not saved, which closing the window would lose.
+    fn unsaved(&self) -> Unsaved {
+        Unsaved::default()
+    }
 }
 
 /// A panel that keeps nothing between frames.

@@ -160,7 +160,10 @@ pub(super) struct State {
     /// Files that are opened and not read yet.
     pub(super) opened: Opened,
     pub(super) screenshot: bool,
+    /// Whether the window closes.
     pub(super) quit: bool,
+    /// Whether the user has asked for that. Then unsaved text may keep the window open.
+    pub(super) quits_by_hand: bool,
     /// The name of the device and its version of Vulkan.
     pub(super) device: String,
     /// Whether the driver tells statistics of its code.
@@ -217,6 +220,7 @@ impl State {
             opened: Opened::default(),
             screenshot: false,
             quit: false,
+            quits_by_hand: false,
             device: String::new(),
             tells_statistics: false,
         }

@@ -41,7 +41,7 @@ pub(super) fn show(
         scroll.first = range.start;
         for shown in &model.shown[range] {
             let begins = show_row(ui, (state, path), model, shown, (&look, find), commands);
-            if let Some(line) = begins.filter(|_| state.has_folder()) {
+            if let Some(line) = begins {
                 editor.begin(path, text, line);
             }
         }

@@ -1,6 +1,7 @@
 //! The file as the user types it: text in colors, with the values beside it. Ctrl+S saves it.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::text::{CCursor, CCursorRange, LayoutJob};
@@ -14,12 +15,14 @@ use super::find::Find;
 use super::model::CodeModel;
 use super::row::{Look, beside};
 use super::scroll::Scroll;
+use crate::app::closing::Unsaved;
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::small_mono_font;
 use crate::shader::{TreePath, highlights};
+use crate::write_back::TreeFile;
 
 /// The spaces that Tab types.
 const INDENT: &str = "    ";
@@ -38,7 +41,9 @@ struct Typing {
 /// The files that are typed.
 #[derive(Default)]
 pub(super) struct Editor {
-    files: BTreeMap<TreePath, Typing>,
+    files: BTreeMap<TreeFile, Typing>,
+    /// The folder of the open tree, if the shown files are of it and can be written.
+    root: Option<PathBuf>,
     /// The character where the cursor goes, once the file is shown.
     cursor: Option<usize>,
     /// The last text in colors.
@@ -48,36 +53,60 @@ pub(super) struct Editor {
 impl Editor {
     /// Begins to type into a file with this text, at the begin of a line, from 0.
     pub(super) fn begin(&mut self, path: &TreePath, text: &Arc<str>, line: usize) {
+        let Some(file) = self.file(path) else { return };
         self.cursor = Some(text.split_inclusive('\n').take(line).map(|line| line.chars().count()).sum());
         let new = || Typing { base: text.clone(), text: text.to_string(), sent: None, known: text.clone() };
-        self.files.entry(path.clone()).or_insert_with(new);
+        self.files.entry(file).or_insert_with(new);
+    }
+
+    /// Whether files can be typed.
+    pub(super) fn can_begin(&self) -> bool {
+        self.root.is_some()
+    }
+
+    /// A file of the open tree.
+    fn file(&self, path: &TreePath) -> Option<TreeFile> {
+        Some(TreeFile { root: self.root.clone()?, path: path.clone() })
+    }
+
+    /// A file of the open tree as it is typed.
+    fn typing(&self, path: &TreePath) -> Option<&Typing> {
+        self.files.get(&self.file(path)?)
     }
 
     /// Ends the typing. Changes that were not saved are dropped.
     pub(super) fn end(&mut self, path: &TreePath) {
-        self.files.remove(path);
+        self.file(path).and_then(|file| self.files.remove(&file));
     }
 
     /// Whether a file is typed.
     pub(super) fn has(&self, path: &TreePath) -> bool {
-        self.files.contains_key(path)
+        self.typing(path).is_some()
     }
 
     /// Whether a file has changes that were not saved.
     pub(super) fn is_unsaved(&self, path: &TreePath) -> bool {
-        self.files.get(path).is_some_and(|file| *file.base != *file.text)
+        self.typing(path).is_some_and(|file| *file.base != *file.text)
+    }
+
+    /// The texts that were not saved, those of other trees, too.
+    pub(super) fn unsaved(&self) -> Unsaved {
+        let unsaved = self.files.iter().filter(|(_, typing)| *typing.base != *typing.text);
+        unsaved.map(|(file, typing)| (file.clone(), typing.text.clone())).collect()
     }
 
     /// The typed text of a file.
     pub(super) fn text(&self, path: &TreePath) -> Option<Arc<str>> {
-        self.files.get(path).map(|file| file.text.as_str().into())
+        self.typing(path).map(|file| file.text.as_str().into())
     }
 
     /// Follows what was written, and what other programs write to files that have no changes of the user.
     pub(super) fn update(&mut self, state: &State) {
         let Some(shaders) = &state.session.shaders else { return };
+        let in_use = state.source.root().filter(|root| state.shader.root.as_deref() == Some(*root));
+        self.root = in_use.map(Path::to_owned);
         if let Some(saved) = &state.traces.written
-            && let Some(file) = self.files.get_mut(&saved.path)
+            && let Some(file) = self.files.get_mut(&saved.file)
             && let Some(sent) = file.sent.take_if(|sent| *sent == saved.typed)
         {
             match &saved.text {
@@ -87,7 +116,9 @@ impl Editor {
                 None => {}
             }
         }
-        for (path, file) in &mut self.files {
+        for (TreeFile { path, .. }, file) in
+            self.files.iter_mut().filter(|(of, _)| Some(&of.root) == self.root.as_ref())
+        {
             let now = state.traces.saved.of(path).or_else(|| shaders.texts.get(path));
             let Some(now) = now.filter(|now| **now != file.known) else { continue };
             file.known = now.clone();
@@ -99,10 +130,14 @@ impl Editor {
 
     /// The command that saves a file; `None` while it has no changes, or is being written.
     pub(super) fn save(&mut self, path: &TreePath) -> Option<Typed> {
-        let file = self.files.get_mut(path).filter(|file| *file.base != *file.text && file.sent.is_none())?;
-        let text: Arc<str> = file.text.as_str().into();
-        file.sent = Some(text.clone());
-        Some(Typed { path: path.clone(), base: file.base.clone(), text })
+        let file = self.file(path)?;
+        let typing = self.files.get_mut(&file)?;
+        if *typing.base == *typing.text || typing.sent.is_some() {
+            return None;
+        }
+        let text: Arc<str> = typing.text.as_str().into();
+        typing.sent = Some(text.clone());
+        Some(Typed { file, base: typing.base.clone(), text })
     }
 
     /// Shows a file that is typed.
@@ -118,9 +153,11 @@ impl Editor {
         if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::S)) {
             self.save(path).into_iter().for_each(|typed| commands.push(SAVE_FILE.with(typed)));
         }
-        let Self { files, cursor, colored } = self;
-        let Some(file) = files.get_mut(path) else { return };
-        let id = Id::new(("typed", path.as_str()));
+        let Some(of) = self.file(path) else { return };
+        let Self { files, cursor, colored, .. } = self;
+        let Some(file) = files.get_mut(&of) else { return };
+        // Ctrl+Z takes back what was typed in this tree alone.
+        let id = Id::new(("typed", &of.root, path.as_str()));
         // The click that begins to type is no click into the field, which would lose the keys.
         let is_clicked = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
         if cursor.is_some() && is_clicked {

@@ -14,6 +14,7 @@ mod tests;
 
 use egui::{RichText, Ui};
 
+use crate::app::closing::Unsaved;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
@@ -60,5 +61,9 @@ impl PanelUi for SourceState {
             true => editor.show(ui, state, model, (find, scroll), commands),
             false => code::show(ui, state, model, (find, editor, scroll), commands),
         }
+    }
+
+    fn unsaved(&self) -> Unsaved {
+        self.editor.unsaved()
     }
 }

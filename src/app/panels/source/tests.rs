@@ -1,6 +1,7 @@
 //! The panel over a trace, without a device.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use egui::accesskit::Role;
@@ -26,6 +27,7 @@ use crate::settings::Settings;
 use crate::shader::trace::sample::{called, event, trace};
 use crate::shader::trace::{Act, Event};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
+use crate::write_back::TreeFile;
 
 const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 
@@ -180,12 +182,19 @@ fn a_call_is_chosen_where_there_are_more() {
     assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
 }
 
+/// Opens a tree whose shaders are in use.
+fn open(harness: &mut Harness<'_, Window>, root: &Path) {
+    let state = &mut harness.state_mut().state;
+    (state.source, state.shader.root) = (Source::disk(root.to_owned()), Some(root.to_owned()));
+}
+
 #[test]
 fn a_file_is_typed_and_saved() {
     let folder = tempfile::tempdir().unwrap();
     crate::shader::embedded::write_to(&folder.path().join("tree"), None).unwrap();
     let mut harness = window(TEXT, events(2.0), &[2, 3]);
-    harness.state_mut().state.source = Source::disk(folder.path().join("tree"));
+    let root = folder.path().join("tree");
+    open(&mut harness, &root);
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, "Edit").click();
     harness.run_steps(3);
@@ -200,12 +209,12 @@ fn a_file_is_typed_and_saved() {
     harness.get_by_label("a = 2");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
     harness.run_steps(2);
-    let (path, base): (TreePath, Arc<str>) = ("a.glsl".into(), TEXT.into());
+    let (file, base) = (TreeFile { root, path: "a.glsl".into() }, Arc::<str>::from(TEXT));
     let text: Arc<str> = format!("// new\n{TEXT}").into();
-    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { path: path.clone(), base, text: text.clone() })]);
+    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file: file.clone(), base, text: text.clone() })]);
     // Another program has added a line, which the merged text has.
     let merged: Arc<str> = format!("{text}// theirs\n").into();
-    let written = WrittenText { path, typed: text, text: Some(merged.clone()) };
+    let written = WrittenText { file, typed: text, text: Some(merged.clone()) };
     harness.state_mut().state.traces.written = Some(written);
     harness.run_steps(2);
     assert!(harness.query_by_label("not saved").is_none());
@@ -213,4 +222,53 @@ fn a_file_is_typed_and_saved() {
     harness.get_by_role_and_label(Role::Button, "Done").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Text of the file").is_none());
+}
+
+#[test]
+fn typed_text_stays_in_its_tree() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3]);
+    let [a, b] = ["trees/a", "trees/b"].map(Path::new);
+    open(&mut harness, a);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    harness.get_by_label("Text of the file").type_text("// of a");
+    harness.run_steps(2);
+    harness.get_by_label("not saved");
+    let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
+    let unsaved = [(file, format!("// of a{TEXT}"))].into();
+    assert_eq!(harness.state().panel.unsaved(), unsaved);
+    // Another tree is opened. Until its shaders are in use, the file in sight is of neither.
+    harness.state_mut().state.source = Source::disk(b.to_owned());
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Text of the file").is_none(), "text of another tree");
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Text of the file").is_none(), "a file that cannot be written yet");
+    open(&mut harness, b);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), TEXT);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(2);
+    assert!(harness.state().asked.is_empty(), "nothing was typed in this tree");
+    assert_eq!(harness.state().panel.unsaved(), unsaved, "closing would still lose it");
+    // The first tree has its text still, and saves it there. After a failure, it can be saved again.
+    open(&mut harness, a);
+    harness.run_steps(2);
+    let text: Arc<str> = format!("// of a{TEXT}").into();
+    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), *text);
+    let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
+    for saves in 1..=2 {
+        harness.state_mut().state.traces.written = None;
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+        harness.run_steps(2);
+        let save = SAVE_FILE.with(Typed { file: file.clone(), base: TEXT.into(), text: text.clone() });
+        assert_eq!(harness.state().asked, vec![save; saves]);
+        let written = WrittenText { file: file.clone(), typed: text.clone(), text: None };
+        harness.state_mut().state.traces.written = Some(written);
+        harness.run_steps(2);
+    }
+    harness.get_by_label("not saved");
 }

@@ -79,6 +79,8 @@ pub(in crate::app) struct Traces {
     /// What was asked for last, and the number of that request.
     asked: Option<Subject>,
     number: u64,
+    /// Whether the result of that request is still to come.
+    is_awaited: bool,
     /// What is to be asked for once it has stayed as it is for a while.
     resting: Option<(Subject, Instant)>,
     /// Frames in which the panel was out of sight since a command asked for a trace.
@@ -112,7 +114,8 @@ impl Traces {
 
     /// Notes that a trace of `subject` was asked for, by the number of the request.
     pub(in crate::app) fn ask(&mut self, subject: Subject, number: u64) {
-        (self.asked, self.number, self.progress) = (Some(subject), number, Progress::UnderWay(number));
+        (self.asked, self.number, self.is_awaited) = (Some(subject), number, true);
+        self.progress = Progress::UnderWay(number);
     }
 
     /// Records that the thread has failed. The same trace would fail again, so it is not asked for again.
@@ -176,17 +179,22 @@ impl Traces {
         !is_other(&self.newest) && !is_other(&self.before)
     }
 
-    /// Takes the result of a request, if it is the newest. Returns whether it is.
+    /// Takes the result of a request, if it is the newest. Returns whether it is. It may come while the picture is not final any more: then
+    /// [`Self::resume`] or the next request says whether it is that of the picture.
     pub(in crate::app) fn take(
         &mut self,
         number: u64,
         (stage, files, file): (String, Vec<String>, String),
         trace: Result<Trace, String>,
     ) -> bool {
-        let Some(of) = self.asked.clone().filter(|_| self.progress == Progress::UnderWay(number)) else {
+        let is_newest = self.number == number && self.is_awaited;
+        let Some(of) = self.asked.clone().filter(|_| is_newest) else {
             return false;
         };
-        self.progress = Progress::Done;
+        self.is_awaited = false;
+        if self.progress == Progress::UnderWay(number) {
+            self.progress = Progress::Done;
+        }
         // Without a stage, there is no file of it.
         let last = || self.newest.as_ref().map(|last| last.file.clone());
         let named = (!file.is_empty()).then(|| TreePath::from(file.as_str()));
@@ -206,7 +214,8 @@ impl Traces {
 
     /// Takes the trace of the version before for the newest request, unless there is one.
     pub(in crate::app) fn take_before(&mut self, number: u64, (shaders, trace): (Arc<ShaderSet>, Trace)) {
-        let is_missing = self.number == number && self.progress == Progress::Done && self.before.is_none();
+        let is_taken = self.number == number && self.asked.is_some() && !self.is_awaited;
+        let is_missing = is_taken && self.before.is_none();
         let Some(newest) = self.newest.as_ref().filter(|_| is_missing) else { return };
         let PixelTrace { of, stage, files, file, .. } = &**newest;
         let of = Subject { shaders, ..of.clone() };

@@ -4,10 +4,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use crate::shader::{Diagnostic, TreePath};
+use crate::write_back::TreeFile;
 
 /// A text that was typed into a file and written.
 pub(in crate::app) struct WrittenText {
-    pub(in crate::app) path: TreePath,
+    pub(in crate::app) file: TreeFile,
     pub(in crate::app) typed: Arc<str>,
     /// The text of the file, with the changes of other programs; `None` if it could not be written.
     pub(in crate::app) text: Option<Arc<str>>,

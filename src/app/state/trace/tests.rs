@@ -186,3 +186,27 @@ fn a_command_is_answered_with_the_trace_of_the_picture() {
     assert_eq!(traces.answer(), Some(Err("the trace failed".to_owned())));
     assert!(traces.before().is_some(), "the last good trace stays for the next save");
 }
+
+#[test]
+fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
+    for meanwhile in [Progress::Waits, Progress::Outside, Progress::NoPixel] {
+        let mut traces = Traces::default();
+        let newest = shaders(2, NEW);
+        traces.ask(subject(&newest), 1);
+        traces.progress = meanwhile;
+        let names = || ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+        assert!(traces.take(1, names(), Ok(trace(new_events(), &[1]))), "{meanwhile:?}");
+        assert_eq!(traces.progress, meanwhile, "the picture is not that of the trace yet");
+        assert!(!traces.take(1, names(), Ok(trace(old_events(), &[1]))), "a result is taken once");
+        traces.take_before(1, (shaders(1, OLD), trace(old_events(), &[1])));
+        assert_eq!(texts(&traces, NEW)[2], "a = 2 → 4", "{meanwhile:?}");
+        traces.resume();
+        assert_eq!(traces.progress, Progress::Done);
+        assert_eq!(traces.answer().unwrap().unwrap()["pixel"], json!([3, 4]));
+    }
+    // Out of sight, nothing is asked for any more.
+    let mut traces = Traces::default();
+    traces.ask(subject(&shaders(1, OLD)), 1);
+    traces.unseen();
+    assert!(!traces.take(1, Default::default(), Ok(trace(old_events(), &[1]))));
+}
