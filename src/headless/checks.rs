@@ -12,7 +12,7 @@ use crate::shader::{Diagnostic, ShaderSet, StageKind, TreePath};
 /// A picture whose operations were checked.
 #[derive(Clone, Debug, Default)]
 pub struct CheckedPicture {
-    /// What was found, in the order of files and lines.
+    /// The failures and printed values, in the order of files and lines.
     pub broken: Vec<(Broken, Diagnostic)>,
     /// How many operations were checked.
     pub checks: usize,
@@ -70,7 +70,7 @@ impl Headless {
         let changed = || HeadlessError::Settings("the shaders have changed".to_owned());
         let set = self.resources.pipelines().cloned().ok_or_else(changed)?;
         let target = self.frame_state()?.pipelines.target;
-        self.view.restart_passes();
+        self.offscreen.view.restart_passes();
         let mut variant = None;
         for index in 0..self.sequence.frames.max(1) {
             let clock = self.sequence.clock(index);
@@ -84,7 +84,7 @@ impl Headless {
             let bound = self.resources.bind_variant(set, &state)?;
             let baking = || HeadlessError::Settings("the light of the picture is being baked".to_owned());
             let frame = bound.ok_or_else(baking)?;
-            self.view.restart_mean();
+            self.offscreen.view.restart_mean();
             self.draw_frame(&frame, Redraw::Always, |_, encoder, _| {
                 encoder.keep(buffer);
                 encoder.buffers_written();

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::{Headless, HeadlessError, NotFinitePictures};
 use crate::frame::Limits;
-use crate::gpu::{Encoder, GpuError, Image, Use};
-use crate::render::{BoundFrame, Capture, Output, ProvideError, Redraw, View};
+use crate::gpu::{Encoder, GpuError, Image};
+use crate::render::{BoundFrame, Capture, ProvideError, Redraw, View};
 use crate::shader::{Diagnostic, Severity};
 
 /// Progress of rendering or of a readout.
@@ -44,8 +44,8 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn render_with(&mut self, mut progress: impl FnMut(&Step)) -> Result<Capture, HeadlessError> {
-        self.view.restart_passes();
-        self.view.forget_limits();
+        self.offscreen.view.restart_passes();
+        self.offscreen.view.forget_limits();
         let frames = self.sequence.frames.max(1);
         let last = frames - 1;
         for index in 0..last {
@@ -55,7 +55,7 @@ impl Headless {
             progress(&Step { done: u64::from(index) + 1, of: u64::from(frames), unit: "frames" });
         }
         self.clock = self.sequence.clock(last);
-        self.view.restart_mean();
+        self.offscreen.view.restart_mean();
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
             let (samples, paths) = (self.session.settings.view.frames, frame.state.pipelines.paths_per_frame());
@@ -92,7 +92,7 @@ impl Headless {
 
     /// The limits of the values in the last frame, if its range is automatic.
     pub fn measured_limits(&self) -> Option<Limits> {
-        self.view.measured_limits()
+        self.offscreen.view.measured_limits()
     }
 
     /// Renders the frame after the last one, with the images that passes have kept, and reads it back.
@@ -140,20 +140,8 @@ impl Headless {
         redraw: Redraw,
         more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
     ) -> Result<T, HeadlessError> {
-        self.view.prepare(frame)?;
-        let output = self.output_image()?;
-        let mut encoder = self.frames.begin()?;
-        let slot = self.frames.current();
-        let drawn = self.view.draw(&mut encoder, slot, frame, &to(&output), redraw);
-        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &output));
-        let submitted = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
-        if submitted.is_err() {
-            self.view.forget();
-        }
-        let result = submitted?;
-        self.frames.wait()?;
-        self.view.take_range_sample(slot);
-        match self.frames.endless_loop(self.frames.current()) {
+        let result = self.offscreen.draw(frame, redraw, more)?;
+        match self.offscreen.endless_loop() {
             Some(words) => match self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words))) {
                 // A loop that ends, but takes too many rounds, costs only its own pixels.
                 HeadlessError::Shaders(found) if found.iter().all(|d| d.severity == Severity::Warning) => {
@@ -165,17 +153,4 @@ impl Headless {
             None => Ok(result),
         }
     }
-
-    fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {
-        if let Some(output) = &self.output {
-            return Ok(output.clone());
-        }
-        let output = self.view.output_image(self.size)?;
-        self.output = Some(output.clone());
-        Ok(output)
-    }
-}
-
-fn to(image: &Arc<Image>) -> Output<'_> {
-    Output { image, before: Use::Undefined, at: (0, 0) }
 }

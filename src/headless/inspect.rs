@@ -19,11 +19,11 @@ impl Headless {
         let mut found = Vec::new();
         for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
             let frame = self.bind_modes(&set, self.size, TargetFormat::full(1), FrameState::with_numbers)?;
-            let mut encoder = self.frames.begin()?;
+            let mut encoder = self.offscreen.frames.begin()?;
             pixel.draw(&mut encoder, 0, &frame, at)?;
-            self.frames.submit(encoder, Default::default())?;
+            self.offscreen.frames.submit(encoder, Default::default())?;
             // SYNC: the CPU reads the values.
-            self.frames.wait()?;
+            self.offscreen.frames.wait()?;
             found.extend(set.iter().map(|mode| mode.slug.clone()).zip(pixel.values(0)));
         }
         Ok(found)
@@ -35,6 +35,6 @@ impl Headless {
     /// As [`Headless::render`].
     pub fn texels(&mut self, at: (u32, u32)) -> Result<Vec<Texel>, HeadlessError> {
         let places = texel_places(&*self.frame_state()?, at);
-        Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
+        Ok(read_texels(&self.gpu, &self.resources, &mut self.offscreen.frames, places)?)
     }
 }

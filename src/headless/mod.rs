@@ -22,7 +22,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::frame::{Clock, FrameState, TargetFormat};
-use crate::gpu::{DrawCounts, Frames, Gpu, Image, PassTime, SetLayouts, return_freed_memory};
+use crate::gpu::{DrawCounts, Gpu, PassTime, SetLayouts, return_freed_memory};
 use crate::pipeline::{Outcome, Reload, Reloader};
 use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, beyond_memory, wrong_values};
 use crate::scene::Model;
@@ -47,10 +47,8 @@ pub struct Headless {
     session: Session,
     reloader: Reloader,
     resources: Resources,
-    frames: Frames,
-    view: View,
-    /// The image that [`Headless::render`] draws to and reads back.
-    output: Option<Arc<Image>>,
+    /// The view, and the image that [`Headless::render`] draws to and reads back.
+    offscreen: OffscreenView,
     size: (u32, u32),
     clock: Clock,
     sequence: Sequence,
@@ -163,9 +161,7 @@ impl Headless {
             session: Session::new(settings),
             reloader: Reloader::new(gpu, &layouts, compiler, source),
             resources: Resources::new(gpu, &layouts, [0.0; 3])?,
-            frames: Frames::new(gpu, 1)?,
-            view: View::new(gpu, &layouts, 1)?,
-            output: None,
+            offscreen: OffscreenView::new(gpu, &layouts)?,
             layouts,
             size,
             clock: Clock::default(),
@@ -258,7 +254,7 @@ impl Headless {
     pub fn set_size(&mut self, size: (u32, u32)) -> Result<(), HeadlessError> {
         check_size(&self.gpu, size)?;
         if self.size != size {
-            (self.size, self.output) = (size, None);
+            self.size = size;
         }
         Ok(())
     }
@@ -281,17 +277,17 @@ impl Headless {
 
     /// Device time of the last frame in milliseconds, if the device supports timestamps.
     pub fn device_ms(&self) -> Option<f64> {
-        self.frames.last_device_ms()
+        self.offscreen.frames.last_device_ms()
     }
 
     /// Device time of each pass of the last frame, if the device supports timestamps.
     pub fn pass_times(&self) -> &[PassTime] {
-        self.frames.pass_times()
+        self.offscreen.frames.pass_times()
     }
 
     /// Numbers of draws and of commands of the last frame.
     pub fn draw_counts(&self) -> DrawCounts {
-        self.frames.draw_counts()
+        self.offscreen.frames.draw_counts()
     }
 
     /// Replaces the model. On failure the old model stays.

@@ -88,7 +88,7 @@ impl Headless {
             is_canceled: &|| false,
         };
         let compiler = library.compiler();
-        first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.frames), &search)
+        first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.offscreen.frames), &search)
             .map_err(HeadlessError::Settings)
     }
 }

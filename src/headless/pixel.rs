@@ -44,7 +44,7 @@ impl Headless {
         let sequence = self.sequence;
         let states: Vec<(&Mode, Arc<FrameState>)> =
             modes.iter().map(|mode| (mode, state_of(mode, self.clock))).collect();
-        self.view.probe = Some(at);
+        self.offscreen.view.probe = Some(at);
         let mut values = Vec::new();
         // A set keeps only the pipelines of its newest requests.
         for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
@@ -53,7 +53,7 @@ impl Headless {
                 states.par_iter().try_for_each(|(_, state)| set.build(&state.pipelines).map(|_| ()))?;
             }
             for (mode, state) in states {
-                self.view.restart_passes();
+                self.offscreen.view.restart_passes();
                 let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
                 // A frame without animation needs no earlier frames.
                 let earlier = if frame.is_animated() { sequence.frames.max(1) - 1 } else { 0 };
@@ -63,16 +63,22 @@ impl Headless {
                     self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
                 }
                 let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
-                self.view.restart_mean();
+                self.offscreen.view.restart_mean();
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
                 }
-                values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+                values.push(
+                    self.offscreen
+                        .view
+                        .pixel(self.offscreen.frames.current())
+                        .map(|pixel| pixel.value)
+                        .unwrap_or_default(),
+                );
                 progress(&Step { done: values.len() as u64, of: modes.len() as u64, unit: "modes" });
             }
         }
-        self.view.probe = None;
+        self.offscreen.view.probe = None;
         Ok(values)
     }
 }

@@ -40,7 +40,7 @@ pub struct TracedPixel<'a> {
     pub mode: &'a Mode,
 }
 
-/// What draws a pixel: the window's or the command's objects.
+/// The objects that draw a pixel: the window's or the command's objects.
 pub struct TraceTools<'a> {
     /// Everything that the frame needs on the device.
     pub resources: &'a mut Resources,

@@ -36,15 +36,15 @@ impl Headless {
             let bytes = atlas.desc().bytes();
             let pixels =
                 Buffer::new(&self.gpu, "thumbnails", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
-            let mut encoder = self.frames.begin()?;
+            let mut encoder = self.offscreen.frames.begin()?;
             encoder.transition(&atlas, Use::Undefined, Use::CopyTo);
             thumbnails.draw(&mut encoder, 0, &frame, &atlas, &corners)?;
             encoder.transition(&atlas, Use::CopyTo, Use::CopyFrom);
             encoder.copy_from_image(&atlas, &pixels);
             encoder.copies_done();
-            self.frames.submit(encoder, Default::default())?;
+            self.offscreen.frames.submit(encoder, Default::default())?;
             // SYNC: the CPU reads the thumbnails.
-            self.frames.wait()?;
+            self.offscreen.frames.wait()?;
             let mut rgba8 = pixels.read();
             rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
             let each = rgba8.chunks_exact(rgba8.len() / set.len());
