@@ -11,9 +11,9 @@ use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::frames::Frames;
+use super::common::opened::Opened;
 use super::common::parse::{inside, pixel};
-use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
-use super::progress::Progress;
+use super::common::{Common, Models, check_mode, check_validation, warn_unmeasured};
 use super::{Failure, print_json, tell_left_out};
 
 /// Options of `probe`.
@@ -64,14 +64,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         expression::MODE.clone_into(&mut settings.mode);
     }
     slugs.iter().for_each(|slug| warn_unmeasured(slug, &settings));
-    let source = args.common.source()?;
-    let gpu = args.common.gpu()?;
-    let model = args.common.model(args.models.model.as_deref())?;
-    args.common.fit(&model, &mut settings)?;
-    let progress = Progress::new(!args.common.emits());
-    progress.say("compiling the shaders");
-    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size())?;
-    headless.set_sequence(sequence);
+    let Opened { gpu, mut headless, progress } = Opened::new(&args.common, &args.models, settings, sequence)?;
     let Chosen { modes, left_out } = chosen(&headless.shaders(), &slugs, args.paths)?;
     let state = headless.frame_state()?;
     progress.say("reading the pixel");

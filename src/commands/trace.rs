@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
-use specula::headless::Headless;
 use specula::shader::trace::{Assertion, Trace};
 
 use super::common::frames::Frames;
+use super::common::opened::Opened;
 use super::common::parse::{inside, pixel};
-use super::common::{Common, Models, check_mode, check_validation, compiler, warn_unmeasured};
-use super::progress::Progress;
+use super::common::{Common, Models, check_mode, check_validation, warn_unmeasured};
 use super::{Failure, print_json};
 
 /// Columns of source code in front of the values.
@@ -61,15 +60,8 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
     warn_unmeasured(&settings.mode, &settings);
-    let source = args.common.source()?;
-    let gpu = args.common.gpu()?;
-    let model = args.common.model(args.models.model.as_deref())?;
-    args.common.fit(&model, &mut settings)?;
-    let progress = Progress::new(!args.common.emits());
-    progress.say("compiling the shaders");
     let slug = settings.mode.clone();
-    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size())?;
-    headless.set_sequence(sequence);
+    let Opened { gpu, mut headless, progress } = Opened::new(&args.common, &args.models, settings, sequence)?;
     let shaders = headless.shaders();
     check_mode(&shaders, &slug)?;
     let mode = shaders.modes.iter().find(|mode| mode.slug == slug).cloned();

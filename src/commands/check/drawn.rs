@@ -4,16 +4,15 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 use specula::events::{Event, emit};
-use specula::headless::Headless;
 use specula::message::{grouped, tell};
 use specula::shader::Diagnostic;
 use specula::shader::checks::Broken;
 
 use super::args::Args;
 use crate::commands::common::chosen_modes::Modes;
+use crate::commands::common::opened::Opened;
 use crate::commands::common::unchecked::warn_of_unchecked;
-use crate::commands::common::{check_mode, check_validation, compiler};
-use crate::commands::progress::Progress;
+use crate::commands::common::{check_mode, check_validation};
 use crate::commands::{Failure, print_diagnostics, print_json};
 
 /// Something that was found, and the modes in which it did, the first one first.
@@ -31,15 +30,8 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
     settings.view.msaa = 1;
     let modes = Modes::of(&mut settings.mode);
     let sequence = args.frames.sequence()?;
-    let source = args.common.source()?;
-    let gpu = args.common.gpu()?;
-    let model = args.common.model(args.models.model.as_deref())?;
-    args.common.fit(&model, &mut settings)?;
-    let progress = Progress::new(!args.common.emits());
-    progress.say("compiling the shaders");
     let first = settings.mode.clone();
-    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size())?;
-    headless.set_sequence(sequence);
+    let Opened { gpu, mut headless, progress } = Opened::new(&args.common, &args.models, settings, sequence)?;
     let shaders = headless.shaders();
     check_mode(&shaders, &first)?;
     let slugs: Vec<String> = match &modes {

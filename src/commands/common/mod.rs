@@ -5,6 +5,7 @@ mod files;
 pub mod frames;
 mod look;
 pub mod names;
+pub mod opened;
 pub mod parse;
 pub mod unchecked;
 
