@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::shader::glsl::{BUILT_IN, Code, Token, is_name, tokens};
+use crate::shader::glsl::{BUILT_IN, Code, QUALIFIERS, Token, is_name, tokens};
 use crate::shader::source::TreePath;
 
 /// Where a declared name can be used.
@@ -177,7 +177,7 @@ impl<'a> Scanner<'a> {
         if kind == "struct" {
             self.declare("", at);
         }
-        if !is_name(kind) || NO_TYPES.contains(&kind) || !matches!(next, "(" | ")" | "," | ";" | "=" | "[" | ":") {
+        if !is_name(kind) || is_no_type(kind) || !matches!(next, "(" | ")" | "," | ";" | "=" | "[" | ":") {
             return;
         }
         self.declare(kind, at);
@@ -257,39 +257,11 @@ fn macros(text: &str) -> impl Iterator<Item = Declared> {
     names.map(declared)
 }
 
-/// Words that can precede a name and are no type.
-pub(super) const NO_TYPES: &[&str] = &[
-    "return",
-    "else",
-    "case",
-    "do",
-    "struct",
-    "const",
-    "in",
-    "out",
-    "inout",
-    "uniform",
-    "buffer",
-    "shared",
-    "flat",
-    "smooth",
-    "noperspective",
-    "centroid",
-    "sample",
-    "patch",
-    "invariant",
-    "precise",
-    "highp",
-    "mediump",
-    "lowp",
-    "precision",
-    "coherent",
-    "volatile",
-    "restrict",
-    "readonly",
-    "writeonly",
-    "layout",
-];
+/// Whether a word can precede a name and is no type.
+pub(super) fn is_no_type(word: &str) -> bool {
+    const OTHERS: [&str; 7] = ["return", "else", "case", "do", "struct", "precision", "layout"];
+    QUALIFIERS.contains(&word) || OTHERS.contains(&word)
+}
 
 #[cfg(test)]
 mod tests {

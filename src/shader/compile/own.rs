@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::names::NO_TYPES;
+use super::names::is_no_type;
 use crate::shader::glsl::{Code, is_name};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -32,7 +32,7 @@ fn declared(path: &TreePath, line: u32, snapshot: &Snapshot<'_>) -> BTreeSet<Str
     let code = Code::new(&text);
     let is_head = |at: &usize| {
         let [kind, name, open] = [0, 1, 2].map(|next| code.tokens[at + next].text);
-        open == "(" && is_name(kind) && is_name(name) && !NO_TYPES.contains(&kind)
+        open == "(" && is_name(kind) && is_name(name) && !is_no_type(kind)
     };
     let heads = (0..code.tokens.len().saturating_sub(2)).filter(is_head).map(|at| {
         let name = &code.tokens[at + 1];

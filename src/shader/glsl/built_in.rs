@@ -1,4 +1,4 @@
-//! What GLSL has built in: functions, types and variables that a shader is likely to use. With them `assert` and `print`, which Specula adds.
+//! The built-in names of GLSL: functions, types and variables that a shader is likely to use. With them `assert` and `print`, which Specula adds.
 
 /// A name of the language.
 #[derive(Clone, Copy, Debug)]

@@ -6,6 +6,7 @@ mod entry;
 mod highlight;
 mod include;
 mod lines;
+mod qualifiers;
 pub mod syntax;
 mod token;
 
@@ -14,4 +15,5 @@ pub use entry::{color_of, main_of, outputs};
 pub use highlight::{Highlight, highlights};
 pub use include::includes;
 pub use lines::{Code, Line, find_word, is_same_code, lines};
+pub use qualifiers::QUALIFIERS;
 pub use token::{Token, TokenKind, assigns, code, is_name, is_word, spelled, tokens};

@@ -18,18 +18,6 @@ pub(super) fn annotated(text: &str) -> impl Iterator<Item = Symbol> {
         let name = after.split_whitespace().next()?;
         let start = comment.bytes.start + comment.text.len() - after.trim_start().len();
         let whole = comment.bytes.start..comment.bytes.start + comment.text.trim_end().len();
-        Some(Symbol {
-            name: name.to_owned(),
-            kind,
-            bytes: start..start + name.len(),
-            signature: whole.clone(),
-            whole,
-            type_name: String::new(),
-            dimensions: 0,
-            owner: String::new(),
-            scope: None,
-            parameters: Vec::new(),
-            has_body: false,
-        })
+        Some(Symbol::new(name, kind, start..start + name.len(), whole))
     })
 }

@@ -140,19 +140,7 @@ fn macros(text: &str) -> Vec<Symbol> {
             let last = behind.map_or(all.len(), |count| at + 1 + count) - 1;
             let name = &all[at + 2];
             let whole = all[at].bytes.start..all[last].bytes.end;
-            Symbol {
-                name: name.text.to_owned(),
-                kind: SymbolKind::Macro,
-                bytes: name.bytes.clone(),
-                signature: whole.clone(),
-                whole,
-                type_name: String::new(),
-                dimensions: 0,
-                owner: String::new(),
-                scope: None,
-                parameters: Vec::new(),
-                has_body: false,
-            }
+            Symbol::new(name.text, SymbolKind::Macro, name.bytes.clone(), whole)
         })
         .collect()
 }

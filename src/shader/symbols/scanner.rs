@@ -3,36 +3,7 @@
 use std::ops::Range;
 
 use super::symbol::{Symbol, SymbolKind};
-use crate::shader::glsl::{Token, TokenKind, is_name};
-
-/// Words that can precede a type.
-const QUALIFIERS: [&str; 25] = [
-    "const",
-    "in",
-    "out",
-    "inout",
-    "uniform",
-    "buffer",
-    "shared",
-    "flat",
-    "smooth",
-    "noperspective",
-    "centroid",
-    "sample",
-    "patch",
-    "invariant",
-    "precise",
-    "highp",
-    "mediump",
-    "lowp",
-    "coherent",
-    "volatile",
-    "restrict",
-    "readonly",
-    "writeonly",
-    "perprimitiveEXT",
-    "taskPayloadSharedEXT",
-];
+use crate::shader::glsl::{QUALIFIERS, Token, TokenKind, is_name};
 
 /// Words that can precede a name and are no type.
 const NO_TYPES: [&str; 13] = [
@@ -214,19 +185,7 @@ impl<'a> Scanner<'a> {
     /// A declaration of a name, whose signature goes from one token to before another.
     pub fn symbol(&self, name: usize, kind: SymbolKind, first: usize, behind: usize) -> Symbol {
         let signature = self.start(first)..self.end(behind.saturating_sub(1)).max(self.end(name));
-        Symbol {
-            name: self.word(name).to_owned(),
-            kind,
-            bytes: self.start(name)..self.end(name),
-            whole: signature.clone(),
-            signature,
-            type_name: String::new(),
-            dimensions: 0,
-            owner: String::new(),
-            scope: None,
-            parameters: Vec::new(),
-            has_body: false,
-        }
+        Symbol::new(self.word(name), kind, self.start(name)..self.end(name), signature)
     }
 }
 

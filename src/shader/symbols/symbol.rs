@@ -57,6 +57,23 @@ pub struct Symbol {
 }
 
 impl Symbol {
+    /// A declaration with a signature. What else it has is set later.
+    pub fn new(name: &str, kind: SymbolKind, bytes: Range<usize>, signature: Range<usize>) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            bytes,
+            whole: signature.clone(),
+            signature,
+            type_name: String::new(),
+            dimensions: 0,
+            owner: String::new(),
+            scope: None,
+            parameters: Vec::new(),
+            has_body: false,
+        }
+    }
+
     /// Whether files that include this one can use the name.
     pub fn is_global(&self) -> bool {
         let is_annotated = matches!(self.kind, SymbolKind::Pass | SymbolKind::Texture | SymbolKind::Mode);

@@ -1,0 +1,30 @@
+//! Words in front of a type.
+
+/// Words that can precede a type, without `layout`.
+pub const QUALIFIERS: [&str; 25] = [
+    "const",
+    "in",
+    "out",
+    "inout",
+    "uniform",
+    "buffer",
+    "shared",
+    "flat",
+    "smooth",
+    "noperspective",
+    "centroid",
+    "sample",
+    "patch",
+    "invariant",
+    "precise",
+    "highp",
+    "mediump",
+    "lowp",
+    "coherent",
+    "volatile",
+    "restrict",
+    "readonly",
+    "writeonly",
+    "perprimitiveEXT",
+    "taskPayloadSharedEXT",
+];
