@@ -23,7 +23,7 @@ pub fn by_file(diagnostics: Vec<Diagnostic>) -> ByFile {
     out
 }
 
-/// A diagnostic for the client. `has_mark`: whether the client counts a byte order mark on the first line.
+/// A diagnostic for the client.
 pub fn shown(diagnostic: &Diagnostic) -> Shown {
     let severity = match diagnostic.severity {
         Severity::Error => DiagnosticSeverity::ERROR,

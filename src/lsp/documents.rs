@@ -23,7 +23,7 @@ pub struct Document {
 #[derive(Debug, Default)]
 pub struct Documents {
     open: BTreeMap<String, Document>,
-    /// That of the last request or change.
+    /// The number of the last change.
     pub last: Option<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! What the threads of the server tell.
+//! The events that the threads of the server send.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What a name means: the declarations that it can be.
+//! The declarations that a name can mean.
 
 use super::name::{NameAt, name_at};
 use super::types::before_dot;

@@ -32,7 +32,7 @@ pub fn notified(state: &mut State, notification: Notification) {
         }
         "textDocument/didClose" => {
             let Some(DidCloseTextDocumentParams { text_document: closed }) = parsed(params) else { return };
-            // What was not saved is gone.
+            // The text that was not saved is gone.
             state.documents.close(&closed.uri).into_iter().for_each(|path| state.compile(&path));
         }
         "textDocument/didSave" => {

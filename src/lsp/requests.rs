@@ -36,7 +36,7 @@ const PIN: &str = "specula.pinPixel";
 /// Ends that.
 const UNPIN: &str = "specula.unpinPixel";
 
-/// What the server can do.
+/// The capabilities of the server.
 pub fn capabilities() -> Value {
     json!({
         "positionEncoding": "utf-16",
@@ -164,7 +164,7 @@ fn workspace_symbols(state: &mut State, query: &str) -> Vec<lsp_types::Workspace
     out
 }
 
-/// What the line of a place computed at the pinned pixel.
+/// The values of a line at the pinned pixel.
 fn values_at(state: &State, at: &TextDocumentPositionParams) -> Option<String> {
     let document = state.documents.get(&at.text_document.uri)?;
     let path = document.path.as_ref()?;

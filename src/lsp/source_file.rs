@@ -15,7 +15,7 @@ pub struct SourceFile {
     pub uri: Uri,
     /// Its text.
     pub source: SourceText,
-    /// What it declares.
+    /// Its declarations.
     pub symbols: Symbols,
 }
 

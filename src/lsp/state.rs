@@ -1,4 +1,4 @@
-//! What the server knows: the open files, the trees that are compiled, and the pinned pixel.
+//! The state of the server: the open files, the trees that are compiled, and the pinned pixel.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ struct CompiledTree {
     shown: ByFile,
 }
 
-/// What the server was started with.
+/// The options of the server.
 pub struct Config {
     /// Opens trees for the values at a pixel.
     pub open: OpenTree,

@@ -38,7 +38,7 @@ pub struct TracedFile {
 /// The values at a pixel.
 #[derive(Clone, Debug)]
 pub struct Traced {
-    /// What was asked.
+    /// The request.
     pub asked: Asked,
     /// The values by files, and whether the color is the picture's; or why there are none.
     pub result: Result<(Vec<TracedFile>, String), String>,

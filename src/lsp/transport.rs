@@ -14,7 +14,7 @@ const MOST_HEAD: u64 = 8 << 10;
 /// How long the end of the server waits until the client has read what was written.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// What comes from the client.
+/// A message of the client, or the end of its output.
 #[derive(Debug)]
 pub enum Incoming {
     /// A message.

@@ -40,7 +40,7 @@ pub fn is_glsl(path: &TreePath) -> bool {
 }
 
 impl Trees {
-    /// What a file sees: its tree, or, outside of trees, itself and what it includes.
+    /// The files that a file sees: its tree, or, outside of trees, itself and what it includes.
     pub fn view(&mut self, documents: &Documents, uri: &Uri) -> Option<View> {
         let Some(path) = path_of(uri) else { return self.alone(documents, uri) };
         match root_of(&path) {

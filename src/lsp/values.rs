@@ -17,7 +17,7 @@ pub struct Pin {
     pub at: (u32, u32),
 }
 
-/// What is known at the pinned pixel.
+/// The values at the pinned pixel.
 #[derive(Debug, Default)]
 pub struct Values {
     pin: Option<Pin>,

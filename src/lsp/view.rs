@@ -1,4 +1,4 @@
-//! What one file sees: the files of its tree, and the declarations that a name in it can mean.
+//! The view of one file: the files of its tree, and the declarations that a name in it can mean.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub struct View {
     pub files: BTreeMap<TreePath, Arc<SourceFile>>,
     /// The file that is asked about.
     pub current: TreePath,
-    /// What each file includes itself, and which files include it.
+    /// The files that each file includes itself, and which files include it.
     includes: BTreeMap<TreePath, Vec<TreePath>>,
     included_by: BTreeMap<TreePath, Vec<TreePath>>,
 }

@@ -58,7 +58,7 @@ pub(crate) enum Message {
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
-    /// What the statements of a file do at the pinned pixel, for the request with this number.
+    /// The trace of a file at the pinned pixel, for the request with this number.
     Traced(u64, Box<Traced>),
     /// The same in an older version of the shaders.
     TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),

@@ -36,7 +36,7 @@ pub(crate) struct OlderVersion {
     pub(crate) like: Option<BoundFrame>,
 }
 
-/// What the thread is asked for.
+/// A request to the thread.
 enum Asked {
     /// A trace, and an older version of the shaders to compare with.
     Trace(Box<TraceRequest>, Option<OlderVersion>),

@@ -56,7 +56,7 @@ fn touches(a: &Hunk<'_>, b: &Hunk<'_>) -> bool {
     }
 }
 
-/// What differs in `new`.
+/// The parts of `new` that differ.
 fn hunks<'a>(base: &[String], new: &'a [String]) -> Vec<Hunk<'a>> {
     let changes = capture_diff_slices(Algorithm::Myers, base, new);
     let hunk = |change: &DiffOp| Hunk {

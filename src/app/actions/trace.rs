@@ -85,7 +85,7 @@ fn read_saved(state: &mut State, engine: &Engine) {
     });
 }
 
-/// What the trace of the picture is of; `None` while the picture is not final.
+/// The pixel, the stage and the frame to trace; `None` while the picture is not final.
 fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     let (shown, shaders) = (state.shown()?, state.session.shaders.clone()?);
     let is_final = shown.shaders.generation == shaders.generation

@@ -106,7 +106,7 @@ pub(super) struct State {
     pub(super) history: History,
     /// The inspected pixel.
     pub(super) inspection: Inspection,
-    /// What the statements of a file do at the inspected pixel.
+    /// The traces of the inspected pixel.
     pub(super) traces: Traces,
     /// The modes that the picture shows side by side.
     pub(super) grid: Grid,

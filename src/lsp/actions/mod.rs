@@ -12,7 +12,7 @@ use crate::shader::Diagnostic;
 
 pub use show::SHOW;
 
-/// What can be done with the code at a span. `diagnostics`: of the file. `has_window`: whether a window can be asked.
+/// The actions for the code at a span. `diagnostics`: of the file. `has_window`: whether a window can be asked.
 pub fn actions(view: &View, span: Span, diagnostics: &[Diagnostic], has_window: bool) -> Vec<CodeActionOrCommand> {
     let mut out = quick_fix::fixes(view, span, diagnostics);
     if view.file().is_too_long() {

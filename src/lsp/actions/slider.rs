@@ -18,7 +18,7 @@ const PARAMS: &str = "user/params.glsl";
 pub fn slider(view: &View, span: Span) -> Option<CodeActionOrCommand> {
     let file = view.file();
     let (path, params) = view.files.get_key_value(&TreePath::from(PARAMS))?;
-    // What the file of the sliders includes itself cannot read them.
+    // Files that the file of the sliders includes cannot read them.
     if view.closure(path).contains(&&view.current) {
         return None;
     }
@@ -51,7 +51,7 @@ pub fn slider(view: &View, span: Span) -> Option<CodeActionOrCommand> {
     }))
 }
 
-/// What the number is for: the variable that it is part of, or its function. `None` where GLSL needs a constant.
+/// The use of a number: the variable that it is part of, or its function. `None` where GLSL needs a constant.
 fn base_name(file: &SourceFile, byte: usize) -> Option<String> {
     let function = file.symbols.function_at(byte).filter(|function| byte >= function.signature.end)?;
     let tokens = code(file.text());

@@ -7,7 +7,7 @@ use crate::lsp::view::View;
 use crate::shader::annotation::options::{ANNOTATIONS, Described, DescribedOption, described};
 use crate::shader::symbols::{Symbol, SymbolKind};
 
-/// What can stand at the end of an annotation that is typed so far.
+/// The words that can stand at the end of an annotation that is typed so far.
 pub fn items(view: &View, typed: &str) -> Vec<CompletionItem> {
     let rest = typed.trim_start_matches("//@");
     let Some((keyword, options)) = rest.split_once(char::is_whitespace) else {

@@ -11,7 +11,7 @@ use super::name::is_behind_dot;
 use super::view::View;
 use crate::shader::glsl::{Token, TokenKind, tokens};
 
-/// What can stand at a place.
+/// The names that can stand at a place.
 pub fn completion(view: &View, place: Position) -> Vec<CompletionItem> {
     let file = view.file();
     if file.is_too_long() {

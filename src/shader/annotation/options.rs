@@ -5,9 +5,9 @@
 pub struct Described {
     /// The word behind `//@`.
     pub keyword: &'static str,
-    /// What it declares.
+    /// The thing that it declares.
     pub doc: &'static str,
-    /// What an editor inserts behind the keyword.
+    /// The text that an editor inserts behind the keyword.
     pub example: &'static str,
     /// Its options.
     pub options: &'static [DescribedOption],
@@ -20,7 +20,7 @@ pub struct DescribedOption {
     pub name: &'static str,
     /// The values that it can have; an example for others, in quotes for text.
     pub values: &'static [&'static str],
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
 }
 

@@ -86,7 +86,7 @@ fn likeness(a: &str, b: &str) -> u32 {
     1 + u32::try_from(100 * common / most).unwrap_or(0)
 }
 
-/// What became of the lines, which may be indented anew.
+/// The differences between lines, which may be indented anew.
 fn changes(old: &str, new: &str) -> Vec<DiffOp> {
     let trimmed = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_owned()).collect() };
     capture_diff_slices(Algorithm::Myers, &trimmed(old), &trimmed(new))

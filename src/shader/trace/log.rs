@@ -25,7 +25,7 @@ pub const SIZE: u64 = 4 * (START + MOST_FRAGMENTS as usize * PART) as u64;
 const ADDRESS: [u32; 2] = [0xC0DE_0A01, 0xC0DE_0A02];
 /// The function that logs an event.
 pub(super) const FUNCTION: &str = "specula_trace";
-/// What a text that writes to a buffer by its address needs.
+/// Extensions for a text that writes to a buffer by its address.
 pub const EXTENSIONS: &str = "#extension GL_EXT_buffer_reference : require\n#extension GL_EXT_buffer_reference_uvec2 : require\n\
     #extension GL_EXT_scalar_block_layout : require";
 

@@ -71,7 +71,7 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     assert_eq!(watched["changed"], edited["changed"]);
     viewer.running.done(json!({ "command": "set", "values": { "expression.at": "", "mode": "final" } }));
 
-    // What does not compile leaves the values.
+    // An edit that does not compile leaves the values.
     viewer.tree.write(NDF, &edit.replace("4.0 * alpha", "4.0 * alfa"));
     viewer.running.reload(false);
     viewer.tree.write(NDF, &edit);

@@ -136,7 +136,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>) {
     }
 }
 
-/// What the last edit has changed.
+/// How many lines the last edit has changed, and the first of them.
 fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
     if state.traces.before().is_none() || state.traces.progress != Progress::Done {
         return;

@@ -1,4 +1,4 @@
-//! What the panel shows of a file, made anew when the file, the trace or the choice changes.
+//! The rows of a file, made anew when the file, the trace or the choice changes.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -117,7 +117,7 @@ fn show_line(
     response.double_clicked()
 }
 
-/// What is behind the places of a line that the search has found. `left`: where its code begins.
+/// Marks behind the places of a line that the search has found. `left`: where its code begins.
 fn found(line: &CodeLine, find: &Find, (left, rect): (f32, Rect), look: &Look) -> Shape {
     let x = |byte: usize| left + look.letter * line.text[..byte].chars().count() as f32;
     let place = |place: Range<usize>| {

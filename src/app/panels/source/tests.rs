@@ -31,7 +31,7 @@ use crate::write_back::TreeFile;
 
 const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 
-/// What a test looks at.
+/// The panel under test, and the commands that it has sent.
 struct Window {
     state: State,
     panel: SourceState,

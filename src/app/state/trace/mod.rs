@@ -1,4 +1,4 @@
-//! What the statements of a file do at the pinned pixel: the newest trace, that of the version before, and what of them the user has chosen.
+//! The traces of a file at the pinned pixel: the newest one, that of the version before, and which part of them the user has chosen.
 //! Nothing is traced while the panel Source is out of sight.
 
 pub(in crate::app) mod choice;
@@ -76,18 +76,18 @@ pub(in crate::app) struct Traces {
     pub(in crate::app) saved: SavedText,
     /// The text that was typed and written last.
     pub(in crate::app) written: Option<WrittenText>,
-    /// What was asked for last, and the number of that request.
+    /// The last request, and its number.
     asked: Option<Subject>,
     number: u64,
     /// Whether the result of that request is still to come.
     is_awaited: bool,
-    /// What is to be asked for once it has stayed as it is for a while.
+    /// The request to send once it has stayed the same for a while.
     resting: Option<(Subject, Instant)>,
     /// Frames in which the panel was out of sight since a command asked for a trace.
     unseen: u32,
     /// The newest trace. It stays while a newer one is under way.
     newest: Option<Arc<PixelTrace>>,
-    /// That of the version before, at the same pixel of the same picture.
+    /// The trace of the version before, at the same pixel of the same picture.
     before: Option<Arc<PixelTrace>>,
 }
 
@@ -102,7 +102,7 @@ impl Traces {
         self.before.as_ref()
     }
 
-    /// What was asked for last.
+    /// The last request.
     pub(in crate::app) fn asked(&self) -> Option<&Subject> {
         self.asked.as_ref()
     }

@@ -15,7 +15,7 @@ pub(in crate::app) struct Side<'a> {
     pub(in crate::app) text: Arc<str>,
 }
 
-/// What the rows are made of.
+/// The input of the rows.
 pub(in crate::app) struct Sources<'a> {
     /// The text that is shown.
     pub(in crate::app) text: &'a str,
@@ -39,17 +39,17 @@ pub(in crate::app) struct Row {
     /// From 1.
     pub(in crate::app) line: u32,
     pub(in crate::app) reach: Reach,
-    /// What its statements do, in order.
+    /// The values and decisions of its statements, in order.
     pub(in crate::app) notes: Vec<Note>,
     /// Whether this is the first line, in the order of execution, whose values differ from the version before.
     pub(in crate::app) is_first_change: bool,
 }
 
-/// What a statement of a line does.
+/// A value or a decision of a statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::app) struct Note {
     pub(in crate::app) done: Done,
-    /// What stands before the values: `a2 = `; may be empty.
+    /// The text before the values: `a2 = `; may be empty.
     pub(in crate::app) label: String,
     pub(in crate::app) values: String,
     /// The values in the version before, if they differ.
@@ -59,7 +59,7 @@ pub(in crate::app) struct Note {
 }
 
 impl Note {
-    /// What is shown, on one line.
+    /// The text that is shown, on one line.
     pub(in crate::app) fn text(&self) -> String {
         let Self { label, values, before, .. } = self;
         before.as_ref().map_or_else(|| format!("{label}{values}"), |before| format!("{label}{before} → {values}"))

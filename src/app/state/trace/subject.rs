@@ -1,4 +1,4 @@
-//! What a trace is of.
+//! The pixel, stage and frame of a trace.
 
 use std::sync::Arc;
 

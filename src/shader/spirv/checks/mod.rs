@@ -100,7 +100,7 @@ fn is_line(i: Instruction) -> bool {
     matches!(i.op, Op::Line | Op::NoLine)
 }
 
-/// What a check does.
+/// The effect of a check that fails.
 enum Report<'a> {
     /// Sets a bit of the array.
     Bits { mask: Id },
@@ -122,7 +122,7 @@ struct Checker<'a> {
     uvec4: Id,
     /// Results that only a select reads, which computes both sides: see [`selected`].
     selected: Selected,
-    /// What waits for the select that reads its result.
+    /// Suspects that wait for the select that reads their result.
     waiting: Vec<(Id, Suspect, usize)>,
     checks: Vec<Check>,
     left_out: usize,

@@ -1,4 +1,4 @@
-//! What a module is checked for at run time: operations whose result GLSL or SPIR-V leaves open, and what the author asserts and prints.
+//! The checks of a module at run time: operations whose result GLSL or SPIR-V leaves open, and what the author asserts and prints.
 
 use std::fmt;
 
@@ -94,7 +94,7 @@ impl Rule {
     }
 }
 
-/// What is undefined, as a reader of the shader says it.
+/// The undefined operation, as a reader of the shader says it.
 impl fmt::Display for Rule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

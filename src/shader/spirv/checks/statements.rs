@@ -7,7 +7,7 @@ use crate::shader::spirv::module::{Id, Instruction};
 use crate::shader::spirv::op::Op;
 
 impl Checker<'_> {
-    /// What a call of `assert` or `print` tells. An assertion shows the operands of its comparison.
+    /// The suspect of a call of `assert` or `print`. An assertion shows the operands of its comparison.
     pub(super) fn own_statement(&mut self, out: &mut Vec<Instruction>, i: Instruction) -> Option<Suspect> {
         if i.op != Op::FunctionCall {
             return None;

@@ -11,7 +11,7 @@ pub(super) struct Suspect {
     pub rule: Rule,
     /// Whether it does: a bool, or a vector with one for each component.
     pub broken: Id,
-    /// What it works on, for the reader.
+    /// The values that it works on, for the reader.
     pub operands: Vec<Id>,
     /// See `Check::text`.
     pub text: Option<u32>,

@@ -97,7 +97,7 @@ fn without_a_window_nothing_is_offered_to_show() {
     opened.client.quit();
 }
 
-/// What a window answers to a command on its socket.
+/// The answer of a window to a command on its socket.
 fn asked(socket: &std::path::Path, command: &Value) -> Value {
     let mut stream = UnixStream::connect(socket).unwrap();
     writeln!(stream, "{command}").unwrap();
