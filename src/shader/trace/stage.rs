@@ -187,20 +187,24 @@ impl TracedStage {
     }
 }
 
-/// The text of a stage that listens. No line moves.
+/// The text of a stage that listens. No line moves. If an included file has its `main`, a macro renames it.
 fn listening(text: &str, appended: &str, extensions: &str) -> Result<String, &'static str> {
-    let main = main_of(&code(text)).ok_or("has no main()")?;
     let appended = match appended.contains("SPECULA_COLOR") {
         true => appended.replace("SPECULA_COLOR", &color_of(text).ok_or("has no `out vec4` color")?),
         false => appended.to_owned(),
     };
-    let (before, after) = (&text[..main.start], &text[main.end..]);
-    let before = match (extensions, before.find("#version").and_then(|at| Some(at + before[at..].find('\n')?))) {
-        ("", _) | (_, None) => before.to_owned(),
-        (extensions, Some(end)) => {
-            let next = before[..=end].lines().count() + 1;
-            format!("{}{extensions}\n#line {next}\n{}", &before[..=end], &before[end + 1..])
+    let (renamed, head, end) = match main_of(&code(text)) {
+        Some(main) => (format!("{}specula_main{}", &text[..main.start], &text[main.end..]), "", ""),
+        None => (text.to_owned(), "\n#define main specula_main", "#undef main\n"),
+    };
+    let head = format!("{extensions}{head}");
+    let version = renamed.find("#version").and_then(|at| Some(at + renamed[at..].find('\n')?));
+    let renamed = match version.filter(|_| !head.is_empty()) {
+        None => renamed,
+        Some(version) => {
+            let next = renamed[..=version].lines().count() + 1;
+            format!("{}{head}\n#line {next}\n{}", &renamed[..=version], &renamed[version + 1..])
         }
     };
-    Ok(format!("{before}specula_main{after}\n{appended}"))
+    Ok(format!("{renamed}\n{end}{appended}"))
 }

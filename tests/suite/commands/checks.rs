@@ -261,3 +261,25 @@ fn edits_with_assertions_are_reloads_like_others() {
     ready(&session.save("user.glsl", &user));
     assert_same(&session.render(), &before, "restored");
 }
+
+#[test]
+fn files_of_shadertoy_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    // 64 x 48 pixels, of which three rows are below 3.
+    let toy = "void mainImage(out vec4 color, in vec2 at) {\n    assert(at.y > 3.0, \"low\");\n    \
+        color = vec4(1.0 / floor(at.x / 10.0));\n}\n";
+    std::fs::write(folder.path().join("toy.glsl"), toy).unwrap();
+    let size = ["--size", "64x48", "--validate"];
+    let checked = run(folder.path(), &[&["check", "--undefined", "toy.glsl", "--json"], &size[..]].concat());
+    checked.expect(
+        1,
+        &["2 errors", "assertion failed: low: 2.5 and 3, first at the pixel 0,45", "division by 0: 1 and 0"],
+    );
+    let found: Value = serde_json::from_str(&checked.stdout).unwrap();
+    let lines =
+        found.as_array().unwrap().iter().map(|of| (of["line"].as_u64().unwrap(), of["count"].as_u64().unwrap()));
+    assert_eq!(lines.collect::<Vec<_>>(), [(2, 64 * 3), (3, 10 * 48)], "{found:#}");
+    let rendered = run(folder.path(), &[&["render", "toy.glsl", "--out", "toy.png"], &size[..]].concat());
+    rendered.expect(1, &["1 assertion failed", "low"]);
+    assert!(folder.path().join("toy.png").exists());
+}
