@@ -34,6 +34,17 @@ pub enum Event<'a> {
         /// Shader generation.
         generation: u64,
     },
+    /// The window has shown previews of a lower resolution while the picture moved, and shows the whole picture again.
+    Previews {
+        /// How many previews it has shown.
+        shown: u32,
+        /// Size of the last one, pixels.
+        size: [u32; 2],
+        /// Milliseconds from the first preview to the last.
+        ms: f64,
+        /// Milliseconds from the last preview to the whole picture.
+        whole_ms: f64,
+    },
     /// The visible thumbnails show the current state.
     Thumbnails {
         /// How many were drawn since the last event.

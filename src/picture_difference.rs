@@ -1,6 +1,7 @@
 //! Compares two pictures, for the goldens, for `specula diff` and for the window.
 
 mod fit;
+pub mod report;
 mod still;
 
 use std::io::BufReader;

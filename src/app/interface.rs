@@ -52,6 +52,7 @@ pub(super) struct Followed {
     pub(super) pixel: Option<(PixelAt, bool)>,
     pub(super) limits: Option<Limits>,
     pub(super) is_settled: bool,
+    pub(super) is_preview: bool,
     pub(super) waits: Option<Waits>,
 }
 

@@ -12,11 +12,16 @@ mod gallery;
 mod inspector;
 mod loops;
 mod number;
+mod outline;
+mod parts;
 mod pictures;
 mod pixel;
 mod pointed;
+mod preview;
+mod preview_view;
 mod reference;
 mod reference_view;
+mod refine;
 mod request;
 mod sets;
 mod texture;
@@ -44,7 +49,11 @@ pub(super) use error_map::Measurement;
 pub(super) use frame::Beginning;
 pub(super) use loops::Ended;
 use loops::LoopChecks;
+pub(super) use parts::Part;
+use parts::Parts;
 pub(super) use pixel::PixelUnderMouse;
+pub(super) use preview_view::ENLARGE;
+use preview_view::Preview;
 pub(super) use reference_view::Reference;
 use reference_view::ReferenceView;
 use request::FRAMES_IN_FLIGHT;
@@ -58,6 +67,10 @@ pub(super) struct Screen {
     ui: UiRenderer,
     pub(super) between: Between,
     pub(super) view: View,
+    /// The parts of a picture that is drawn between frames.
+    parts: Parts,
+    /// What draws previews, while there are any.
+    preview: Option<Preview>,
     frames: Frames,
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -101,7 +114,10 @@ impl Screen {
         Ok(Self {
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             between: Between::new(gpu, layouts)?,
-            view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
+            // One more slot, for parts of the picture.
+            view: View::new(gpu, layouts, FRAMES_IN_FLIGHT + 1)?,
+            parts: Parts::new(gpu)?,
+            preview: None,
             frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
             gpu: gpu.clone(),
             layouts: layouts.clone(),
@@ -138,6 +154,11 @@ impl Screen {
     /// The camera of the last frame.
     pub(super) fn camera_view(&self) -> Option<CameraView> {
         self.last.as_ref().map(|frame| frame.state.camera)
+    }
+
+    /// The frame that was accepted last.
+    pub(super) fn last_frame(&self) -> Option<&BoundFrame> {
+        self.last.as_ref()
     }
 
     /// The frames, for their times.
@@ -207,7 +228,7 @@ impl Screen {
     /// Drops all that a frame for which memory was short may have left incomplete.
     pub(super) fn forget_frame(&mut self) {
         self.view.forget();
-        (self.reference, self.outline) = (None, None);
+        (self.reference, self.outline, self.preview) = (None, None, None);
         self.texture.forget();
         self.cells.0.clear();
     }

@@ -12,6 +12,7 @@ use super::engine::last_complete::target;
 use super::engine::{Engine, ToolsState};
 use super::options::{AppOptions, Early};
 use super::state::State;
+use super::state::adaptive::Previews;
 use super::state::exercise::Learning;
 use super::state::hint::Hint;
 use super::state::last_session::LastSessions;
@@ -49,6 +50,7 @@ pub(super) fn start(
         plain: options.plain,
         device: format!("{} · Vulkan {}", gpu.info().name, gpu.info().api),
         tells_statistics: gpu.tells_statistics(),
+        previews: Previews::new(gpu.info().kind == "cpu"),
         ..State::new(options.settings, source.clone())
     };
     let session = &state.session;

@@ -1,23 +1,28 @@
 //! `specula diff A B`: measures how different pictures are.
 
+mod report;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use specula::picture;
-use specula::picture_difference::{Comparison, Measure, Picture};
+use specula::picture_difference::report::ReportPair;
+use specula::picture_difference::{Comparison, Measure};
 
 use super::progress::Progress;
 use super::{Failure, print_json};
+use report::{Limits, Opened, reported, write_report};
 
 /// Options of `diff`.
 #[derive(clap::Args)]
 #[command(
     after_help = "PNGs are compared as an eye sees them: the error is the mean of FLIP (Andersson et al. 2020), 0 to 1. \
     0.01 is hardly visible, 0.1 is obvious. EXRs are compared as numbers: the error is the RMSE, in their own unit.\n\
-    Exit codes: 0 when every error is at most --max; 1 when one is larger, or when a picture is on one side only or does \
-    not load; 2 for a wrong command line.\n\n\
-    In CI:  specula render --mode all --out now/ball.png && specula diff golden now --max 0.01"
+    FLIP is a mean, so it lets a difference of a few pixels through; --max-channel does not.\n\
+    Exit codes: 0 when every error is at most --max, and no channel differs by more than --max-channel; 1 otherwise, or when a picture is on \
+    one side only or does not load; 2 for a wrong command line.\n\n\
+    In CI:  specula render --mode all --out now/ball.png && specula diff golden now --max 0.01 --report report.html"
 )]
 pub struct Args {
     /// Picture, .png or .exr, or a folder of them
@@ -27,9 +32,15 @@ pub struct Args {
     /// Largest error that passes
     #[arg(long, value_name = "ERROR", default_value_t = 0.0, allow_negative_numbers = true)]
     max: f64,
-    /// Write a map of the differences: a file; or, for folders, a folder with a map of each picture whose error is larger than --max
+    /// Largest difference of a channel that passes: 0 to 1 for PNGs, of which 0.004 is one step of 8 bits; for EXRs in their own unit
+    #[arg(long, value_name = "DIFFERENCE", allow_negative_numbers = true)]
+    max_channel: Option<f64>,
+    /// Write a map of the differences: a file; or, for folders, a folder with a map of each picture whose error is larger than a limit
     #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
+    /// Write a page for a browser, which shows the pictures, the worst first, with their differences and settings
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -39,18 +50,42 @@ pub struct Args {
 struct Pair {
     name: String,
     compared: Result<Comparison, String>,
+    /// What the report shows of it, if there is one.
+    reported: Option<ReportPair>,
 }
 
 impl Pair {
-    fn passes(&self, max: f64) -> bool {
-        self.compared.as_ref().is_ok_and(|found| found.error <= max)
+    /// Compares two pictures, of which one may be missing.
+    fn new(name: String, [a, b]: [Result<Opened, String>; 2], args: &Args) -> Result<Self, String> {
+        let both = a.as_ref().and_then(|a| b.as_ref().map(|b| [a, b])).map_err(Clone::clone);
+        let compared = both.and_then(|[a, b]| Comparison::new(&a.picture, &b.picture));
+        let mut pair = Self { name, compared, reported: None };
+        if args.report.is_some() {
+            let passes = pair.passes(args.limits());
+            pair.reported = Some(reported((&pair.name, &pair.compared), [a.as_ref().ok(), b.as_ref().ok()], passes)?);
+        }
+        Ok(pair)
+    }
+
+    fn passes(&self, limits: Limits) -> bool {
+        self.compared
+            .as_ref()
+            .is_ok_and(|found| found.error <= limits.max && limits.max_channel.is_none_or(|most| found.largest <= most))
+    }
+}
+
+impl Args {
+    fn limits(&self) -> Limits {
+        Limits { max: self.max, max_channel: self.max_channel }
     }
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if args.max.is_nan() || args.max < 0.0 {
-        return Err(Failure::Usage(format!("--max {}: expected 0 or more", args.max)));
+    let given = [("--max", Some(args.max)), ("--max-channel", args.max_channel)];
+    if let Some((option, Some(wrong))) = given.into_iter().find(|(_, limit)| limit.is_some_and(|limit| !(limit >= 0.0)))
+    {
+        return Err(Failure::Usage(format!("{option} {wrong}: expected 0 or more")));
     }
     if let Some(absent) = [&args.a, &args.b].into_iter().find(|path| !path.exists()) {
         return Err(Failure::Input(format!("{}: there is no such file or folder", absent.display())));
@@ -63,40 +98,53 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     let same_place = |x: &Path, y: &Path| matches!((x.canonicalize(), y.canonicalize()), (Ok(x), Ok(y)) if x == y);
-    if let Some(out) = args.out.iter().find(|out| same_place(out, &args.a) || same_place(out, &args.b)) {
-        let message = format!("--out {} would overwrite a picture that is compared: name another place", out.display());
+    let outputs = [("--out", &args.out), ("--report", &args.report)].into_iter();
+    let mut outputs = outputs.filter_map(|(option, path)| Some((option, path.as_ref()?)));
+    if let Some((option, out)) = outputs.find(|(_, out)| same_place(out, &args.a) || same_place(out, &args.b)) {
+        let message =
+            format!("{option} {} would overwrite a picture that is compared: name another place", out.display());
         return Err(Failure::Usage(message));
     }
-    let pairs = if folders {
-        in_folders(&args.a, &args.b, &Progress::new(true))?
-    } else {
-        vec![pair_of_files(&args.a, &args.b)?]
-    };
+    let limits = args.limits();
+    let mut pairs = if folders { in_folders(args, &Progress::new(true))? } else { vec![pair_of_files(args)?] };
     if let Some(out) = &args.out {
-        write_maps(&pairs, out, folders, args.max)?;
+        write_maps(&pairs, out, folders, limits)?;
+    }
+    if let Some(report) = &args.report {
+        let all = pairs.iter_mut().filter_map(|pair| pair.reported.take()).collect();
+        write_report(report, [&args.a, &args.b], limits, all)?;
     }
     if args.json {
-        let pictures: Vec<Value> = pairs.iter().map(|pair| as_json(pair, args.max)).collect();
-        let passes = pairs.iter().all(|pair| pair.passes(args.max));
-        print_json(&json!({ "pictures": pictures, "max": args.max, "passes": passes }));
+        let pictures: Vec<Value> = pairs.iter().map(|pair| as_json(pair, limits)).collect();
+        let passes = pairs.iter().all(|pair| pair.passes(limits));
+        let mut all = json!({ "pictures": pictures, "max": args.max, "passes": passes });
+        if let Some(most) = args.max_channel {
+            all["max_channel"] = most.into();
+        }
+        print_json(&all);
     } else {
         print_all(&pairs);
     }
-    let failed = pairs.iter().filter(|pair| !pair.passes(args.max)).count();
+    let failed = pairs.iter().filter(|pair| !pair.passes(limits)).count();
     match failed {
         0 => Ok(()),
         _ if args.json || pairs.len() == 1 => Err(Failure::Printed),
-        _ => Err(Failure::Input(format!("{failed} of {} pictures fail at --max {}", pairs.len(), args.max))),
+        _ => Err(Failure::Input(format!("{failed} of {} pictures fail at {limits}", pairs.len()))),
     }
 }
 
-fn pair_of_files(a: &Path, b: &Path) -> Result<Pair, Failure> {
-    let open = |path: &Path| Picture::open(path).map_err(Failure::Input);
-    let compared = Comparison::new(&open(a)?, &open(b)?).map_err(Failure::Input)?;
-    Ok(Pair { name: b.display().to_string(), compared: Ok(compared) })
+fn pair_of_files(args: &Args) -> Result<Pair, Failure> {
+    let open = |path: &Path| Opened::new(path, args.report.is_some()).map_err(Failure::Input);
+    let (a, b) = (open(&args.a)?, open(&args.b)?);
+    let pair = Pair::new(args.b.display().to_string(), [Ok(a), Ok(b)], args).map_err(Failure::Input)?;
+    match (&pair.compared, &args.report) {
+        (Err(why), None) => Err(Failure::Input(why.clone())),
+        _ => Ok(pair),
+    }
 }
 
-fn in_folders(a: &Path, b: &Path, progress: &Progress) -> Result<Vec<Pair>, Failure> {
+fn in_folders(args: &Args, progress: &Progress) -> Result<Vec<Pair>, Failure> {
+    let (a, b) = (&args.a, &args.b);
     let (in_a, in_b) = (pictures_in(a)?, pictures_in(b)?);
     if in_a.is_empty() && in_b.is_empty() {
         let message = format!("no .png or .exr in {}, nor in {}", a.display(), b.display());
@@ -106,16 +154,13 @@ fn in_folders(a: &Path, b: &Path, progress: &Progress) -> Result<Vec<Pair>, Fail
     let pair = |(number, name): (usize, &&String)| {
         progress.begin("picture", (number, names.len()), name);
         let name = *name;
-        let compared = match (in_a.contains(name), in_b.contains(name)) {
-            (true, true) => Picture::open(&a.join(name))
-                .and_then(|from| Ok((from, Picture::open(&b.join(name))?)))
-                .and_then(|(from, to)| Comparison::new(&from, &to)),
-            (true, false) => Err(format!("only in {}", a.display())),
-            _ => Err(format!("only in {}", b.display())),
+        let open = |folder: &Path, other: &Path, names: &BTreeSet<String>| match names.contains(name) {
+            true => Opened::new(&folder.join(name), args.report.is_some()),
+            false => Err(format!("only in {}", other.display())),
         };
-        Pair { name: name.clone(), compared }
+        Pair::new(name.clone(), [open(a, b, &in_a), open(b, a, &in_b)], args).map_err(Failure::Input)
     };
-    Ok(names.iter().enumerate().map(pair).collect())
+    names.iter().enumerate().map(pair).collect()
 }
 
 /// Names of the pictures in a folder, without those of its subfolders.
@@ -133,7 +178,7 @@ fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
 }
 
 /// Writes maps of the differences. The map of two EXRs is an EXR too, so the extension of the file must match.
-fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), Failure> {
+fn write_maps(pairs: &[Pair], out: &Path, folders: bool, limits: Limits) -> Result<(), Failure> {
     if !folders {
         return pairs.iter().flat_map(|pair| &pair.compared).try_for_each(|found| {
             let ending = if found.measure == Measure::Flip { "png" } else { "exr" };
@@ -148,7 +193,7 @@ fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(),
         return Err(Failure::Usage(format!("--out {} is a file: to compare folders, name a folder", out.display())));
     }
     std::fs::create_dir_all(out).map_err(|e| Failure::Input(format!("cannot create {}: {e}", out.display())))?;
-    for pair in pairs.iter().filter(|pair| !pair.passes(max)) {
+    for pair in pairs.iter().filter(|pair| !pair.passes(limits)) {
         if let Ok(found) = &pair.compared {
             picture::write_image(found.map(), &out.join(&pair.name)).map_err(Failure::Input)?;
         }
@@ -194,8 +239,8 @@ fn number(error: f64) -> String {
     if error < 0.00005 { "< 0.0001".to_owned() } else { format!("{error:.4}") }
 }
 
-fn as_json(pair: &Pair, max: f64) -> Value {
-    let passes = pair.passes(max);
+fn as_json(pair: &Pair, limits: Limits) -> Value {
+    let passes = pair.passes(limits);
     match &pair.compared {
         Err(why) => json!({ "name": pair.name, "passes": passes, "why": why }),
         Ok(found) => json!({ "name": pair.name, "passes": passes, "measure": found.measure, "error": found.error,

@@ -68,6 +68,27 @@ impl Headless {
         self.read_frame(&frame)
     }
 
+    /// Renders the first frame with its model in parts of so many rows, each submitted alone, as a window does between frames. In an
+    /// accumulating mode that is the average of `view.frames` frames.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn render_in_parts(&mut self, rows: u32) -> Result<Capture, HeadlessError> {
+        self.offscreen.view.restart_passes();
+        self.offscreen.view.forget_limits();
+        self.offscreen.view.restart_mean();
+        self.clock = self.sequence.clock(0);
+        let frame = self.bind()?;
+        let frames = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
+        let mut readback = None;
+        for _ in 0..frames {
+            self.offscreen.draw_parts(&frame, rows)?;
+            readback = self.draw_frame(&frame, Redraw::IfChanged, View::read_back)?;
+        }
+        let readback = readback.ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))?;
+        Ok(readback.finish())
+    }
+
     /// Draws a frame and reads it back. With an automatic range, it is tone mapped again once its values are known.
     fn read_frame(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
         let mut readback = self.draw_frame(frame, Redraw::Always, View::read_back)?;

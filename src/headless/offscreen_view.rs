@@ -57,6 +57,27 @@ impl OffscreenView {
         Ok(result)
     }
 
+    /// Draws the model of the next picture of a frame in parts of so many rows, and waits for each.
+    ///
+    /// # Errors
+    /// A device error.
+    pub fn draw_parts(&mut self, frame: &BoundFrame, rows: u32) -> Result<(), HeadlessError> {
+        self.view.prepare(frame)?;
+        while self.view.rows_in_parts(frame) < frame.state.size.1 {
+            let mut encoder = self.frames.begin()?;
+            let slot = self.frames.current();
+            let drawn = self.view.draw_part(&mut encoder, slot, frame, (0, 0), rows);
+            let drawn = drawn.and_then(|()| self.frames.submit(encoder, Default::default()));
+            if drawn.is_err() {
+                self.view.forget();
+            }
+            drawn?;
+            // SYNC: the next part uses the same slot.
+            self.frames.wait()?;
+        }
+        Ok(())
+    }
+
     /// The words of a loop of the last frame that did not end.
     pub fn endless_loop(&self) -> Option<[u32; 2]> {
         self.frames.endless_loop(self.frames.current())

@@ -12,7 +12,7 @@ use crate::frame::FrameState;
 use crate::gpu::{Buffer, Rect};
 use crate::interface::{CLOCK, Frame, Light};
 use crate::pipeline::BoundPipelines;
-use crate::shader::graph::RenderPhase;
+use crate::shader::graph::{Input, RenderPhase};
 
 /// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]
@@ -72,6 +72,20 @@ impl BoundFrame {
     /// Whether the frame stays the same as time passes. An animation that is not repeated ends.
     pub fn rests(&self) -> bool {
         !self.has_moving_shaders() && self.state.scene.as_ref().is_none_or(|scene| !scene.is_playing())
+    }
+
+    /// Whether a frame of another size, alone, shows the same: no stage reads earlier frames, nor the camera that they had.
+    pub fn stands_alone(&self) -> bool {
+        let mut inputs = self.state.pipelines.passes.iter().flat_map(|pass| pass.inputs.values());
+        !self.reads_motion() && !inputs.any(|input| matches!(input, Input::Before(_) | Input::Buffer(..)))
+    }
+
+    /// Whether both have the same pipelines, light and tables: they differ in camera, lights, parameters, factors of materials, pose or time.
+    pub fn is_drawn_alike(&self, other: &Self) -> bool {
+        self.pipelines.is_same(&other.pipelines)
+            && Arc::ptr_eq(&self.tables, &other.tables)
+            && Arc::ptr_eq(&self.environment, &other.environment)
+            && Arc::ptr_eq(&self.measured, &other.measured)
     }
 
     /// Whether a stage reads the clock, or a pass its previous output.

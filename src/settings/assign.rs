@@ -228,7 +228,7 @@ fn set_at(root: &mut toml::Value, path: &str, value: toml::Value) -> Result<(), 
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Factor, FactorValue, ShaderValue, Tonemap};
+    use super::super::{Adaptive, Factor, FactorValue, ShaderValue, Tonemap};
     use super::*;
 
     #[test]
@@ -238,6 +238,7 @@ mod tests {
             "mode=base-color",
             "view.ev = -1",
             "view.tonemap=reinhard-luminance",
+            "view.adaptive=off",
             "lights.orbit.2.color=[1, 0, 0.5]",
             "camera.eye=[1,2,3]",
             "variant=midnight",
@@ -258,7 +259,7 @@ mod tests {
         }
         assert_eq!(settings.mode, "base-color");
         assert_eq!(settings.view.ev, -1.0);
-        assert_eq!(settings.view.tonemap, Tonemap::ReinhardLuminance);
+        assert_eq!((settings.view.tonemap, settings.view.adaptive), (Tonemap::ReinhardLuminance, Adaptive::Off));
         assert_eq!(settings.lights.orbit[2].color, [1.0, 0.0, 0.5]);
         assert_eq!(settings.camera.eye, Some([1.0, 2.0, 3.0]));
         assert_eq!((settings.variant.as_str(), settings.material.base_color), ("midnight", [1.0, 0.5, 0.0]));
@@ -285,8 +286,8 @@ mod tests {
         for (assignment, part) in [
             (
                 "view.exposure=1",
-                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, blend_layers, bounces, channels, \
-                 colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
+                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are adaptive, background, blend_layers, bounces, \
+                 channels, colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? `specula help set` lists all"),
             ("qqqq.ev=1", "At the top there are animation, camera, "),
@@ -295,7 +296,7 @@ mod tests {
             ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),
             ("view.ev=", "view.ev has no value; it takes a number, -30 to 30"),
             ("view.msaa=-1", "view.msaa cannot be '-1'; it takes a whole number, 0 or more"),
-            ("view=1", "view cannot be '1'; it is a group of settings: background, blend_layers, bounces,"),
+            ("view=1", "view cannot be '1'; it is a group of settings: adaptive, background, blend_layers,"),
             ("lights.orbit=1", "lights.orbit cannot be '1'; it is a list of settings, as lights.orbit.0"),
             ("lights.rect.enabled=yes", "lights.rect.enabled cannot be 'yes'; it takes true or false"),
             ("material.base_color=0.9,0.1", "cannot be '0.9,0.1'; it takes 3 numbers, as 0.9,0.1,0.1"),

@@ -32,6 +32,21 @@ pub enum Tonemap {
 
 impl Choice for Tonemap {}
 
+/// When a window draws previews of lower resolution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Adaptive {
+    /// Where a whole picture takes long.
+    #[default]
+    Auto,
+    /// Wherever they can be drawn.
+    On,
+    /// Never.
+    Off,
+}
+
+impl Choice for Adaptive {}
+
 /// The default background. Modes that show data instead of light also use it if the background is `env`.
 const BACKGROUND: &str = "#1b1d21";
 
@@ -66,6 +81,10 @@ settings! {
         dither: bool, row("Dither");
         /// Multisampling: samples of each pixel.
         msaa: u32 = 4, one_of(&[1, 4]) unit(SAMPLES) row("Samples") title("Samples per pixel");
+        /// Whether the window draws fewer pixels, with one sample each, while the camera, a slider or a light moves or an animation plays, and
+        /// the whole picture once they rest. auto: where a picture takes longer than 50 ms; on: everywhere; off: nowhere. Captures, values
+        /// of pixels and commands always see the whole picture.
+        adaptive: Adaptive, row("Adaptive") title("Adaptive resolution");
         /// Layers of blended surfaces that are sorted in each pixel, from the farthest on (depth peeling), so that surfaces which intersect or
         /// interleave blend in the right order. 0 sorts whole primitives by their centers; so are surfaces in front of the last layer.
         blend_layers: u32, whole(0, 64) unit(LAYERS) row("Blend layers") title("Layers of blended surfaces");

@@ -50,6 +50,8 @@ pub(crate) struct Worker {
     snapshot: Arc<Mutex<Snapshot>>,
     /// The build requests since the last success, the newest first: as many as the grid can show modes.
     asked: VecDeque<Build>,
+    /// The last preview whose pipelines were requested.
+    asked_preview: Option<Build>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -76,6 +78,7 @@ impl Worker {
             has_compiled: false,
             panics: 0,
             thumbnails: None,
+            preview: None,
             inspected: None,
             low_priority: None,
             questions: None,
@@ -86,7 +89,7 @@ impl Worker {
         };
         let thread = sender.spawn(TaskKind::Worker, move |_| state.run());
         let jobs = Some(Jobs { sender: jobs, edits });
-        Self { jobs, reloaded: 0, snapshot, asked: VecDeque::new(), thread }
+        Self { jobs, reloaded: 0, snapshot, asked: VecDeque::new(), asked_preview: None, thread }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -137,6 +140,15 @@ impl Worker {
     /// Builds pipelines of thumbnails, one request after the other, while idle. Replaces earlier requests.
     pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<Arc<PipelineRequest>>) {
         self.send(Job::Thumbnails(set.clone(), requests));
+    }
+
+    /// Builds pipelines of a preview while idle, once. Replaces an earlier request.
+    pub(crate) fn build_preview(&mut self, set: &Arc<PipelineSet>, request: &Arc<PipelineRequest>) {
+        let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
+        if !self.asked_preview.as_ref().is_some_and(is_asked) {
+            self.asked_preview = Some((set.clone(), request.clone()));
+            self.send(Job::Preview((set.clone(), request.clone())));
+        }
     }
 
     /// [`Worker::build_thumbnails`] for the modes that the inspector reads.

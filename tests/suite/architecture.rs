@@ -286,7 +286,8 @@ fn folders_import_only_from_layers_below() {
 }
 
 /// The files of the window that its screen imports: plain values of requests.
-const REQUESTS: [&str; 4] = ["engine/last_complete.rs", "gallery.rs", "state/grid.rs", "state/workspace.rs"];
+const REQUESTS: [&str; 5] =
+    ["engine/last_complete.rs", "gallery.rs", "state/adaptive/plan.rs", "state/grid.rs", "state/workspace.rs"];
 
 #[test]
 fn the_screen_draws_requests_and_knows_neither_state_nor_engine() {

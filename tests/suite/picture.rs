@@ -6,3 +6,4 @@ mod display;
 mod golden;
 mod inspector;
 mod motion;
+mod parts;

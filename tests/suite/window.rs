@@ -1,6 +1,7 @@
 //! The window on its own display (Xvfb): open, resize, edit, break, screenshot, close. xdotool sends keys and sizes through
 //! the X server, as a user would.
 
+mod adaptive;
 mod attacks;
 mod commands;
 mod compare;

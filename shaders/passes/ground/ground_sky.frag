@@ -18,16 +18,18 @@
 uniform sampler2D ground_blockers;
 
 const int DIRECTIONS = 24;
+const int MOST_STEPS = 16;
 
 // Faces of the blurred environment have this many levels below them: 4 x 4 texels, each about as wide as the parts of the sky that
 // they stand for.
 const int LEVELS_BELOW = 3;
 
 // Part of the irradiance by a uniform sky that comes from this direction of the compass: sin^2 of the elevation above which the model
-// hides it. More steps see the model's shape more closely.
+// hides it. More steps, up to MOST_STEPS, see the model's shape more closely. Their constant bound lets the image stay while only the camera
+// moves: a pass whose loops are counted is drawn in every frame.
 float open_sky(vec2 direction, int steps) {
     float open = 1.0;
-    for (int step = 0; step < steps; ++step) {
+    for (int step = 0; step < min(steps, MOST_STEPS); ++step) {
         // Distances grow, as near blockers hide the most: 0.4 % to 36 % of the ground.
         float far = 0.36 * pow((float(step) + 0.6) / (float(steps) - 0.4), 2.0);
         // The mean over an area as wide as the step, so that no thin wall is missed and none stands out.
@@ -62,7 +64,7 @@ void main() {
     float sun = 1.0;
     if (SUN_COUNT != 0u) {
         vec2 towards = sun_at(0u).position_ws.xz * vec2(1.0, -1.0);
-        sun = open_sky(towards / max(length(towards), 1e-3), 16);
+        sun = open_sky(towards / max(length(towards), 1e-3), MOST_STEPS);
     }
     // Without light there is no shadow.
     color = vec4(whole > 0.0 ? left / whole : 1.0, sun, 0.0, 1.0);

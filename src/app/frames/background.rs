@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::adaptive::{Step, draw_part, prepare_next};
 use super::draw::Drawing;
 use super::picture::missing_thumbnail;
 use super::progress::awaits_edit;
@@ -46,7 +47,11 @@ impl Drawing {
             if left(self.shows_at()).is_some_and(|left| left.is_zero()) {
                 return Ok(Next::Frame);
             }
-            wait = self.draw_background(state, engine)?;
+            wait = match draw_part(state, engine, &mut self.screen)? {
+                Step::Frame => return Ok(Next::Frame),
+                Step::After(wait) => Some(wait),
+                Step::Done => self.draw_background(state, engine)?,
+            };
         }
         Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
     }
@@ -68,8 +73,9 @@ impl Drawing {
     ) -> Result<Option<Duration>, GpuError> {
         let is_safe_mode = engine.recorder.is_safe_mode();
         let trace = update_trace(state, engine, is_safe_mode);
+        let preview = prepare_next(state, engine, &mut self.screen)?;
         let drawn = self.draw_between(state, engine, is_safe_mode)?;
-        Ok(trace.into_iter().chain(drawn).min())
+        Ok(trace.into_iter().chain(preview).chain(drawn).min())
     }
 
     fn draw_between(

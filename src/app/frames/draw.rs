@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use winit::window::Window;
 
+use super::adaptive::{self, Step};
 use super::grid::{arrange, prepare_grid};
 use super::memory::MemoryClock;
 use super::picture::next_frame;
@@ -138,6 +139,7 @@ impl Drawing {
         if state.playback.take_restart() {
             screen.view.restart_passes();
         }
+        let before = screen.last_frame().cloned();
         let prepared = next_frame(state, engine, screen.rect.size, |frame| screen.view.prepare(frame));
         let frame = screen.accept(prepared)?;
         let frame = frame.as_ref();
@@ -145,6 +147,7 @@ impl Drawing {
             screen.prepare_reference(reference(state, engine, live))?;
         }
         prepare_grid(state, engine, screen, &cells)?;
+        let plan = adaptive::plan(state, engine, screen, (frame, before.as_ref()), self.interface.shown.is_held)?;
         screen.view.samples_range = state.workspace.shows_histogram && self.interface.panels.visible;
         screen.place_probe();
         screen.view.probe_passes = toy_pixel(state, screen.mouse_pixel());
@@ -168,7 +171,8 @@ impl Drawing {
         let record_begin = Instant::now();
         let copies_window = wants_window(state, engine) && !screen.copies_window();
         let shown = &self.interface.shown;
-        let request = frame_request(state, engine, frame, shown, copies_window);
+        let drawn = adaptive::Drawing::of(screen, frame, plan);
+        let request = frame_request(state, engine, (frame, plan), shown, copies_window);
         let redraw = request.redraw;
         let recorded = screen.record(&mut begun, &request)?;
         if recorded.grid_failed {
@@ -183,13 +187,18 @@ impl Drawing {
             record_ms: record_begin.elapsed().as_secs_f64() * 1e3,
         };
         self.present_ms = screen.submit(begun, frame, attempt)?;
-        timed(state, screen, frame, cpu);
+        adaptive::submitted(state, screen, frame, &drawn);
+        timed(state, screen, drawn.timed(screen, frame), cpu);
 
         answer(state, engine);
         let reported = finished(state, engine, screen, frame, &mut self.is_first, begin)?;
-        let wait = self.draw_background(state, engine)?;
+        let wait = match adaptive::draw_part(state, engine, screen)? {
+            Step::Frame => Some(Duration::ZERO),
+            Step::After(wait) => Some(wait),
+            Step::Done => self.draw_background(state, engine)?,
+        };
         let changes = moving || reported || measures || redraw == Redraw::Always;
-        if self.screen.has_more(frame) || changes || has_unanswered(state, engine) || moves(state) {
+        if self.screen.has_more(frame, plan) || changes || has_unanswered(state, engine) || moves(state) {
             if reported || measures {
                 self.interface.outdate();
             }
@@ -221,11 +230,13 @@ impl Drawing {
         screen.between.set_unseen(false);
         take_results(state, engine, screen);
         take_times(state, screen, engine.gpu_is_fast());
+        adaptive::take_times(state, screen);
         let followed = Followed {
             settings: Arc::as_ptr(&state.session.shared_settings()),
             pixel: screen.pixel(),
             limits: screen.view.limits(),
             is_settled: is_settled(state, engine),
+            is_preview: state.previews.is_preview(),
             waits: state.picture.waits_for().map(|(waits, _)| waits),
         };
         if state.waiting.is_empty() && !awaits_edit(state, engine) && interface.is_fresh(&followed) {

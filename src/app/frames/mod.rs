@@ -1,5 +1,6 @@
 //! The frame that the state describes: what it is, what it lacks, how the screen draws it, and whether it is final.
 
+mod adaptive;
 pub(super) mod background;
 pub(super) mod draw;
 mod grid;

@@ -9,7 +9,7 @@ use crate::app::state::State;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
 use crate::picture;
-use crate::render::{BoundFrame, Capture};
+use crate::render::{BoundFrame, Capture, Redraw};
 
 /// Writes the screenshot that a key has asked for. It waits for the first picture, for the model's textures, and for the range of a mode's
 /// values.
@@ -22,7 +22,8 @@ pub(super) fn take_screenshot(
     let is_empty = frame.state.scene.is_none() && (state.model.loading || state.session.model().is_some());
     let lacks_textures = frame.state.scene.as_ref().is_some_and(|scene| scene.model().awaits_textures);
     let awaits_textures = lacks_textures && state.model.loading;
-    if !state.screenshot || is_empty || awaits_textures || screen.lacks_limits(frame) {
+    let is_preview = state.previews.is_preview();
+    if !state.screenshot || is_empty || awaits_textures || is_preview || screen.lacks_limits(frame) {
         return Ok(());
     }
     state.screenshot = false;
@@ -53,7 +54,9 @@ fn read_picture(
     screen: &mut Screen,
     frame: &BoundFrame,
 ) -> Result<Option<Capture>, GpuError> {
-    let read = screen.read_picture(frame);
+    // A picture of many frames is taken as it is if its next frame is drawn in parts.
+    let redraw = if state.previews.is_planned() { Redraw::ToneMap } else { Redraw::IfChanged };
+    let read = screen.read_picture(frame, redraw);
     take_ended(state, engine, screen);
     read
 }

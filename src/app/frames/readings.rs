@@ -16,13 +16,15 @@ pub(super) fn readings<'a>(
     screen: &'a Screen,
     memory: &'a mut MemoryClock,
 ) -> Readings<'a> {
-    let value = screen.pixel_under_mouse(state.shown()).and_then(|pixel| {
+    // Those of a preview are not the picture's.
+    let pixel = screen.pixel_under_mouse(state.shown()).filter(|_| state.previews.is_whole());
+    let value = pixel.and_then(|pixel| {
         let sides = if screen.has_reference() { state.side_names() } else { None };
         readout(&pixel, sides)
     });
     Readings {
         value,
-        title: title(state, screen.view.accumulated()),
+        title: title(state, screen.accumulated(state.previews.is_preview())),
         legend: legend(state, screen),
         thumbnails: screen.between.thumbnails(),
         texture: screen.shown_texture(),

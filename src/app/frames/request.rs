@@ -7,6 +7,7 @@ use crate::app::engine::Engine;
 use crate::app::interface::Shown;
 use crate::app::screen::{FrameRequest, OutlineRequest, TextureDraw};
 use crate::app::state::State;
+use crate::app::state::adaptive::plan::Plan;
 use crate::app::widgets::theme::SELECTION;
 use crate::render::tools::OutlineStyle;
 use crate::render::{BoundFrame, Redraw};
@@ -14,17 +15,18 @@ use crate::render::{BoundFrame, Redraw};
 /// Width of the outline, points.
 const WIDTH: f32 = 2.0;
 
-/// The request for `frame` below `interface`.
+/// The request for `frame`, shown as planned, below `interface`.
 pub(super) fn frame_request<'a>(
     state: &mut State,
     engine: &mut Engine,
-    frame: Option<&'a BoundFrame>,
+    (frame, plan): (Option<&'a BoundFrame>, Plan),
     interface: &'a Shown,
     copies_window: bool,
 ) -> FrameRequest<'a> {
     FrameRequest {
         frame,
-        redraw: redraw(state, engine, frame),
+        redraw: if plan == Plan::Kept { Redraw::ToneMap } else { redraw(state, engine, frame) },
+        plan,
         outline: outline(state, engine, frame, interface.pixels_per_point),
         texture: texture(state, engine),
         primitives: &interface.primitives,

@@ -1,15 +1,14 @@
 //! A frame on the device: its slot and its image, its commands, and their submission.
 
-use std::sync::Arc;
-
 use super::Screen;
 use super::between_request::{BetweenRequest, Collected, Drawn};
 use super::loops::Ended;
-use super::request::{FrameRequest, OutlineRequest, Recorded};
+use super::outline::draw_outline;
+use super::request::{FrameRequest, Recorded};
 use super::window_copy::WindowCopy;
+use crate::app::state::adaptive::plan::Plan;
 use crate::cpu_clock::CpuClock;
-use crate::gpu::{Acquired, Encoder, GpuError, Image, NextImage, Swapchain, Use};
-use crate::render::tools::Outline;
+use crate::gpu::{Acquired, Encoder, GpuError, NextImage, Swapchain, Use};
 use crate::render::{BoundFrame, Output, Resources, View};
 
 /// A frame that is being recorded. Its slot was free, and the window has an image for it.
@@ -51,12 +50,20 @@ impl Screen {
         let Begun { encoder, acquired } = begun;
         let (slot, image) = (self.frames.current(), &acquired.image);
         let output = Output { image, before: Use::Acquired, at: self.rect.at };
-        match request.frame {
-            Some(frame) => self.view.draw(encoder, slot, frame, &output, request.redraw)?,
-            None => View::clear(encoder, &output),
-        }
-        self.draw_reference(encoder, slot, image, self.rect.at)?;
-        let outlined = self.draw_outline(encoder, request, image);
+        let (view, outline) = (&mut self.view, request.outline.as_ref());
+        let outlined = match request.frame {
+            Some(_) if request.plan == Plan::Preview => self.draw_preview(encoder, slot, outline, &output)?,
+            Some(frame) => {
+                view.draw(encoder, slot, frame, &output, request.redraw)?;
+                self.draw_reference(encoder, slot, image, self.rect.at)?;
+                let drawn = (frame, &self.view);
+                draw_outline(encoder, &mut self.outline, drawn, outline, (image, self.rect.at), 1.0)
+            }
+            None => {
+                View::clear(encoder, &output);
+                Ok(())
+            }
+        };
         self.survive(outlined)?;
         let texture = request.texture.as_ref().map(|draw| self.texture.draw(encoder, draw, request.frame));
         let redraws = self.survive(texture.unwrap_or(Ok(false)))?;
@@ -77,32 +84,6 @@ impl Screen {
         });
         self.window_copy = self.window_copy.take().or(copy);
         Ok(Recorded { grid_failed, copy_error })
-    }
-
-    /// Draws the outline of the selection over the picture in `target`, which is in [`Use::Color`] before and after. Without one, it has
-    /// no targets.
-    fn draw_outline(
-        &mut self,
-        encoder: &mut Encoder,
-        request: &FrameRequest<'_>,
-        target: &Arc<Image>,
-    ) -> Result<(), GpuError> {
-        let before = self.outline.take();
-        let Some((frame, OutlineRequest { tools, selected, style })) = request.frame.zip(request.outline.as_ref())
-        else {
-            return Ok(());
-        };
-        let outline = match before.filter(|outline| outline.fits(frame.state.size)) {
-            Some(outline) => outline,
-            None => Outline::new(tools, frame.state.size)?,
-        };
-        let Some(placed) = self.view.placed() else { return Ok(()) };
-        let is_selected = |instance: usize| selected.get(instance) == Some(&true);
-        encoder.pass("outline", |encoder| {
-            outline.draw(encoder, (frame, placed), is_selected, (target, self.rect.at), *style);
-        });
-        self.outline = Some(outline);
-        Ok(())
     }
 
     /// Submits a recorded frame and presents it. `attempt`: the number under which it was recorded for a loss of the device. Returns the
@@ -132,7 +113,9 @@ impl Screen {
 
     /// Whether another frame must follow at once: for the swapchain, for loops, for something that could not be drawn yet, for a picture
     /// that improves or is animated, or for a result in flight.
-    pub(in crate::app) fn has_more(&mut self, frame: Option<&BoundFrame>) -> bool {
+    /// Whether the picture improves is the caller's to decide if it is drawn in parts (`plan`), and a preview awaits nothing of it.
+    pub(in crate::app) fn has_more(&mut self, frame: Option<&BoundFrame>, plan: Plan) -> bool {
+        let frame = frame.filter(|_| plan != Plan::Preview);
         // Both change with every frame.
         let (redraws, awaits_loops) = (std::mem::take(&mut self.redraws), self.loops.awaits(&self.frames));
         let moving = self.reference.as_ref().filter(|reference| !reference.is_still());
@@ -140,13 +123,13 @@ impl Screen {
         let cells = self.cells.0.iter().filter_map(|cell| Some((&cell.view, &cell.shown.as_ref()?.frame)));
         let mut views = frame.map(|frame| (&self.view, frame)).into_iter().chain(reference).chain(cells);
         let is_unfinished = |(view, frame): (&View, &BoundFrame)| {
-            let gets_better = frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED;
+            let gets_better = plan == Plan::Whole && view.improves(frame);
             gets_better || view.is_moving(frame) || view.awaits_range_sample()
         };
         redraws
             || awaits_loops
             || self.is_stale
-            || self.awaits_pixel()
+            || (plan != Plan::Preview && self.awaits_pixel())
             || self.window_copy.is_some()
             || self.error_map.awaits_copies()
             || views.any(is_unfinished)

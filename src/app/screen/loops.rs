@@ -52,6 +52,12 @@ impl LoopChecks {
         self.ended.push(Ended::EndlessThumbnail(version));
     }
 
+    /// A loop did not end in a part of a picture.
+    pub(super) fn part_is_endless(&mut self, state: Arc<FrameState>, words: [u32; 2]) {
+        self.endless = Some(state.clone());
+        self.ended.push(Ended::Endless(state, words));
+    }
+
     /// The results of loops since the last call, in the order of the frames.
     pub(super) fn take(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)

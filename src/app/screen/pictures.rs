@@ -10,9 +10,13 @@ impl Screen {
         self.view.lacks_limits(frame)
     }
 
-    /// Draws the picture as it is on screen, without panels, and reads it back. After a lack of memory, the next frame draws it again.
-    pub(in crate::app) fn read_picture(&mut self, frame: &BoundFrame) -> Result<Option<Capture>, GpuError> {
-        let read = self.copy_picture(frame);
+    /// Draws the picture as it is on screen, without panels, and reads it back; `redraw` tells how much of it anew. After a lack of memory, the next frame draws it again.
+    pub(in crate::app) fn read_picture(
+        &mut self,
+        frame: &BoundFrame,
+        redraw: Redraw,
+    ) -> Result<Option<Capture>, GpuError> {
+        let read = self.copy_picture(frame, redraw);
         if read.as_ref().is_err_and(GpuError::is_shortage) {
             self.view.forget();
             self.reference = None;
@@ -20,13 +24,13 @@ impl Screen {
         read
     }
 
-    fn copy_picture(&mut self, frame: &BoundFrame) -> Result<Option<Capture>, GpuError> {
+    fn copy_picture(&mut self, frame: &BoundFrame, redraw: Redraw) -> Result<Option<Capture>, GpuError> {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
         self.check_loops();
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
         let slot = self.frames.current();
-        self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?;
+        self.view.draw(&mut encoder, slot, frame, &output, redraw)?;
         self.draw_reference(&mut encoder, slot, &image, (0, 0))?;
         let readback = self.view.read_back(&mut encoder, &image)?;
         self.frames.submit(encoder, Default::default())?;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::app::state::adaptive::plan::Plan;
 use crate::app::state::workspace::TextureRequest;
 use crate::gpu::Image;
 use crate::render::tools::{OutlineStyle, Tools};
@@ -14,6 +15,8 @@ pub(super) const FRAMES_IN_FLIGHT: usize = 2;
 pub(in crate::app) struct FrameRequest<'a> {
     pub(in crate::app) frame: Option<&'a BoundFrame>,
     pub(in crate::app) redraw: Redraw,
+    /// Whether to show it, or the preview that was prepared in place of it.
+    pub(in crate::app) plan: Plan,
     /// The outline of the selection, if there is one to draw.
     pub(in crate::app) outline: Option<OutlineRequest>,
     /// The texture that a panel shows.

@@ -1,6 +1,7 @@
 //! The state of the window, in stores without objects of the user interface, of the window system or of the device. Each store keeps one
 //! invariant and has its own tests. Stores know neither the engine nor panels.
 
+pub(super) mod adaptive;
 pub(super) mod arrangement;
 pub(super) mod captures;
 pub(super) mod compare;
@@ -45,6 +46,7 @@ use crate::settings::{EnvironmentSettings, LightSource, Settings};
 use crate::shader::expression;
 use crate::shader::rewrite::{Edit, defaults};
 use crate::shader::{Diagnostic, Severity, Source};
+use adaptive::Previews;
 use captures::Captures;
 use compare::Compare;
 use dialog::Dialog;
@@ -91,6 +93,8 @@ pub(super) struct State {
     pub(super) workspace: Workspace,
     /// The picture on screen.
     pub(super) picture: Picture,
+    /// Previews of it, while it moves.
+    pub(super) previews: Previews,
     pub(super) shader: ShaderStatus,
     pub(super) model: ModelStatus,
     pub(super) notices: Notices,
@@ -179,6 +183,7 @@ impl State {
             session,
             workspace: Workspace::default(),
             picture: Picture::default(),
+            previews: Previews::default(),
             shader: ShaderStatus { compiling: true, ..Default::default() },
             model: ModelStatus::default(),
             notices: Notices::default(),

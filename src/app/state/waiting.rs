@@ -90,6 +90,15 @@ impl<S> Waiting<S> {
         self.list.iter().any(|(_, until)| needs_frame(until))
     }
 
+    /// Whether a command waits for the final picture.
+    pub(in crate::app) fn needs_picture(&self) -> bool {
+        let waits = |until: &Until<S>| {
+            let waits_for_more = matches!(until, Until::Reloaded | Until::Compared(_) | Until::Picture(_));
+            waits_for_more || matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_))
+        };
+        self.list.iter().any(|(_, until)| waits(until)) || self.copying.is_some()
+    }
+
     /// Answers the commands for which `result` has a result.
     fn answer(&mut self, result: impl Fn(&Until<S>) -> Option<Result<Value, String>>) {
         for (reply, until) in self.take() {

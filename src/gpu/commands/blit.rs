@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::encoder::Encoder;
 use super::image_use::Use;
-use crate::gpu::{Buffer, Image};
+use crate::gpu::{Buffer, Image, Rect};
 
 impl Encoder {
     /// Fills every level of `to`: copies `from`, an image of the same size, to level 0, and halves each level into the next.
@@ -34,6 +34,33 @@ impl Encoder {
         self.keep(from);
         self.keep(to);
         self.blit((from, 0), (to, 0), 0);
+    }
+
+    /// Scales an image in [`Use::CopyFrom`] to a part of one in [`Use::CopyTo`], as far as the part lies within it, with a linear filter.
+    pub fn scale_to_part(&mut self, from: &Arc<Image>, to: &Arc<Image>, part: Rect) {
+        self.keep(from);
+        self.keep(to);
+        let (own, whole) = (from.desc(), to.desc());
+        let Rect { x, y, width, height } = part;
+        let (right, bottom) = ((x + width).min(whole.width), (y + height).min(whole.height));
+        if right <= x || bottom <= y {
+            return;
+        }
+        // The columns and rows of the source that fill what is left of the part.
+        let kept =
+            |pixels: u32, left: u32, all: u32| (u64::from(pixels) * u64::from(left) / u64::from(all)).max(1) as u32;
+        let (columns, rows) = (kept(own.width, right - x, width), kept(own.height, bottom - y, height));
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+        let offset = |x: u32, y: u32, z| vk::Offset3D { x: x as i32, y: y as i32, z };
+        let region = [vk::ImageBlit::default()
+            .src_subresource(layers)
+            .src_offsets([offset(0, 0, 0), offset(columns, rows, 1)])
+            .dst_subresource(layers)
+            .dst_offsets([offset(x, y, 0), offset(right, bottom, 1)])];
+        let filter = if self.gpu.blends_texels(own.format) { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
+        let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        // SAFETY: this encoder records the command buffer; both images are kept, and the regions lie within them.
+        unsafe { self.gpu.device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, filter) };
     }
 
     /// Scales an image in [`Use::CopyFrom`] to one in [`Use::CopyTo`], whose texels are single texels of the first.

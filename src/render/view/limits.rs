@@ -53,6 +53,12 @@ impl View {
         self.displayed.and_then(|(_, limits)| limits)
     }
 
+    /// The limits that another view of `frame` takes over: those of this view's last frame, if they follow its values in the same mode.
+    pub fn limits_to_follow(&self, frame: &BoundFrame) -> Option<Option<Limits>> {
+        let is_same_mode = self.mode_since.is_some_and(|(mode, _)| mode == frame.state.pipelines.mode);
+        (is_same_mode && frame.state.display.is_measured()).then(|| self.limits())
+    }
+
     /// The limits of the values in the last frame, if its range follows them. `None` too if the frame has no values.
     pub fn measured_limits(&self) -> Option<Limits> {
         let (display, limits) = self.displayed?;

@@ -21,6 +21,8 @@ mod limits;
 mod model_draws;
 mod motion;
 mod moved_vertices;
+mod new_picture;
+mod parts;
 mod passes;
 mod peel_images;
 mod peeling;
@@ -52,6 +54,7 @@ use scan::Scan;
 
 use declared::{Blocks, DeclaredPasses, FrameImages, PassContext};
 use motion::Motion;
+use new_picture::{InParts, NewPicture, picture_rect};
 use peel_images::PeelImages;
 
 use super::bound_frame::BoundFrame;
@@ -98,6 +101,8 @@ pub struct View {
     motion: Motion,
     /// The frame that the HDR target holds, and the part of it that was shaded. `None` is all of it.
     drawn: Option<(BoundFrame, Option<Rect>)>,
+    /// The next picture, while its model is being drawn in parts.
+    parts: Option<InParts>,
     /// The cameras of the last picture and of the one before, as `clip_from_world`.
     cameras: Option<[Mat4; 2]>,
     /// Number of times the model was drawn.
@@ -157,6 +162,7 @@ impl View {
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
+            parts: None,
             cameras: None,
             picture: 0,
             sample_index: 0,
@@ -192,11 +198,11 @@ impl View {
         };
         if self.targets.as_ref().is_none_or(|targets| targets.desc != desc) {
             self.targets = Some(Targets::new(&self.gpu, desc)?);
-            self.drawn = None;
+            (self.drawn, self.parts) = (None, None);
             self.declared.targets_replaced();
         }
         if self.declared.prepare(frame)? {
-            self.drawn = None;
+            (self.drawn, self.parts) = (None, None);
         }
         Ok(())
     }
@@ -219,17 +225,15 @@ impl View {
         }
         // This can fail, so it comes before the view changes.
         let set = self.frame_set(slot, frame)?;
-        let (width, height) = frame.state.size;
-        let at_output = Rect { x: output.at.0, y: output.at.1, width, height };
         let has_display_passes = DeclaredPasses::has_display_passes(frame);
-        let rect = if has_display_passes { Rect { x: 0, y: 0, ..at_output } } else { at_output };
+        let rect = picture_rect(frame, output.at);
         let only = match redraw {
             Redraw::Pixel(..) if !frame.state.pipelines.is_local() => None,
             Redraw::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
             Redraw::IfChanged | Redraw::Always | Redraw::ToneMap => None,
         };
 
-        let redrawn = self.begins_picture(frame, only, redraw);
+        let (redrawn, has_model) = self.begin_picture(frame, only, redraw);
         let limits = self.limits_of(frame);
         let limits_changed =
             self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
@@ -248,13 +252,14 @@ impl View {
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let placed = match redrawn {
+        let draws_model = redrawn && !has_model;
+        let placed = match draws_model {
             true => self.motion.place(encoder, slot, frame, &set, true)?,
             false => self.motion.placed().cloned(),
         };
         let placed = placed.as_ref();
         let context = PassContext { frame, placed, frame_set: &set, blocks, constants: &constants, depth };
-        if redrawn {
+        if draws_model {
             self.declared.before_model(encoder, &context)?;
         }
         let (samples, opaque_scene) = (targets.multisampled.as_ref(), targets.opaque_scene.as_ref());
@@ -263,9 +268,11 @@ impl View {
         let sets = self.declared.sets_of(&context, &images, keys)?;
         let peeling = PeelImages::new(&mut self.declared, &context, targets)?;
         let (layouts, more, peeling) = (&self.layouts, &[][..], peeling.as_ref());
-        let passes = passes::Passes { layouts, targets, frame, placed, sets: &sets, only, more, peeling };
-        if redrawn {
+        let passes = passes::Passes { layouts, targets, frame, placed, sets: &sets, only, more, peeling, part: None };
+        if draws_model {
             passes.model(encoder);
+        }
+        if redrawn {
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
             self.declared.before_tonemap(encoder, &context, targets.picture())?;
@@ -350,22 +357,31 @@ impl View {
         Ok(set)
     }
 
-    /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the accumulation
-    /// buffer while the model looks the same, and restarts when that changes.
-    fn begins_picture(&mut self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> bool {
+    /// Begins a new picture if this frame draws the model. Returns whether it does, and whether its model has been drawn in parts.
+    fn begin_picture(&mut self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> (bool, bool) {
+        let Some(new) = self.new_picture(frame, only, redraw) else { return (false, false) };
+        let parts = self.parts.take().filter(|parts| only.is_none() && parts.is_whole() && parts.is_of(frame));
+        let has_model = parts.is_some();
+        let NewPicture { cameras, sample_index } = parts.map_or(new, |parts| parts.new);
+        (self.cameras, self.sample_index) = (Some(cameras), sample_index);
+        self.picture += 1;
+        (true, has_model)
+    }
+
+    /// The picture that this frame begins, if it draws the model. An accumulating mode adds a frame to the accumulation buffer while the
+    /// model looks the same, and restarts when that changes.
+    fn new_picture(&self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> Option<NewPicture> {
         let accumulates = frame.state.pipelines.accumulates;
         let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
         let unchanged = !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same(frame));
         let continues = accumulates && !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
         let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED && redraw != Redraw::ToneMap;
         let redrawn = !unchanged || improves || matches!(redraw, Redraw::Always | Redraw::Pixel(..));
-        if redrawn {
-            let now = frame.state.camera.clip_from_world();
-            self.cameras = Some([now, self.cameras.map_or(now, |[last, _]| last)]);
-            self.picture += 1;
-            self.sample_index = if continues { self.sample_index.saturating_add(1) } else { 0 };
-        }
-        redrawn
+        let now = frame.state.camera.clip_from_world();
+        redrawn.then(|| NewPicture {
+            cameras: [now, self.cameras.map_or(now, |[last, _]| last)],
+            sample_index: if continues { self.sample_index.saturating_add(1) } else { 0 },
+        })
     }
 
     /// Whether the picture shows motion of the camera or the model, so that the next frame differs even if both rest.
@@ -377,7 +393,7 @@ impl View {
     /// Makes the next frame draw everything: the commands of a frame were not submitted, so the targets may be
     /// undefined.
     pub fn forget(&mut self) {
-        (self.drawn, self.cameras) = (None, None);
+        (self.drawn, self.parts, self.cameras) = (None, None, None);
         self.range_sampled = 0;
         self.in_flight.iter_mut().for_each(|in_flight| in_flight.scan = None);
         self.declared.forget();
@@ -386,12 +402,12 @@ impl View {
 
     /// Makes an accumulating mode start again with the next frame.
     pub fn restart_mean(&mut self) {
-        self.drawn = None;
+        (self.drawn, self.parts) = (None, None);
     }
 
     /// Restarts the declared passes: the next frame clears the images and buffers that depend on earlier frames to 0.
     pub fn restart_passes(&mut self) {
-        self.cameras = None;
+        (self.parts, self.cameras) = (None, None);
         self.motion.restart();
         self.declared.restart();
     }

@@ -35,6 +35,16 @@ pub struct Output<'a> {
     pub at: (u32, u32),
 }
 
+/// The rows of the model that a submission draws.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) rows: Rect,
+    /// Whether no rows are drawn yet.
+    pub(super) is_first: bool,
+    /// Whether no rows are left.
+    pub(super) is_last: bool,
+}
+
 /// The arguments of all passes of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Passes<'a> {
@@ -51,19 +61,26 @@ pub(super) struct Passes<'a> {
     pub(super) more: &'a [ColorTarget],
     /// How blended surfaces are sorted in each pixel; `None` if they are not.
     pub(super) peeling: Option<&'a PeelImages<'a>>,
+    /// The rows of the model to draw; `None` is all of them.
+    pub(super) part: Option<Part>,
 }
 
 impl Passes<'_> {
-    /// Draws the scene to the HDR target and resolves it. Leaves `color` in [`Use::Color`].
+    /// Draws the scene to the HDR target and resolves it, or the rows of a part. Leaves `color` in [`Use::Color`].
     pub(super) fn model(&self, encoder: &mut Encoder) {
         let targets = self.targets;
-        encoder.transition(&targets.color, Use::Undefined, Use::Color);
-        encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
+        // A later part keeps what is drawn.
+        let (color, depth) = match self.is_first() {
+            true => (Use::Undefined, Use::Undefined),
+            false => (Use::Color, Use::Depth),
+        };
+        encoder.transition(&targets.color, color, Use::Color);
+        encoder.transition(&targets.depth, depth, Use::Depth);
         if let Some(multisampled) = &targets.multisampled {
-            encoder.transition(multisampled, Use::Undefined, Use::Color);
+            encoder.transition(multisampled, color, Use::Color);
         }
         let sorted = self.sorted();
-        if let Some(opaque_scene) = &targets.opaque_scene {
+        if let Some(opaque_scene) = targets.opaque_scene.as_ref().filter(|_| self.is_first()) {
             encoder.pass("behind", |encoder| self.opaque_scene(encoder, &sorted, opaque_scene));
         }
         encoder.pass("model", |encoder| self.surfaces(encoder, &sorted));
@@ -114,13 +131,12 @@ impl Passes<'_> {
     /// Draws the surfaces that the opaque scene color does not hold yet, and the sky.
     fn surfaces(&self, encoder: &mut Encoder, sorted: &SortedDraws) {
         let targets = self.targets;
-        // Opaque surfaces in the opaque scene color are not drawn again, unless this mode draws them differently from the final
-        // picture, which that image holds.
-        let has_opaque = targets.opaque_scene.is_some() && !self.request().draws_opaque_twice();
-        let clear = (!has_opaque).then_some([0.0; 4]);
+        let opaque = self.opaque_keys();
+        let clear = opaque.is_some().then_some([0.0; 4]);
         let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);
         if let Some(resolved) = resolve_depth {
-            encoder.transition(resolved, Use::Undefined, Use::DepthResolve);
+            let before = if self.is_first() { Use::Undefined } else { Use::DepthResolve };
+            encoder.transition(resolved, before, Use::DepthResolve);
         }
         let weigh = self.request().resolve_key().and_then(|key| self.pipeline(&key));
         let hdr = self.hdr();
@@ -128,8 +144,8 @@ impl Passes<'_> {
         let peeling = self.peeling.filter(|_| !sorted.blended.is_empty());
         let last = Attachments { clear, resolve, resolve_depth, keeps_depth, ..hdr };
         self.begin(encoder, &if peeling.is_some() { self.in_parts(clear) } else { last });
-        if !has_opaque {
-            self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::model_key);
+        if let Some(keys) = opaque {
+            self.draw(encoder, sorted, &sorted.opaque, keys);
             self.added(encoder, false);
         }
         self.draw(encoder, sorted, &sorted.transmissive, PipelineRequest::model_key);
@@ -145,6 +161,9 @@ impl Passes<'_> {
         self.added(encoder, true);
         self.wireframe(encoder);
         encoder.end_rendering();
+        if !self.is_last() {
+            return;
+        }
         if let (Some(pipeline), Some(samples)) = (weigh, &targets.multisampled) {
             encoder.transition(samples, Use::Color, Use::Sampled);
             self.weigh(encoder, pipeline);
@@ -155,6 +174,16 @@ impl Passes<'_> {
         }
     }
 
+    /// The pipelines that draw the opaque surfaces to the HDR target; `None` if it holds them: those in the opaque scene color are not drawn
+    /// again, unless this mode draws them differently from the final picture, which that image holds. Parts begin with a clear target.
+    fn opaque_keys(&self) -> Option<fn(&PipelineRequest, MaterialVariant) -> Option<PipelineKey>> {
+        match (&self.targets.opaque_scene, self.part) {
+            (Some(_), None) if !self.request().draws_opaque_twice() => None,
+            (Some(_), Some(_)) if !self.request().draws_opaque_twice() => Some(PipelineRequest::opaque_scene_key),
+            _ => Some(PipelineRequest::model_key),
+        }
+    }
+
     /// Attachments of the HDR target for a part of its draws.
     fn in_parts(&self, clear: Option<[f32; 4]>) -> Attachments<'_> {
         Attachments { clear, resolve: None, keeps_contents: true, ..self.hdr() }
@@ -162,9 +191,20 @@ impl Passes<'_> {
 
     fn begin(&self, encoder: &mut Encoder, to: &Attachments<'_>) {
         encoder.begin_rendering(to);
-        if let Some(only) = self.only {
-            encoder.set_scissor(only);
+        if self.part.is_some() {
+            encoder.set_viewport(whole(to.color));
         }
+        if let Some(rect) = self.part.map(|part| part.rows).or(self.only) {
+            encoder.set_scissor(rect);
+        }
+    }
+
+    fn is_first(&self) -> bool {
+        self.part.is_none_or(|part| part.is_first)
+    }
+
+    fn is_last(&self) -> bool {
+        self.part.is_none_or(|part| part.is_last)
     }
 
     /// Draws the blended surfaces, sorted in each pixel, to the HDR target.
@@ -184,7 +224,9 @@ impl Passes<'_> {
     fn opaque_scene(&self, encoder: &mut Encoder, sorted: &SortedDraws, opaque_scene: &Arc<Image>) {
         let targets = self.targets;
         encoder.transition(opaque_scene, Use::Undefined, Use::Sampled);
-        encoder.begin_rendering(&Attachments { keeps_contents: true, ..self.hdr() });
+        // All rows look it up.
+        let area = whole(&targets.color);
+        encoder.begin_rendering(&Attachments { keeps_contents: true, area, ..self.hdr() });
         self.draw(encoder, sorted, &sorted.opaque, PipelineRequest::opaque_scene_key);
         self.added(encoder, false);
         encoder.end_rendering();
@@ -291,14 +333,15 @@ impl Passes<'_> {
         self.frame.pipelines.get(key)
     }
 
-    /// Attachments of the HDR target, cleared.
+    /// Attachments of the HDR target, or of the rows of a part, cleared.
     fn hdr(&self) -> Attachments<'_> {
         let targets = self.targets;
+        let area = self.part.map_or(whole(&targets.color), |part| part.rows);
         let (color, resolve) = match &targets.multisampled {
             Some(multisampled) => (multisampled, Some(&targets.color)),
             None => (&targets.color, None),
         };
-        Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), ..Attachments::of(color) }
+        Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), area, ..Attachments::of(color) }
     }
 
     pub(super) fn model_draws<'p>(&'p self, pass: &'p Arc<GraphPass>, instances: u32) -> ModelDraws<'p> {

@@ -87,7 +87,7 @@ impl PixelModes {
         let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
         let peeling = PeelImages::new(&mut view.declared, &context(of_pixel), targets)?;
         let (layouts, sets, peeling) = (&view.layouts, &pass_sets, peeling.as_ref());
-        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling };
+        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling, part: None };
         let all: Vec<&Arc<Image>> =
             std::iter::once(&targets.color).chain(more.iter().map(|target| &target.color)).collect();
         encoder.pass("inspector", |encoder| draw_pixel(encoder, &passes, &all, origin));

@@ -123,7 +123,7 @@ impl Thumbnails {
         let sets = view.declared.sets_of(&context, &images, request.model_keys())?;
         let more = &self.more[..request.modes.len().saturating_sub(1)];
         let (layouts, sets) = (&view.layouts, &sets);
-        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling: None };
+        let passes = Passes { layouts, targets, frame, placed, sets, only: None, more, peeling: None, part: None };
         match &*request.modes {
             [] => passes.model(encoder),
             _ => encoder.pass("thumbnails", |encoder| passes.modes(encoder)),

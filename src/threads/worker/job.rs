@@ -60,6 +60,8 @@ pub(super) enum Job {
     Build(Build),
     /// Builds pipelines of thumbnails when idle. Replaces an earlier job of this kind.
     Thumbnails(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
+    /// Builds pipelines of a preview when idle, before those of the inspector. Replaces an earlier job of this kind.
+    Preview(Build),
     /// Builds pipelines of the inspector's modes when idle, before thumbnails. Replaces an earlier job of this kind.
     Inspected(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>),
     /// Queries the driver's statistics of a frame's pipelines when idle. Replaces an earlier job of this kind.

@@ -49,6 +49,8 @@ pub(super) struct Thread {
     pub(super) panics: u32,
     /// The thumbnails whose pipelines have not been built yet, and their set.
     pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>)>,
+    /// The preview whose pipelines have not been built yet, and its set.
+    pub(super) preview: Option<(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>)>,
     /// The inspector's modes whose pipelines have not been built yet, and their set.
     pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<Arc<PipelineRequest>>)>,
     /// The latest build of a thumbnail's pipelines, which may still run.
@@ -121,6 +123,7 @@ impl Thread {
                     }
                     Job::Build(newest) => build = Some(newest),
                     Job::Thumbnails(set, requests) => self.thumbnails = Some((set, requests)),
+                    Job::Preview((set, request)) => self.preview = Some((set, VecDeque::from([request]))),
                     Job::Inspected(set, requests) => self.inspected = Some((set, requests)),
                     Job::AskDriver(question) => self.questions = Some(question),
                 }
@@ -128,7 +131,7 @@ impl Thread {
             if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
                 // Drop requests for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-                (self.thumbnails, self.inspected, self.questions) = (None, None, None);
+                (self.thumbnails, self.preview, self.inspected, self.questions) = (None, None, None, None);
             } else if self.is_stale() {
                 // Edits go first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
@@ -294,7 +297,7 @@ impl Thread {
 
     /// Whether pipelines of thumbnails can be built. Until all stages are compiled, an edit is not finished.
     fn has_thumbnails(&self) -> bool {
-        let waiting = [&self.inspected, &self.thumbnails];
+        let waiting = [&self.preview, &self.inspected, &self.thumbnails];
         !self.unfinished && waiting.into_iter().flatten().any(|(_, requests)| !requests.is_empty())
     }
 
@@ -308,7 +311,7 @@ impl Thread {
             std::thread::sleep(Duration::from_millis(1));
             return;
         }
-        let waiting = [&mut self.inspected, &mut self.thumbnails].into_iter().flatten();
+        let waiting = [&mut self.preview, &mut self.inspected, &mut self.thumbnails].into_iter().flatten();
         let Some((set, requests)) = waiting.into_iter().find(|(_, requests)| !requests.is_empty()) else { return };
         // On failure the window shows no thumbnail, or no values.
         let Some((set, request)) = requests.pop_front().map(|request| (set.clone(), request)) else { return };

@@ -9,6 +9,7 @@ mod hint;
 mod labels;
 pub(in crate::app) mod legend;
 mod light;
+mod preview;
 mod restore;
 pub(in crate::app) mod swatches;
 mod version;
@@ -84,6 +85,7 @@ pub(super) fn show(
     version::show(egui, state, picture, &mut commands.list);
     warnings(egui, state, picture, &mut commands.list);
     light::show(egui, context, picture);
+    preview::show(egui, state, picture);
     notice(egui, state, picture, free);
     if with_panels {
         label(egui, context, &mut own.legend, picture, commands);
