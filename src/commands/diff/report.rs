@@ -54,7 +54,10 @@ impl Opened {
 fn settings_in(path: &Path) -> Option<String> {
     let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
     let look = is_png.then(|| read_look(path).ok()).flatten()?;
-    let line = |name: &str, path: &Path| format!("{name} = {}\n", toml::Value::from(path.display().to_string()));
+    let line = |name: &str, path: &Path| {
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        format!("{name} = {}\n", toml::Value::from(path.display().to_string()))
+    };
     let files = [("model_file", look.model), ("shader_tree", look.shaders)];
     let files: String = files.iter().filter_map(|(name, path)| Some(line(name, path.as_ref()?))).collect();
     Some(files + &look.settings.to_toml())

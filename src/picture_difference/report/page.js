@@ -42,8 +42,6 @@ function choose(index) {
     at("side-" + side).textContent = `${side.toUpperCase()}  ${shown[side] ? shown[side].file : ""}`;
   }
   Object.assign(at("view").style, { width: shown.size[0] + "px", height: shown.size[1] + "px" });
-  const [x, y] = shown.largest_at || [0, 0];
-  Object.assign(at("worst").style, { left: x + "px", top: y + "px", width: "1px", height: "1px" });
   settings(shown);
   fit();
 }
@@ -86,12 +84,14 @@ function update() {
   at("view").style.filter = gains && state.gain > 0 ? `brightness(${2 ** state.gain})` : "none";
   at("view").style.background = mode === "difference" ? "#000" : "none";
   at("border").hidden = mode !== "wipe" || !shown.a || !shown.b;
-  at("border").style.left = state.wipe + "%";
-  at("border").style.borderLeftWidth = 2 / state.zoom + "px";
+  const place = (x, y, width, height) => ({
+    left: state.x + x * state.zoom + "px", top: state.y + y * state.zoom + "px", width: width * state.zoom + "px", height: height * state.zoom + "px",
+  });
+  Object.assign(at("border").style, place(shown.size[0] * state.wipe / 100, 0, 0, shown.size[1]));
   at("side-a").hidden = !["wipe", "a"].includes(mode);
   at("side-b").hidden = !["wipe", "b"].includes(mode);
   at("worst").hidden = Boolean(shown.why) || state.zoom < 4;
-  at("worst").style.outlineWidth = 2 / state.zoom + "px";
+  Object.assign(at("worst").style, place(...(shown.largest_at || [0, 0]), 1, 1));
   at("view").style.transform = `translate(${state.x}px, ${state.y}px) scale(${state.zoom})`;
   at("view").classList.toggle("smooth", state.zoom < 1);
   at("wipe").value = state.wipe;

@@ -173,3 +173,29 @@ fn what_cannot_be_compared_is_told() {
         diff(here, args).expect(code, &[part]);
     }
 }
+
+/// The page is one file with all pictures, the worst first, and a channel has a limit of its own.
+#[test]
+fn a_report_and_a_limit_for_a_channel() {
+    let folder = directory();
+    let here = folder.path();
+    for (name, values) in [("a", [100, 100]), ("b", [101, 160])] {
+        let [near, far] = values.map(|value| [value, 100, 100, 255]);
+        png(&here.join(name), "near.png", near);
+        png(&here.join(name), "far.png", far);
+    }
+    let told = diff(here, &["a", "b", "--max", "1", "--max-channel", "0.1", "--report", "out.html"]);
+    told.expect(1, &["1 of 2 pictures fail at --max 1 --max-channel 0.1"]);
+    diff(here, &["a", "b", "--max", "1", "--max-channel", "0.3"]).expect(0, &[]);
+    let page = fs::read_to_string(here.join("out.html")).unwrap();
+    assert!(!page.contains("://") && page.contains("data:image/png;base64,"), "it is not in one file");
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let rows: Vec<_> =
+        data["pairs"].as_array().unwrap().iter().map(|pair| (pair["name"].clone(), pair["passes"].clone())).collect();
+    assert_eq!(rows, [(json!("far.png"), json!(false)), (json!("near.png"), json!(true))]);
+    for wrong in [&["--max-channel", "-1"][..], &["--report", "a/near.png"]] {
+        let told = diff(here, &[&["a/near.png", "b/near.png"], wrong].concat());
+        assert_eq!(told.code, Some(2), "{told:?}");
+    }
+}
