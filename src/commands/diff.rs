@@ -83,7 +83,8 @@ impl Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let given = [("--max", Some(args.max)), ("--max-channel", args.max_channel)];
-    if let Some((option, Some(wrong))) = given.into_iter().find(|(_, limit)| limit.is_some_and(|limit| !(limit >= 0.0)))
+    if let Some((option, Some(wrong))) =
+        given.into_iter().find(|(_, limit)| limit.is_some_and(|limit| limit.is_nan() || limit < 0.0))
     {
         return Err(Failure::Usage(format!("{option} {wrong}: expected 0 or more")));
     }

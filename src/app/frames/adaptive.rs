@@ -258,7 +258,7 @@ pub(super) fn draw_part(state: &mut State, engine: &Engine, screen: &mut Screen)
     Ok(match screen.draw_part()? {
         Part::Drawing => Step::After(POLL),
         Part::Due => Step::Frame,
-        Part::Endless => {
+        Part::Failed => {
             state.previews.give_up();
             Step::Frame
         }

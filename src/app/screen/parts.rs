@@ -27,10 +27,10 @@ pub(super) struct Parts {
 pub(in crate::app) enum Part {
     /// The device draws one.
     Drawing,
-    /// All are drawn, or memory is short: a frame is due.
+    /// All are drawn: a frame is due.
     Due,
-    /// A loop of a stage did not end.
-    Endless,
+    /// A loop of a stage did not end, or memory is short: the picture has to be drawn as a whole.
+    Failed,
 }
 
 impl Parts {

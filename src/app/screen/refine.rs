@@ -27,7 +27,7 @@ impl Screen {
         if let Some(words) = self.parts.frames.endless_loop(0) {
             let state = self.last.as_ref().map(|frame| frame.state.clone());
             state.into_iter().for_each(|state| self.part_is_endless(state, words));
-            return Ok(Part::Endless);
+            return Ok(Part::Failed);
         }
         let Some(frame) = self.last.clone() else { return Ok(Part::Due) };
         let done = self.view.rows_in_parts(&frame);
@@ -41,7 +41,7 @@ impl Screen {
         if recorded.as_ref().is_err_and(GpuError::is_shortage) {
             self.view.forget();
         }
-        Ok(if self.survive(recorded)?.is_some() { Part::Drawing } else { Part::Due })
+        Ok(if self.survive(recorded)?.is_some() { Part::Drawing } else { Part::Failed })
     }
 
     fn record_part(&mut self, frame: &BoundFrame) -> Result<(), GpuError> {

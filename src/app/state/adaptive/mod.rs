@@ -101,7 +101,7 @@ pub(in crate::app) struct Previews {
     changed: Option<Instant>,
     /// Whether it has moved since the last whole picture.
     has_moved: bool,
-    /// Whether a loop of this picture did not end in a part, so that it is drawn as a whole.
+    /// Whether a part of this picture has failed, so that it is drawn as a whole.
     has_given_up: bool,
     movement: Option<Movement>,
     /// The picture whose preview the device has drawn once.
