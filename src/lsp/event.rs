@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use lsp_server::RequestId;
 
 use super::diagnostics::ByFile;
+use super::following::Pinned;
 use super::traced::Traced;
 
 /// A message to the server's thread.
@@ -17,6 +18,10 @@ pub enum Event {
     Changed(PathBuf, BTreeSet<PathBuf>),
     /// A window has answered a request.
     Answered(RequestId, Result<(), String>),
+    /// A window tells of its pinned pixel, and of its shader tree.
+    Pinned(Pinned),
+    /// A window has closed.
+    WindowClosed(PathBuf),
     /// A pixel was traced.
     Traced(Traced),
 }

@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 use super::captures::Job;
 use crate::control::Reply;
 
+/// Looks for a result in the state of the window.
+type Find<S> = Box<dyn Fn(&S) -> Option<Result<Value, String>>>;
+
 /// When a command is done, and its result, which may depend on the state `S` of the window.
 pub(in crate::app) enum Until<S> {
     Now(Value),
@@ -27,7 +30,7 @@ pub(in crate::app) enum Until<S> {
     /// Once the shader files have these edits.
     EditsWritten(Value),
     /// Once there is a result, or a reason why there is none.
-    Found(fn(&S) -> Option<Result<Value, String>>),
+    Found(Find<S>),
     /// Once the final picture is written.
     Screen(Option<PathBuf>),
     /// The same for the window with its panels.
