@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use lsp_server::RequestId;
 
 use super::diagnostics::ByFile;
-use super::following::Pinned;
-use super::traced::Traced;
+use super::traced::{Pinned, Traced};
 
 /// A message to the server's thread.
 #[derive(Debug)]

@@ -12,17 +12,6 @@ use super::window;
 /// Windows are looked for at most this often.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// The pinned pixel of a window.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pinned {
-    /// The socket of the window.
-    pub socket: PathBuf,
-    /// The folder of its shader tree; `None` for the built-in one.
-    pub tree: Option<PathBuf>,
-    /// Counted from the upper left corner.
-    pub pixel: Option<(u32, u32)>,
-}
-
 /// The windows that are followed.
 #[derive(Debug, Default)]
 pub struct Following {

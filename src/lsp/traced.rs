@@ -1,4 +1,4 @@
-//! Questions for the values at a pixel, and their answers.
+//! Questions for the values at a pixel, their answers, and the pixels that are pinned in windows.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -25,6 +25,17 @@ pub struct Asked {
     pub requests: Vec<RequestId>,
     /// The socket of the window in which the pixel is pinned; `None` if it is drawn here.
     pub window: Option<PathBuf>,
+}
+
+/// The pinned pixel of a window.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pinned {
+    /// The socket of the window.
+    pub socket: PathBuf,
+    /// The folder of its shader tree; `None` for the built-in one.
+    pub tree: Option<PathBuf>,
+    /// Counted from the upper left corner.
+    pub pixel: Option<(u32, u32)>,
 }
 
 /// A line that the pixel reaches.

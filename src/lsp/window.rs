@@ -8,8 +8,7 @@ use std::time::Duration;
 use serde_json::Value;
 use serde_json::json;
 
-use super::following::Pinned;
-use super::traced::{Asked, TracedFile, TracedLine};
+use super::traced::{Asked, Pinned, TracedFile, TracedLine};
 
 /// How long a window may take for an answer: one with large shaders may compile for long.
 const ANSWER: Duration = Duration::from_mins(2);
