@@ -1,6 +1,11 @@
-// Stands in for SPIRV-Tools' optimizer: shaderc links it, but Specula compiles at optimization level zero, which never runs it.
+// Stands in for what shaderc links and Specula never runs: it compiles GLSL, at optimization level zero.
 
+// shaderc calls functions of HLSL, whatever glslang has.
+#define ENABLE_HLSL
+#include "glslang/Public/ShaderLang.h"
 #include "spirv-tools/optimizer.hpp"
+
+void glslang::TShader::setHlslIoMapping(bool) {}
 
 namespace spvtools {
 
