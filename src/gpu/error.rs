@@ -9,10 +9,10 @@ use crate::distribution::install_driver;
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// There is no Vulkan loader library.
-    #[error("no usable Vulkan device: there is no Vulkan loader ({0}). {}", install_driver())]
+    #[error("no usable Vulkan device: there is no Vulkan loader ({0}). {advice}", advice = install_driver())]
     NoLoader(String),
     /// The loader is there, but no driver.
-    #[error("no usable Vulkan device: the Vulkan loader found no driver. {}", install_driver())]
+    #[error("no usable Vulkan device: the Vulkan loader found no driver. {advice}", advice = install_driver())]
     NoDriver,
     /// The loader is there, but Specula can use none of its devices.
     #[error("no usable Vulkan device: {0}")]
