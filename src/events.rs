@@ -91,12 +91,25 @@ pub enum Event<'a> {
         /// Mode, file, line, code and value, as `specula probe` prints them; or a message.
         not_finite: serde_json::Value,
     },
+    /// Assertions and operations of the picture were checked, as `view.checks` says.
+    Checked {
+        /// Shader generation.
+        generation: u64,
+        /// Failures and printed values, as `specula check MODEL --json` prints them.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        found: Option<serde_json::Value>,
+        /// Why they could not be checked.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        error: Option<&'a str>,
+    },
     /// The statements of a file were traced at the pinned pixel, for the panel Source.
     Traced {
         /// Pixels from the upper left corner of the picture.
         pixel: [u32; 2],
         /// Shader generation.
         generation: u64,
+        /// The stage.
+        stage: &'a str,
         /// The file, as the tree names it.
         file: &'a str,
         /// Whether the color of the fragment that is seen is the picture's, bit by bit; nothing if there is no trace.

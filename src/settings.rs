@@ -46,7 +46,7 @@ pub use scene::{ModelSettings, SceneSettings};
 pub use setting::Setting;
 pub use value::Value;
 pub use value_display::{Channels, Colormap, ViewRange, linear_from_srgb};
-pub use view::{Tonemap, ViewSettings};
+pub use view::{Checks, Tonemap, ViewSettings};
 
 settings! {
     /// All settings. A look file is this struct as TOML. `--set` takes dotted paths into it.

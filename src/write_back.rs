@@ -1,6 +1,7 @@
 //! Writes changes of single values into the files of a shader tree. All other bytes of the files stay as they are.
 
 mod merge;
+mod text_form;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,6 +10,7 @@ use crate::picture::replace_file;
 use crate::regular_file;
 use crate::shader::rewrite::{Edit, applied};
 use crate::shader::{SourceError, TreePath, leads_out};
+use text_form::TextForm;
 
 /// Files that were written: the bytes before and after.
 #[derive(Debug)]
@@ -88,18 +90,21 @@ pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Wr
     }
     let bytes = regular_file::read(&file, regular_file::LONGEST_TEXT);
     let bytes = bytes.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
-    let now = std::str::from_utf8(&bytes).map_err(|_| format!("{} is no UTF-8", file.display()))?;
-    let merged = merge::merge(base, now, text).map_err(|line| {
+    let on_disk = std::str::from_utf8(&bytes).map_err(|_| format!("{} is no UTF-8", file.display()))?;
+    let form = TextForm::of(on_disk);
+    let merged = merge::merge(base, &form.read(on_disk), text).map_err(|line| {
         format!(
             "{} was changed by another program in the same place, at line {line}, so it stays as it is",
             file.display()
         )
     })?;
-    let new = merged.clone().into_bytes();
+    let new = form.write(&merged);
+    let text = form.read(&new);
+    let new = new.into_bytes();
     if new != bytes {
         replace(&file, &new)?;
     }
-    Ok((merged, Written(vec![(file, [bytes, new])])))
+    Ok((text, Written(vec![(file, [bytes, new])])))
 }
 
 #[cfg(test)]
@@ -129,6 +134,10 @@ mod tests {
         assert!(error.contains("changed by another program in the same place, at line 2"), "{error}");
         assert_eq!(read(), "one\n2\nthree\nfour\n");
         assert!(write_text(&missing, "", "").unwrap_err().contains("cannot read"));
+        // A tree reads this file without its mark.
+        std::fs::write(&file, "\u{feff}one\r\ntwo\r\n").unwrap();
+        let (text, _) = write_text(&of_tree, "one\r\ntwo\r\n", "one\r\nmore\ntwo\r\n").unwrap();
+        assert_eq!((text.as_str(), read().as_str()), ("one\r\nmore\r\ntwo\r\n", "\u{feff}one\r\nmore\r\ntwo\r\n"));
     }
 
     #[test]

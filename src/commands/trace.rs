@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
+use specula::headless::TraceRequest;
+use specula::shader::StageKind;
 use specula::shader::trace::{Assertion, Trace};
 
 use super::common::frames::Frames;
@@ -19,8 +21,10 @@ const CODE: usize = 60;
 #[command(
     after_help = "Each line that the pixel reaches is printed with what its statements do there: `a = 0.25` stores a value or gets an argument, \
     `return 2`, `? true` decides about a branch or a loop, `discard`. \u{d7}3: three times, with the different values.\n\
-    The fragment stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. What passes, \
-    random paths and files of Shadertoy compute is not traced. The log leaves out large structs: their members are logged where they are stored.\n\
+    The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. --stage traces any other \
+    stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
+    compute stage, for the invocation of the pixel or --invocation. A file of another stage than the picture's finds its stage by itself. \
+    In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
     In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [2]`: the second call of \
     `add_light` by `shade`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
@@ -33,7 +37,13 @@ pub struct Args {
     /// Pixel, counted from the upper left corner
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
-    /// Fragment of the pixel, from 0 for the nearest [default: the one that is seen]
+    /// Stage of the picture, as tonemap.frag [default: the one that draws the pixel, or the first that has the files]
+    #[arg(long, value_name = "STAGE")]
+    stage: Option<String>,
+    /// Invocation of a compute stage, by gl_GlobalInvocationID [default: that of the pixel]
+    #[arg(long, value_name = "X,Y,Z", value_parser = invocation)]
+    invocation: Option<[u32; 3]>,
+    /// Fragment of the pixel, from 0 for the nearest; of a vertex stage, the corner [default: the one that is seen]
     #[arg(long, value_name = "N")]
     fragment: Option<usize>,
     /// Trace the statements of this file of the tree alone, as brdf/ndf.glsl; may be repeated
@@ -68,7 +78,15 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mode = mode.ok_or_else(|| Failure::Usage(format!("the shaders have no mode {slug}")))?;
     progress.say("tracing the pixel");
     let files = args.file.iter().map(String::as_str).chain(args.assert.iter().map(Assertion::file));
-    let trace = headless.trace(args.at, &mode, &files.collect::<Vec<_>>())?;
+    let files: Vec<&str> = files.collect();
+    let stage = args.stage.as_deref();
+    let trace = headless.trace(&TraceRequest {
+        at: args.at,
+        mode: &mode,
+        stage,
+        invocation: args.invocation,
+        files: &files,
+    })?;
     drop(progress);
     let fragment = chosen(&trace, args.fragment)?;
     let failed: Vec<String> =
@@ -92,12 +110,24 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     }
 }
 
+/// Parses the place of a compute invocation, as `8,4,0` or, for the first ones of y and z, `8`.
+fn invocation(text: &str) -> Result<[u32; 3], String> {
+    let expected = || format!("expected X,Y,Z, as 8,4,0, but found {text}");
+    let numbers = text.split(',').map(|number| number.trim().parse().map_err(|_| expected()));
+    let mut place = [0; 3];
+    for (at, number) in numbers.enumerate() {
+        *place.get_mut(at).ok_or_else(expected)? = number?;
+    }
+    Ok(place)
+}
+
 /// The fragment whose statements are shown.
 fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
     let count = trace.fragments.len();
     match wanted {
         Some(wanted) if wanted >= count => {
-            let all = if count == 1 { "1 fragment".to_owned() } else { format!("{count} fragments") };
+            let one = if trace.kind == StageKind::Fragment { "fragment" } else { "invocation" };
+            let all = if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") };
             Err(Failure::Usage(format!("--fragment {wanted}: the pixel has {all}; the first is 0")))
         }
         Some(wanted) => Ok(wanted),
@@ -109,7 +139,11 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
 
 fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
     let count = trace.fragments.len() + trace.left_out as usize;
-    out!("pixel {x} {y}, fragment {fragment} of {count}: {}", trace.proof_text(fragment));
+    let (stage, proof) = (&trace.stage, trace.proof_text(fragment));
+    match trace.kind {
+        StageKind::Fragment => out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}"),
+        _ => out!("pixel {x} {y}, {stage}, {}, {fragment} of {count}: {proof}", trace.name_of(fragment).to_lowercase()),
+    }
     let lines = trace.lines(fragment);
     let mut not_reached = trace.not_reached(fragment);
     let numbers = lines.iter().map(|line| line.line).chain(not_reached.values().flatten().copied());

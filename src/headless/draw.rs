@@ -141,16 +141,23 @@ impl Headless {
         more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
     ) -> Result<T, HeadlessError> {
         let result = self.offscreen.draw(frame, redraw, more)?;
-        match self.offscreen.endless_loop() {
-            Some(words) => match self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words))) {
-                // A loop that ends, but takes too many rounds, costs only its own pixels.
-                HeadlessError::Shaders(found) if found.iter().all(|d| d.severity == Severity::Warning) => {
-                    self.cut_short = found;
-                    Ok(result)
-                }
-                error => Err(error),
-            },
-            None => Ok(result),
+        self.tell_endless_loop(self.offscreen.endless_loop())?;
+        Ok(result)
+    }
+
+    /// Keeps the warning of a loop whose rounds were too many, by the words that the device has written.
+    ///
+    /// # Errors
+    /// It does not end.
+    pub(super) fn tell_endless_loop(&mut self, words: Option<[u32; 2]>) -> Result<(), HeadlessError> {
+        let Some(words) = words else { return Ok(()) };
+        match self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words))) {
+            // A loop that ends, but takes too many rounds, costs only its own pixels.
+            HeadlessError::Shaders(found) if found.iter().all(|d| d.severity == Severity::Warning) => {
+                self.cut_short = found;
+                Ok(())
+            }
+            error => Err(error),
         }
     }
 }

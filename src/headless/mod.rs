@@ -9,10 +9,12 @@ mod near_pixel;
 mod not_finite;
 mod not_finite_pictures;
 mod offscreen_view;
+mod picture_checker;
 mod pixel;
 mod pixel_tracer;
 mod reload;
 mod sequence;
+mod stage_plan;
 mod stages;
 mod thumbnails;
 mod trace;
@@ -30,15 +32,16 @@ use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
-pub use checks::CheckedPicture;
 pub use draw::Step;
 pub use error::HeadlessError;
 pub use not_finite::{Search, first_not_finite};
 pub use not_finite_pictures::{NotFinitePicture, NotFinitePictures};
 pub use offscreen_view::OffscreenView;
-pub use pixel_tracer::{PixelTracer, TraceTools, TracedPixel};
+pub use picture_checker::{CheckRequest, CheckedPicture, PictureChecker};
+pub use pixel_tracer::{PixelTracer, TracePlan, TraceTools, TracedPixel};
 pub use sequence::Sequence;
 pub use thumbnails::Thumbnail;
+pub use trace::TraceRequest;
 
 /// A session, a device and one view.
 pub struct Headless {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::stage_plan::Extent;
 use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene};
 use crate::scene;
 use crate::settings::Settings;
@@ -37,6 +38,24 @@ impl NearPixel {
     pub(super) fn state(&self, mode: &Mode, clock: Clock, shaders: &Arc<ShaderSet>) -> Arc<FrameState> {
         let state = self.state_in(mode, &self.part, clock, shaders);
         Arc::new(if state.pipelines.is_local() { state } else { self.state_in(mode, &self.all, clock, shaders) })
+    }
+
+    /// The frame in a mode with these shaders, of a part of the scene.
+    pub(super) fn state_of(
+        &self,
+        extent: Extent,
+        mode: &Mode,
+        clock: Clock,
+        shaders: &Arc<ShaderSet>,
+    ) -> Arc<FrameState> {
+        match extent {
+            Extent::Near => self.state(mode, clock, shaders),
+            Extent::All => Arc::new(self.state_in(mode, &self.all, clock, shaders)),
+            Extent::Instance(instance) => {
+                let only = (0..self.all.model().instances.len()).map(|other| other == instance).collect();
+                Arc::new(self.state_in(mode, &self.all.only(only), clock, shaders))
+            }
+        }
     }
 
     fn state_in(&self, mode: &Mode, scene: &Scene, clock: Clock, shaders: &Arc<ShaderSet>) -> FrameState {

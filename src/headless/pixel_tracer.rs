@@ -7,18 +7,21 @@ use std::sync::Arc;
 use super::HeadlessError;
 use super::near_pixel::NearPixel;
 use super::offscreen_view::OffscreenView;
-use crate::frame::{Clock, FrameState, PipelineKey, Revisions, mode_sets};
+use super::stage_plan::{self, StagePlan};
+use crate::frame::{Clock, FrameState, Revisions};
 use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
 use crate::pipeline::PipelineSet;
 use crate::render::{BoundFrame, Redraw, Resources};
 use crate::settings::Settings;
-use crate::shader::trace::{LoggingStage, Trace, TracedStage, log};
-use crate::shader::{Compiler, Mode, PixelValue, ShaderSet, Source};
+use crate::shader::trace::{LoggingStage, Target, Trace, TraceableStage, TracedStage, log};
+use crate::shader::{Compiler, Mode, PixelValue, ShaderSet, Source, StageKind};
 
-/// Versions of the shaders whose stages are kept: the newest, and the one before.
-const MOST_STAGES: usize = 2;
+/// Stages that are kept: two of the newest version of the shaders, and of the one before.
+const MOST_STAGES: usize = 4;
 /// Files of a stage whose pipelines are kept.
 const MOST_FILES: usize = 4;
+/// Lists of constants for which the files of a stage are kept.
+const MOST_CONSTANTS: usize = 16;
 
 /// A pixel of a frame, which is drawn with one sample.
 pub struct TracedPixel<'a> {
@@ -34,10 +37,16 @@ pub struct TracedPixel<'a> {
     pub revisions: Revisions,
     /// Its time.
     pub clock: Clock,
+    /// The times of frames before it, for passes that depend on them.
+    pub earlier: &'a [Clock],
     /// The pixel, from the upper left corner.
     pub at: (u32, u32),
     /// The mode that is drawn.
     pub mode: &'a Mode,
+    /// The stage that is traced; `None` for the one that draws the pixel, or that has the wanted file.
+    pub stage: Option<&'a str>,
+    /// The invocation of a compute stage; `None` for that of the pixel.
+    pub invocation: Option<[u32; 3]>,
 }
 
 /// The objects that draw a pixel: the window's or the command's objects.
@@ -72,7 +81,8 @@ impl Kept {
             return files.clone();
         }
         let files = self.logging.files(&constants.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        self.files.push((constants, files.clone()));
+        self.files.truncate(MOST_CONSTANTS - 1);
+        self.files.insert(0, (constants, files.clone()));
         files
     }
 }
@@ -84,15 +94,65 @@ struct Group {
     set: Option<Arc<PipelineSet>>,
 }
 
-/// The pixel as the frame draws it.
-struct Plan {
+/// A pixel, and how the frame draws it.
+pub struct TracePlan<'a> {
+    pixel: &'a TracedPixel<'a>,
     near: NearPixel,
+    stage: StagePlan,
     state: Arc<FrameState>,
+}
+
+impl<'a> TracePlan<'a> {
+    /// The plan to trace the statements of these files of the tree; without files, those of the stage that draws the pixel.
+    ///
+    /// # Errors
+    /// The frame has no such stage, or it does not run for this pixel.
+    pub fn new(pixel: &'a TracedPixel<'a>, files: &[&str]) -> Result<Self, HeadlessError> {
+        let near = NearPixel::new(pixel.whole, pixel.settings, pixel.revisions, pixel.at);
+        let near = near.ok_or_else(|| HeadlessError::Settings("there is no picture to trace".to_owned()))?;
+        let all = near.state_of(stage_plan::Extent::All, pixel.mode, pixel.clock, &pixel.whole.shaders);
+        let stage = stage_plan::choose(&all, pixel.stage, files)?;
+        let stage = stage_plan::plan(&all, &stage, pixel.at, pixel.invocation)?;
+        let state = near.state_of(stage.extent, pixel.mode, pixel.clock, &pixel.whole.shaders);
+        Ok(Self { pixel, near, stage, state })
+    }
+
+    /// The path of the stage.
+    pub fn stage(&self) -> &str {
+        &self.stage.stage
+    }
+
+    /// All stages of the frame that can be traced.
+    pub fn stages(&self) -> Vec<TraceableStage> {
+        stage_plan::traceable(&self.near.state_of(
+            stage_plan::Extent::All,
+            self.pixel.mode,
+            self.pixel.clock,
+            &self.pixel.whole.shaders,
+        ))
+    }
+
+    /// The frame at a time, with these shaders.
+    fn state(&self, clock: Clock, shaders: &Arc<ShaderSet>) -> Arc<FrameState> {
+        self.near.state_of(self.stage.extent, self.pixel.mode, clock, shaders)
+    }
+
+    /// The constants with which the frame specializes the stage.
+    fn constants(&self) -> Constants {
+        let (request, stage) = (&self.state.pipelines, self.stage());
+        let keys = request.keys().filter(|key| key.stages().any(|of| of == stage));
+        let mut constants: Constants = keys.map(|key| key.specialization.to_vec()).collect();
+        if request.compute_stages().any(|of| of == stage) {
+            constants.insert(request.pass_constants().to_vec());
+        }
+        constants
+    }
 }
 
 /// Draws pixels with logs. It has a view and a log of its own, so the picture and its history stay as they are.
 pub struct PixelTracer {
     own: OffscreenView,
+    traces_vertices: bool,
     log: Arc<Buffer>,
     kept: VecDeque<Kept>,
 }
@@ -103,7 +163,8 @@ impl PixelTracer {
     /// # Errors
     /// No memory left, or a device that cannot write it.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>) -> Result<Self, HeadlessError> {
-        if !gpu.graphics_stores().1 {
+        let (traces_vertices, traces_fragments) = gpu.graphics_stores();
+        if !traces_fragments {
             let name = &gpu.info().name;
             let message = format!("{name} cannot write buffers from fragment stages, which a trace needs");
             return Err(HeadlessError::Settings(message));
@@ -111,60 +172,49 @@ impl PixelTracer {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
         let log = Buffer::new(gpu, "trace", log::SIZE, usage, Memory::Readback)?;
-        Ok(Self { own: OffscreenView::new(gpu, layouts)?, log, kept: VecDeque::new() })
+        Ok(Self { own: OffscreenView::new(gpu, layouts)?, traces_vertices, log, kept: VecDeque::new() })
     }
 
-    /// The stage that draws a pixel, and the files whose statements it has there.
+    /// The files whose statements the stage of a plan has at its pixel.
     ///
     /// # Errors
-    /// No stage of the model draws the mode, or the stage does not compile with a log.
-    pub fn files(
-        &mut self,
-        pixel: &TracedPixel<'_>,
-        tools: &TraceTools<'_>,
-    ) -> Result<(String, Vec<String>), HeadlessError> {
-        let Plan { state, .. } = plan(pixel)?;
-        let kept = self.stage(pixel, &state, tools)?;
-        Ok((kept.stage.clone(), kept.files_of(constants(&state))))
+    /// The stage does not compile with a log.
+    pub fn files(&mut self, plan: &TracePlan<'_>, tools: &TraceTools<'_>) -> Result<Vec<String>, HeadlessError> {
+        Ok(self.stage(plan, tools)?.files_of(plan.constants()))
     }
 
-    /// The value of the pixel in the picture.
+    /// The value of the pixel in the picture, or in the image of the traced pass.
     ///
     /// # Errors
     /// As [`Self::trace`].
-    pub fn value(&mut self, pixel: &TracedPixel<'_>, tools: &mut TraceTools<'_>) -> Result<PixelValue, HeadlessError> {
-        let Plan { state, .. } = plan(pixel)?;
-        // Without counting as a request, so that the pipelines of the picture stay.
-        pixel.set.build_aside(&state.pipelines)?;
-        let frame = pixel.bind(tools.resources, pixel.set, &state)?;
-        self.draw_pixel(&frame, pixel.at, false)
+    pub fn value(&mut self, plan: &TracePlan<'_>, tools: &mut TraceTools<'_>) -> Result<PixelValue, HeadlessError> {
+        self.draw_pixel(plan, tools, plan.pixel.set, false)
     }
 
-    /// Traces the statements of `files` of the tree at a pixel; without files, those of all. The pixel is drawn once for each group of
-    /// files. `shown`: its value in the picture.
+    /// Traces the statements of `files` of the tree; without files, those of all. The pixel is drawn once for each group of files. `shown`:
+    /// its value in the picture.
     ///
     /// # Errors
-    /// No stage of the model draws the mode, the stage has no such file, the model does not cover the pixel, or a device error.
+    /// The stage has no such file, it does not run for the pixel, or a device error.
     pub fn trace(
         &mut self,
-        pixel: &TracedPixel<'_>,
+        plan: &TracePlan<'_>,
         tools: &mut TraceTools<'_>,
         files: &[&str],
         shown: &PixelValue,
     ) -> Result<Trace, HeadlessError> {
-        let fails = |message: String| Err(HeadlessError::Settings(message));
-        let Plan { near, state } = plan(pixel)?;
-        let constants = constants(&state);
+        let constants = plan.constants();
         let constants: Vec<&[(u32, u32)]> = constants.iter().map(Vec::as_slice).collect();
-        let kept = self.stage(pixel, &state, tools)?;
+        let kept = self.stage(plan, tools)?;
         let mut trace: Option<Trace> = None;
         for group in kept.logging.groups(files, &constants).map_err(HeadlessError::Settings)? {
             if (tools.is_canceled)() {
                 return Err(HeadlessError::Canceled);
             }
-            let (words, redrawn) = self.draw(pixel, &near, tools, &group)?;
+            let (words, redrawn) = self.draw(plan, tools, &group)?;
             let Some(traced) = self.kept.front().and_then(|kept| kept.groups.front()) else { break };
-            let of_group = Trace::new(&traced.stage, &words, shown, &redrawn);
+            let of = (plan.stage.of, plan.stage.target.clone());
+            let of_group = Trace::new(&traced.stage, of, &words, shown, &redrawn);
             if of_group.fragments.is_empty() {
                 break;
             }
@@ -173,28 +223,24 @@ impl PixelTracer {
                 None => trace = Some(of_group),
             }
         }
-        let (x, y) = pixel.at;
-        trace.map_or_else(
-            || fails(format!("the model does not cover the pixel {x},{y}: no fragment is drawn there")),
-            Ok,
-        )
+        trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))
     }
 
     /// The stage of a frame with a log, the first of those that are kept.
-    fn stage(
-        &mut self,
-        pixel: &TracedPixel<'_>,
-        state: &FrameState,
-        tools: &TraceTools<'_>,
-    ) -> Result<&mut Kept, HeadlessError> {
-        let (shaders, stage) = (&pixel.whole.shaders, &state.pipelines.stage);
+    fn stage(&mut self, plan: &TracePlan<'_>, tools: &TraceTools<'_>) -> Result<&mut Kept, HeadlessError> {
+        let (shaders, stage) = (&plan.pixel.whole.shaders, plan.stage());
         let is_it = |kept: &Kept| Arc::ptr_eq(&kept.shaders, shaders) && kept.stage == *stage;
         let kept = match self.kept.iter().position(is_it).and_then(|at| self.kept.remove(at)) {
             Some(kept) => kept,
             None => {
+                let is_vertex = shaders.stages.get(stage).is_some_and(|stage| stage.kind == StageKind::Vertex);
+                if is_vertex && !self.traces_vertices {
+                    let message = "this device cannot write buffers from vertex stages, which a trace of them needs";
+                    return Err(HeadlessError::Settings(message.to_owned()));
+                }
                 let logging = LoggingStage::new(shaders, stage, (tools.compiler, tools.source), self.log.address());
                 let logging = logging.map_err(HeadlessError::Settings)?;
-                let (shaders, stage) = (shaders.clone(), stage.clone());
+                let (shaders, stage) = (shaders.clone(), stage.to_owned());
                 Kept { shaders, stage, logging, files: Vec::new(), groups: VecDeque::new() }
             }
         };
@@ -207,8 +253,7 @@ impl PixelTracer {
     /// the first stage.
     fn draw(
         &mut self,
-        pixel: &TracedPixel<'_>,
-        near: &NearPixel,
+        plan: &TracePlan<'_>,
         tools: &mut TraceTools<'_>,
         files: &BTreeSet<String>,
     ) -> Result<(Vec<u32>, PixelValue), HeadlessError> {
@@ -221,79 +266,93 @@ impl PixelTracer {
                 Group { files: files.clone(), stage, set: None }
             }
         };
-        let state = near.state(pixel.mode, pixel.clock, &group.stage.shaders);
-        let set = match &group.set {
-            Some(set) => {
-                set.build_aside(&state.pipelines)?;
-                set.clone()
+        let set = match group.set.take() {
+            Some(set) => set,
+            None => {
+                let state = plan.state(plan.pixel.clock, &group.stage.shaders);
+                plan.pixel.set.variant(group.stage.shaders.clone(), &state.pipelines)?
             }
-            None => pixel.set.variant(group.stage.shaders.clone(), &state.pipelines)?,
         };
         group.set = Some(set.clone());
         kept.groups.push_front(group);
         kept.groups.truncate(MOST_FILES);
-        let frame = pixel.bind(tools.resources, &set, &state)?;
-        let empty: Vec<u8> = log::empty(pixel.at).iter().flat_map(|word| word.to_le_bytes()).collect();
+        let empty: Vec<u8> = log::empty(plan.stage.of).iter().flat_map(|word| word.to_le_bytes()).collect();
         self.log.fill(0, self.log.size() as usize, |bytes| bytes.fill(0));
         self.log.write(0, &empty);
-        let value = self.draw_pixel(&frame, pixel.at, true)?;
+        let value = self.draw_pixel(plan, tools, &set, true)?;
         let bytes = self.log.read();
         Ok((bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect(), value))
     }
 
-    /// Draws a pixel, and returns its value. A loop that did not end was cut in the picture, too: its first rounds are in the log.
-    fn draw_pixel(&mut self, frame: &BoundFrame, at: (u32, u32), logs: bool) -> Result<PixelValue, HeadlessError> {
+    /// Draws a pixel with the pipelines of `set`, after the frames before it, and returns its value. A loop that did not end was cut in the
+    /// picture, too: its first rounds are in the log.
+    fn draw_pixel(
+        &mut self,
+        plan: &TracePlan<'_>,
+        tools: &mut TraceTools<'_>,
+        set: &Arc<PipelineSet>,
+        logs: bool,
+    ) -> Result<PixelValue, HeadlessError> {
+        let TracedPixel { at, clock, earlier, set: of_picture, .. } = *plan.pixel;
+        // Passes whose image would be the same are not drawn again, but this one has to run.
+        self.own.view.forget();
+        self.own.view.restart_passes();
+        for earlier in earlier {
+            let frame = self.bind(plan, tools, of_picture, *earlier)?;
+            self.own.draw(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+        }
+        let frame = self.bind(plan, tools, set, clock)?;
         let Self { own, log, .. } = self;
-        own.view.restart_passes();
         own.view.restart_mean();
-        own.view.probe = Some(at);
-        let drawn = own.draw(frame, Redraw::Pixel(at.0, at.1), |_, encoder, _| {
+        let on_display = plan.stage.target == Target::Display;
+        (own.view.probe, own.view.probe_passes) = (Some(at), Some(at));
+        let redraw = if plan.stage.is_whole { Redraw::Always } else { Redraw::Pixel(at.0, at.1) };
+        let drawn = own.draw(&frame, redraw, |view, encoder, output| {
             if logs {
                 encoder.keep(log);
                 encoder.buffers_written();
             }
-            Ok(())
+            if on_display { view.read_back(encoder, output) } else { Ok(None) }
         });
-        own.view.probe = None;
-        drawn?;
-        Ok(own.view.pixel(own.frames.current()).map(|pixel| pixel.value).unwrap_or_default())
+        (own.view.probe, own.view.probe_passes) = (None, None);
+        let readback = drawn?;
+        let slot = own.frames.current();
+        let of_view = || own.view.pixel(slot).map(|pixel| pixel.value);
+        let value = match &plan.stage.target {
+            Target::Display => readback.map(|readback| displayed(readback.finish_display(), at)),
+            Target::Image(name, _) => {
+                let slug = format!("pass:{name}");
+                own.view.pass_pixels(slot).into_iter().find(|(of, _)| *of == slug).map(|(_, pixel)| pixel.value)
+            }
+            Target::Picture | Target::Unknown => of_view(),
+        };
+        Ok(value.unwrap_or_default())
     }
-}
 
-impl TracedPixel<'_> {
-    /// Binds a state of the frame to the pipelines of `set`.
+    /// Binds the frame at a time to the pipelines of `set`.
     fn bind(
         &self,
-        resources: &mut Resources,
-        set: &PipelineSet,
-        state: &Arc<FrameState>,
+        plan: &TracePlan<'_>,
+        tools: &mut TraceTools<'_>,
+        set: &Arc<PipelineSet>,
+        clock: Clock,
     ) -> Result<BoundFrame, HeadlessError> {
-        let bound = match self.older {
-            Some(like) => resources.bind_older(set, state, like)?,
-            None => resources.bind_variant(set, state)?,
+        let state = plan.state(clock, &set.shaders);
+        // Without counting as a request, so that the pipelines of the picture stay.
+        set.build_aside(&state.pipelines)?;
+        let bound = match plan.pixel.older {
+            Some(like) => tools.resources.bind_older(set, &state, like)?,
+            None => tools.resources.bind_variant(set, &state)?,
         };
         bound.ok_or_else(|| HeadlessError::Settings("the light of the picture is being baked".to_owned()))
     }
 }
 
-/// The frame near the pixel.
-fn plan(pixel: &TracedPixel<'_>) -> Result<Plan, HeadlessError> {
-    let near = NearPixel::new(pixel.whole, pixel.settings, pixel.revisions, pixel.at);
-    let state = near.as_ref().map(|near| near.state(pixel.mode, pixel.clock, &pixel.whole.shaders));
-    let is_traceable = |_: &_| !mode_sets([pixel.mode], 1).is_empty();
-    let found = near.zip(state).filter(is_traceable).filter(|(_, state)| state.pipelines.draws_model);
-    found.map(|(near, state)| Plan { near, state }).ok_or_else(|| {
-        HeadlessError::Settings(format!(
-            "no stage of the model draws the mode {}: what passes, random paths and toys compute cannot be traced",
-            pixel.mode.slug
-        ))
-    })
-}
-
-/// The constants with which the frame specializes its stage.
-fn constants(state: &FrameState) -> Constants {
-    let keys: Vec<PipelineKey> = state.pipelines.model_keys().collect();
-    keys.iter().map(|key| key.specialization.to_vec()).collect()
+/// A pixel of the display: red, green, blue and alpha, 0..1.
+fn displayed((width, _, rgba8): (u32, u32, Vec<u8>), (x, y): (u32, u32)) -> PixelValue {
+    let start = 4 * (y as usize * width as usize + x as usize);
+    let bytes = rgba8.get(start..start + 4).unwrap_or(&[0; 4]);
+    PixelValue { value: std::array::from_fn(|at| f32::from(bytes[at]) / 255.0), ..PixelValue::default() }
 }
 
 fn changed() -> HeadlessError {

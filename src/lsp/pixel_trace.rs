@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::event::Event;
 use super::traced::{Asked, Traced, TracedFile};
-use crate::headless::{Headless, HeadlessError};
+use crate::headless::{Headless, HeadlessError, TraceRequest};
 use crate::message::catch_panic;
 use crate::shader::{Change, Diagnostic, Mode, Source};
 use crossbeam_channel::{Receiver, Sender, unbounded};
@@ -74,7 +74,9 @@ impl Thread {
         let (mut files, mut proof, mut problem) = (Vec::new(), String::new(), None);
         for path in &asked.files {
             let Some(text) = shaders.texts.get(path).cloned() else { continue };
-            match headless.trace(asked.at, &mode, &[path.as_str()]) {
+            let wanted = [path.as_str()];
+            let request = TraceRequest { at: asked.at, mode: &mode, stage: None, invocation: None, files: &wanted };
+            match headless.trace(&request) {
                 Ok(trace) => match trace.visible() {
                     Some(fragment) => {
                         proof = trace.proof_text(fragment);

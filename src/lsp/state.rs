@@ -153,8 +153,12 @@ impl State {
                 Err(error) => tracing::error!("no pixel is traced: {error}"),
             }
         }
-        if let Some(tracing) = &self.tracing {
-            tracing.ask(asked);
+        match &self.tracing {
+            Some(tracing) => tracing.ask(asked),
+            None => {
+                let result = Err("this system grants no thread to trace it".to_owned());
+                self.traced(&Traced { asked, result });
+            }
         }
     }
 

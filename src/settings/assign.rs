@@ -286,7 +286,7 @@ mod tests {
             (
                 "view.exposure=1",
                 "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, blend_layers, bounces, channels, \
-                 colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
+                 checks, colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? `specula help set` lists all"),
             ("qqqq.ev=1", "At the top there are animation, camera, "),

@@ -32,6 +32,21 @@ pub enum Tonemap {
 
 impl Choice for Tonemap {}
 
+/// Which statements and operations of the shaders the window checks on the device while the picture rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Checks {
+    /// None.
+    Off,
+    /// Those of `assert()` and `print()`.
+    #[default]
+    Assertions,
+    /// Operations whose result GLSL leaves open as well.
+    Undefined,
+}
+
+impl Choice for Checks {}
+
 /// The default background. Modes that show data instead of light also use it if the background is `env`.
 const BACKGROUND: &str = "#1b1d21";
 
@@ -73,6 +88,9 @@ settings! {
         frames: u32 = 64, whole(1, 100_000) unit(FRAMES);
         /// Reflections of a random path after the first, in modes that trace the model. 0 leaves direct light.
         bounces: u32 = 4, whole(0, 64) unit(REFLECTIONS);
+        /// What the window checks while the picture rests. assertions: the `assert()` and `print()` of the shaders, if there are any;
+        /// undefined: also operations whose result GLSL leaves open, such as division by 0; off: nothing. Pixels that fail are marked.
+        checks: Checks, row("Checks") title("Checks of assertions and undefined operations");
         /// Memory that images and buffers of passes may take.
         pass_memory: u32 = 2048, whole(1, 1 << 20) unit(MEBIBYTES);
     }

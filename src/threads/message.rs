@@ -13,6 +13,7 @@ use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMes
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
+use crate::headless::CheckedPicture;
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
 use crate::picture::Look;
@@ -62,6 +63,8 @@ pub(crate) enum Message {
     Traced(u64, Box<Traced>),
     /// The same in an older version of the shaders.
     TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
+    /// What the checks of the picture have found, for the request with this number.
+    OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
     /// The text of a file of the tree as it was saved.
     SourceText(TreePath, Arc<str>),
     /// The settings of a look file, or the reason why it cannot be used.
@@ -119,6 +122,8 @@ pub(crate) enum TaskKind {
     Finder,
     /// Traces the statements of a pixel.
     PixelTracer,
+    /// Checks assertions and operations of the picture.
+    OperationChecker,
     Capture(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),

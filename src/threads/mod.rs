@@ -26,6 +26,7 @@
 //!   event ends it between two goals.
 //! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
 //!   new frame or pixel ends its work before the next step.
+//! - **The operation checker** draws the picture with stages that find assertions that fail, while it rests.
 //! - **The tracer** compiles the stage of the pinned pixel with a log, builds its pipelines and draws the pixel, while the panel Source is
 //!   open. It has a view of its own and keeps the pipelines for the next pixel. The newest request wins.
 //! - **Captures** are drawn by one thread, one after the other, each with a clone of `Resources`. A second shader tree has a thread as long as it is
@@ -49,6 +50,7 @@ pub(crate) mod loader;
 pub(crate) mod measurer;
 mod message;
 mod newest;
+pub(crate) mod operation_checker;
 mod results;
 pub(crate) mod second_tree;
 pub(crate) mod tracer;
@@ -72,11 +74,14 @@ use checker::Checker;
 use finder::Finder;
 use loader::Loader;
 use measurer::Measurer;
+use operation_checker::OperationChecker;
 use tracer::Tracer;
 use worker::Worker;
 
 pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind};
-pub(crate) use results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, WorkerMessage};
+pub(crate) use results::{
+    BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, TracedPlace, WorkerMessage,
+};
 
 /// One of two pictures that are compared.
 pub(crate) enum Side {
@@ -118,6 +123,7 @@ pub(crate) struct Threads {
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
     pub(crate) finder: Finder,
+    pub(crate) operation_checker: OperationChecker,
     pub(crate) tracer: Tracer,
     gpu: Arc<Gpu>,
     /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
@@ -149,6 +155,7 @@ impl Threads {
             checker: Checker::new(device.0, compiler, sender),
             measurer: Measurer::new(device.0, sender),
             finder: Finder::new(device.0, sender),
+            operation_checker: OperationChecker::new(device.0, sender),
             tracer: Tracer::new(device.0, sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),

@@ -9,7 +9,7 @@ use crate::learn::Finding;
 use crate::measure::Curves;
 use crate::pipeline::{PipelineSet, Reload};
 use crate::render::{BakeError, BoundFrame, GpuEnvironment, GpuModel, PathTracing, PathTracingKey, Tables};
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Trace, TraceableStage};
 use crate::shader::{Diagnostic, Source};
 
 /// Messages of the worker.
@@ -86,14 +86,22 @@ pub(crate) struct MeasuredCurves {
     pub(crate) ms: f64,
 }
 
-/// Result of a trace.
-pub(crate) struct Traced {
-    /// The stage that draws the pixel; empty if there is none.
+/// What was traced at a pixel, and what else can be.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TracedPlace {
+    /// The stage; empty if there is none.
     pub(crate) stage: String,
-    /// The files whose statements it has at the pixel.
+    /// The stages of the picture.
+    pub(crate) stages: Vec<TraceableStage>,
+    /// The files whose statements the stage has at the pixel.
     pub(crate) files: Vec<String>,
     /// The file whose statements were traced.
     pub(crate) file: String,
+}
+
+/// Result of a trace.
+pub(crate) struct Traced {
+    pub(crate) place: TracedPlace,
     /// The trace, or the reason why there is none.
     pub(crate) trace: Result<Trace, String>,
     pub(crate) ms: f64,
@@ -101,8 +109,7 @@ pub(crate) struct Traced {
 
 impl Default for Traced {
     fn default() -> Self {
-        let (stage, files, file) = (String::new(), Vec::new(), String::new());
-        Self { stage, files, file, trace: Err("the trace has not begun".to_owned()), ms: 0.0 }
+        Self { place: TracedPlace::default(), trace: Err("the trace has not begun".to_owned()), ms: 0.0 }
     }
 }
 

@@ -8,7 +8,7 @@ use super::newest::{Newest, Turn};
 use super::results::Traced;
 use crate::frame::Clock;
 use crate::gpu::Gpu;
-use crate::headless::{HeadlessError, PixelTracer, TraceTools, TracedPixel};
+use crate::headless::{HeadlessError, PixelTracer, TracePlan, TraceTools, TracedPixel};
 use crate::pipeline::PipelineSet;
 use crate::render::{BoundFrame, Resources, View};
 use crate::session::Session;
@@ -24,6 +24,8 @@ pub(crate) struct TraceRequest {
     pub(crate) clock: Clock,
     pub(crate) size: (u32, u32),
     pub(crate) at: (u32, u32),
+    /// `None`: the first that has the file, or that of the picture.
+    pub(crate) stage: Option<String>,
     /// `None`: that of the stage itself.
     pub(crate) file: Option<String>,
 }
@@ -122,7 +124,7 @@ fn run(
     let lacks = |what: &str| HeadlessError::Settings(what.to_owned());
     request.session.settings.view.msaa = 1;
     let target = View::target_format(gpu, 1, true).map_err(HeadlessError::Settings)?;
-    let TraceRequest { session, resources, compiler, source, clock, size, at, file } = request;
+    let TraceRequest { session, resources, compiler, source, clock, size, at, stage, file } = request;
     let newest = resources.pipelines().cloned().ok_or_else(|| lacks("there are no shaders yet"))?;
     let set = older.map_or(&newest, |older| &older.set);
     let shaders = older.map_or(&newest.shaders, |older| &older.shaders);
@@ -136,14 +138,30 @@ fn run(
     };
     let (settings, revisions) = (&session.settings, session.revisions);
     let older = older.map(|older| older.like.as_ref());
-    let pixel = TracedPixel { whole: &whole, set, older, settings, revisions, clock: *clock, at: *at, mode };
+    let pixel = TracedPixel {
+        whole: &whole,
+        set,
+        older,
+        settings,
+        revisions,
+        clock: *clock,
+        // The images of the window's passes hold earlier frames, which cannot be drawn again.
+        earlier: &[],
+        at: *at,
+        mode,
+        stage: stage.as_deref(),
+        invocation: None,
+    };
+    let plan = TracePlan::new(&pixel, file.as_deref().as_slice())?;
     let mut tools = TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() };
     let end_if_superseded = || if turn.is_superseded() { Err(HeadlessError::Canceled) } else { Ok(()) };
-    (traced.stage, traced.files) = tracer.files(&pixel, &tools)?;
-    let file = file.clone().unwrap_or_else(|| traced.stage.clone());
-    traced.file.clone_from(&file);
+    let place = &mut traced.place;
+    (place.stage, place.stages) = (plan.stage().to_owned(), plan.stages());
+    place.files = tracer.files(&plan, &tools)?;
+    let file = file.clone().unwrap_or_else(|| place.stage.clone());
+    place.file.clone_from(&file);
     end_if_superseded()?;
-    let shown = tracer.value(&pixel, &mut tools)?;
+    let shown = tracer.value(&plan, &mut tools)?;
     end_if_superseded()?;
-    tracer.trace(&pixel, &mut tools, &[&file], &shown)
+    tracer.trace(&plan, &mut tools, &[&file], &shown)
 }

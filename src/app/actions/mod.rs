@@ -1,5 +1,6 @@
 //! Functions that carry out commands and messages on the state and the engine, by topic.
 
+pub(super) mod checks;
 pub(super) mod compare;
 pub(super) mod edits;
 pub(super) mod exercises;

@@ -6,18 +6,19 @@ use std::time::Duration;
 use crate::app::engine::Engine;
 use crate::app::frames::progress::{awaits_edit, is_settled, moves};
 use crate::app::state::State;
+use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::Progress;
 use crate::app::state::trace::subject::Subject;
 use crate::events::{Event, emit};
 use crate::settings::{ExpressionSettings, Settings};
-use crate::shader::{TreePath, expression};
+use crate::shader::{Severity, TreePath, expression};
 use crate::threads::tracer::{OlderVersion, TraceRequest};
 use crate::threads::{Message, Traced};
 
 /// How long settings must not change before the pixel is traced with them.
-const REST: Duration = Duration::from_millis(150);
+pub(in crate::app) const REST: Duration = Duration::from_millis(150);
 /// The same on a software device, whose frames a trace holds up.
-const REST_ON_CPU: Duration = Duration::from_millis(400);
+pub(in crate::app) const REST_ON_CPU: Duration = Duration::from_millis(400);
 
 /// Asks for a trace if that of the picture is missing. Returns the time until it is to be looked at again.
 pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_safe_mode: bool) -> Option<Duration> {
@@ -50,15 +51,16 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     }
     let before = if state.traces.lacks_before(&subject) { version_before(state, engine) } else { None };
     let mut session = state.session.clone();
-    session.settings.clone_from(&subject.settings);
+    session.settings.clone_from(&subject.picture.settings);
     let request = TraceRequest {
         compiler: engine.compiler.clone(),
         session,
         resources: engine.resources.clone(),
         source: state.source.clone(),
-        clock: state.picture.clock,
-        size: subject.size,
+        clock: subject.picture.clock,
+        size: subject.picture.size,
         at: at.into(),
+        stage: subject.stage.clone(),
         file: subject.file.as_ref().map(|file| file.as_str().to_owned()),
     };
     let number = engine.threads.tracer.trace(request, before);
@@ -66,16 +68,16 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     None
 }
 
-/// Has the shown file read while it has errors: the shaders in use have an older text.
+/// Has the shown file read while there are errors: the shaders in use have older texts, of files without an error, too.
 fn read_saved(state: &mut State, engine: &Engine) {
     if !state.has_errors() {
         return state.traces.saved.forget();
     }
     let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
     let Some(path) = state.traces.file_shown().cloned().or_else(of_stage) else { return };
-    let display = state.source.display_path(&path);
-    let errors = state.session.diagnostics.iter().filter(|found| found.file == display);
-    if errors.clone().next().is_none() || !state.traces.saved.lacks(&path, errors) {
+    let errors = state.session.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+    let last_edit = state.shader.log.edits().next().map(|edit| edit.at);
+    if !state.traces.saved.lacks(&path, errors, last_edit) {
         return;
     }
     let source = state.source.clone();
@@ -87,6 +89,25 @@ fn read_saved(state: &mut State, engine: &Engine) {
 
 /// The pixel, the stage and the frame to trace; `None` while the picture is not final.
 fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
+    // While the picture moves, the trace of a moment stays.
+    let last = state.traces.asked().filter(|_| moves(state)).map(|asked| &asked.picture);
+    let picture = final_picture(state, engine, last)?;
+    let shown = state.shown()?;
+    Some(Subject {
+        picture,
+        at,
+        // A picture may lack the stage that was chosen in another.
+        stage: state.traces.stage.clone().filter(|stage| shown.pipelines.stages().contains(stage)),
+        file: state.traces.file.clone(),
+    })
+}
+
+/// The picture on screen; `None` while it is not final. `moment`: an earlier one, of the same moving picture.
+pub(in crate::app) fn final_picture(
+    state: &State,
+    engine: &Engine,
+    moment: Option<&PictureSubject>,
+) -> Option<PictureSubject> {
     let (shown, shaders) = (state.shown()?, state.session.shaders.clone()?);
     let is_final = shown.shaders.generation == shaders.generation
         && shaders.is_complete()
@@ -95,21 +116,16 @@ fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     if !is_final {
         return None;
     }
-    // While the picture moves, the trace of a moment stays.
-    let last = state.traces.asked().filter(|_| moves(state));
-    let time_s = last.map_or(state.picture.clock.time_s, |last| last.time_s);
     let now = settings(state);
-    let same = last.filter(|last| is_same_but_lights(last, &now)).map(|last| last.settings.clone());
-    Some(Subject {
-        at,
+    let same = moment.filter(|moment| is_same_but_lights(moment, &now)).map(|moment| moment.settings.clone());
+    Some(PictureSubject {
         size: shown.size,
         settings: same.unwrap_or(now),
         shaders,
         revisions: state.session.revisions,
         model: state.session.model().map_or(0, |model| Arc::as_ptr(model) as usize),
         light: Arc::as_ptr(engine.resources.environment()) as usize,
-        time_s,
-        file: state.traces.file.clone(),
+        clock: moment.map_or(state.picture.clock, |moment| moment.clock),
     })
 }
 
@@ -124,7 +140,7 @@ fn settings(state: &State) -> Arc<Settings> {
 }
 
 /// Whether settings differ from those of a trace in the places of the orbiting lights alone.
-fn is_same_but_lights(last: &Subject, now: &Settings) -> bool {
+fn is_same_but_lights(last: &PictureSubject, now: &Settings) -> bool {
     let mut now = now.clone();
     now.lights.orbit.clone_from(&last.settings.lights.orbit);
     now == *last.settings
@@ -140,15 +156,16 @@ fn version_before(state: &State, engine: &Engine) -> Option<OlderVersion> {
 
 /// Takes the result of a trace.
 pub(in crate::app) fn on_traced(state: &mut State, number: u64, traced: Traced) {
-    let Traced { stage, files, file, trace, ms } = traced;
-    if !state.traces.take(number, (stage, files, file), trace) {
+    let Traced { place, trace, ms } = traced;
+    if !state.traces.take(number, place, trace) {
         return;
     }
     let Some(newest) = state.traces.newest() else { return };
     let fragment = newest.trace.as_ref().ok().and_then(|trace| Some((trace, trace.visible()?)));
     let event = Event::Traced {
         pixel: newest.of.at,
-        generation: newest.of.shaders.generation,
+        generation: newest.of.picture.shaders.generation,
+        stage: &newest.stage,
         file: newest.file.as_str(),
         equal: fragment.map(|(trace, fragment)| trace.is_proven(fragment)),
         error: newest.trace.as_ref().err().map(String::as_str),

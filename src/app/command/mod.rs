@@ -6,6 +6,7 @@ pub(super) mod about;
 mod assignments;
 pub(super) mod camera;
 pub(super) mod capture;
+pub(super) mod checks;
 pub(super) mod compare;
 mod fields;
 pub(super) mod file;

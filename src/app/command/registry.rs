@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, compare, file, history, layout, modes, numbers, playback, program, scene, settings, shaders,
-    source,
+    camera, capture, checks, compare, file, history, layout, modes, numbers, playback, program, scene, settings,
+    shaders, source,
 };
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -60,6 +60,9 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &source::SOURCE,
     &source::SHOW_FILE,
     &source::SAVE_FILE,
+    &checks::CHECKS,
+    &checks::SHOW_FAILURE,
+    &source::CHOOSE_STAGE,
     &source::CHOOSE_TRACE,
     &shaders::ASK_EXPRESSION,
     &shaders::ASK_DEFAULTS,

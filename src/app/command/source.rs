@@ -21,6 +21,7 @@ use crate::write_back::TreeFile;
 #[serde(default, deny_unknown_fields)]
 pub(in crate::app) struct Source {
     file: Option<String>,
+    stage: Option<String>,
     at: Option<[u32; 2]>,
     fragment: Option<usize>,
     call: Option<String>,
@@ -28,9 +29,9 @@ pub(in crate::app) struct Source {
 }
 
 pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).takes(
-    r#""file"?: "brdf/ndf.glsl", "at"?: [x,y], "fragment"?: n, "call"?: "shade > add_light [2]", "time"?: n"#,
-    "Opens the panel Source at a file of the tree, pins a pixel, and traces what the file's statements do there; a fragment is counted from 0, \
-     the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `files` of the stage, `calls`, and \
+    r#""file"?: "brdf/ndf.glsl", "stage"?: "tonemap.frag", "at"?: [x,y], "fragment"?: n, "call"?: "shade > add_light [2]", "time"?: n"#,
+    "Opens the panel Source at a file of the tree, pins a pixel, and traces what the file's statements do there, in a stage of the picture; \
+     a fragment is counted from 0, the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `stages` of the picture, `files` of the stage, `calls`, and \
      `changed`: values that the last edit has changed",
 );
 
@@ -49,15 +50,24 @@ pub(in crate::app) static SAVE_FILE: Spec<Typed> =
 
 /// Shows a file in the panel Source.
 pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file| {
+    // Another stage may have the file.
+    if state.traces.newest().is_some_and(|newest| !newest.files.iter().any(|of| *of == *file.as_str())) {
+        state.traces.stage = None;
+    }
     state.traces.file = Some(file);
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
+});
+
+/// Chooses the stage whose statements the panel Source shows, with its own file.
+pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage", |state, _, stage| {
+    (state.traces.stage, state.traces.file) = (Some(stage), None);
 });
 
 /// Chooses the fragment, the call and the time whose values the panel Source shows.
 pub(in crate::app) static CHOOSE_TRACE: Spec<Choice> =
     Spec::act("choose-trace", |state, _, choice| state.traces.choice = choice);
 
-fn source(state: &mut State, _: &mut Engine, Source { file, at, fragment, call, time }: Source) -> Outcome {
+fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment, call, time }: Source) -> Outcome {
     let file = file.map(|file| file_of(state, &file)).transpose()?;
     if let Some([x, y]) = at {
         let (width, height) = state.shown().ok_or("there is no picture yet")?.size;
@@ -66,7 +76,20 @@ fn source(state: &mut State, _: &mut Engine, Source { file, at, fragment, call, 
         }
         state.inspection.pin = at;
     }
-    state.traces.file = file.or(state.traces.file.take());
+    if let Some(stage) = &stage {
+        let shown = state.shown().ok_or("there is no picture yet")?;
+        let all = shown.pipelines.stages();
+        if !all.contains(stage) {
+            return Err(format!(
+                "the picture has no stage {stage}.{}",
+                did_you_mean(stage, all.iter().map(String::as_str))
+            ));
+        }
+    }
+    (state.traces.stage, state.traces.file) = match (stage, file) {
+        (None, None) => (state.traces.stage.take(), state.traces.file.take()),
+        chosen => chosen,
+    };
     state.traces.choice = Choice { fragment, call, time: time.filter(|time| *time > 0) };
     state.traces.expect();
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));

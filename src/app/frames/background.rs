@@ -7,6 +7,7 @@ use super::draw::Drawing;
 use super::picture::missing_thumbnail;
 use super::progress::awaits_edit;
 use super::results::take_background;
+use crate::app::actions::checks::update_checks;
 use crate::app::actions::inspect::{begin_values, values_complete};
 use crate::app::actions::trace::update_trace;
 use crate::app::engine::Engine;
@@ -68,8 +69,9 @@ impl Drawing {
     ) -> Result<Option<Duration>, GpuError> {
         let is_safe_mode = engine.recorder.is_safe_mode();
         let trace = update_trace(state, engine, is_safe_mode);
+        let checks = update_checks(state, engine, is_safe_mode);
         let drawn = self.draw_between(state, engine, is_safe_mode)?;
-        Ok(trace.into_iter().chain(drawn).min())
+        Ok(trace.into_iter().chain(checks).chain(drawn).min())
     }
 
     fn draw_between(

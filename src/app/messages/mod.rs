@@ -5,6 +5,7 @@ mod loaded;
 mod panics;
 pub(super) mod reloads;
 
+use crate::app::actions::checks::on_operations_checked;
 use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
 use crate::app::actions::compare::tree::{on_second_tree, on_second_tree_found};
@@ -66,6 +67,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Curves(measured) => on_curves(state, *measured),
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
         Message::Traced(number, traced) => on_traced(state, number, *traced),
+        Message::OperationsChecked(number, result) => on_operations_checked(state, number, result),
         Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),

@@ -61,7 +61,8 @@ fn show(ui: &mut Ui, state: &State, own: &mut ShadersState, commands: &mut Vec<C
     head(ui, &state.shader, generation, diagnostics, state.is_cut_short(), commands);
     tree(ui, &state.shader, commands);
     ui.horizontal(|ui| {
-        let problems = match diagnostics.len() {
+        let checked = state.checks.diagnostics();
+        let problems = match diagnostics.len() + checked.len() {
             0 => "Problems".to_owned(),
             count => format!("Problems {count}"),
         };
@@ -72,7 +73,8 @@ fn show(ui: &mut Ui, state: &State, own: &mut ShadersState, commands: &mut Vec<C
             (Tab::Edits, "Edits", "The last edits: what they reached, and how long each step took"),
         ];
         for (tab, title, hint) in tabs {
-            let is_wrong = tab == Tab::Problems && diagnostics.iter().any(|d| d.severity == Severity::Error);
+            let mut all = diagnostics.iter().chain(checked);
+            let is_wrong = tab == Tab::Problems && all.any(|d| d.severity == Severity::Error);
             let title = RichText::new(title).small();
             let title = if is_wrong { title.color(ERROR) } else { title };
             ui.selectable_value(&mut own.tab, tab, title).on_hover_text(hint);

@@ -5,6 +5,7 @@ use std::time::Duration;
 use egui::{Align, Layout, RichText, Ui};
 
 use super::{baking, shaders};
+use crate::app::command::checks::SHOW_FAILURE;
 use crate::app::command::scene::INSPECT_PIXEL;
 use crate::app::command::spec::Command;
 use crate::app::state::shaders::log::lines;
@@ -14,7 +15,9 @@ use crate::app::state::waits::Waits;
 use crate::app::widgets::plural;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
+use crate::headless::CheckedPicture;
 use crate::render::NotFinitePixels;
+use crate::shader::checks::{Broken, Rule};
 use crate::shader::{Diagnostic, Severity};
 
 /// Height in points.
@@ -34,6 +37,8 @@ pub(super) struct Status<'a> {
     pub(super) progress: Option<f32>,
     /// The pixels of the picture with NaN or infinity.
     pub(super) not_finite: Option<NotFinitePixels>,
+    /// What the checks of the picture have found.
+    pub(super) checked: Option<&'a CheckedPicture>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
@@ -86,6 +91,7 @@ fn state(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
             commands.push(INSPECT_PIXEL.with([x, y]));
         }
     }
+    failed_checks(ui, status.checked, commands);
     if let Some(row) = status.stage.filter(|_| ui.available_width() > ROOM_FOR_STAGE) {
         ui.scope(|ui| stage(ui, row));
         ui.add_space(8.0);
@@ -94,6 +100,25 @@ fn state(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
         let (edit, times, hover) = lines(last);
         let text = RichText::new(format!("{edit}  {times}")).monospace().small();
         ui.add(elided(text)).on_hover_text(hover);
+    }
+}
+
+/// How many checks of the picture have failed. A click leads to the first of them.
+fn failed_checks(ui: &mut Ui, checked: Option<&CheckedPicture>, commands: &mut Vec<Command>) {
+    let mut faults: Vec<&Broken> = checked.iter().flat_map(|of| of.faults()).collect();
+    // A file may be in several stages.
+    faults.dedup_by_key(|fault| (&fault.file, fault.line, fault.rule));
+    let Some(first) = faults.first() else { return };
+    let asserts = faults.iter().filter(|fault| fault.rule == Rule::Assert).count();
+    let text = match (asserts, faults.len() - asserts) {
+        (asserts, 0) => format!("{} failed", plural(asserts, "assertion")),
+        (0, others) => plural(others, "undefined operation"),
+        (asserts, others) => format!("{}, {} undefined", plural(asserts, "assertion"), others),
+    };
+    let hint = format!("{}:{}: {}\nClick to see the line and its values", first.file, first.line, first.message());
+    let button = egui::Button::new(RichText::new(text).small().color(ERROR)).small();
+    if ui.add(button).on_hover_text(hint).clicked() {
+        commands.push(SHOW_FAILURE.with(()));
     }
 }
 
@@ -124,6 +149,7 @@ mod tests {
             waits: None,
             progress: None,
             not_finite: None,
+            checked: None,
             generation: 1,
             diagnostics: &[],
             frame_ms: None,

@@ -3,6 +3,7 @@
 
 pub(super) mod arrangement;
 pub(super) mod captures;
+pub(super) mod checks;
 pub(super) mod compare;
 pub(super) mod dialog;
 pub(super) mod exercise;
@@ -16,8 +17,10 @@ pub(super) mod model;
 pub(super) mod notices;
 pub(super) mod opened;
 pub(super) mod picture;
+pub(super) mod picture_subject;
 pub(super) mod playback;
 pub(super) mod recent;
+mod resting;
 pub(super) mod selection;
 pub(super) mod shaders;
 mod shown_version;
@@ -46,6 +49,7 @@ use crate::shader::expression;
 use crate::shader::rewrite::{Edit, defaults};
 use crate::shader::{Diagnostic, Severity, Source};
 use captures::Captures;
+use checks::Checks;
 use compare::Compare;
 use dialog::Dialog;
 use exercise::Learning;
@@ -108,6 +112,8 @@ pub(super) struct State {
     pub(super) inspection: Inspection,
     /// The traces of the inspected pixel.
     pub(super) traces: Traces,
+    /// The checks of the picture.
+    pub(super) checks: Checks,
     /// The modes that the picture shows side by side.
     pub(super) grid: Grid,
     /// Files that were open, in this run and before.
@@ -190,6 +196,7 @@ impl State {
             history: History::default(),
             inspection: Inspection::default(),
             traces: Traces::default(),
+            checks: Checks::default(),
             grid: Grid::default(),
             recent: Recent::default(),
             last_sessions: LastSessions::default(),

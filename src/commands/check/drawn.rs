@@ -112,8 +112,7 @@ fn with_modes(found: &Found) -> Diagnostic {
 }
 
 fn as_json(found: &Found) -> Value {
-    let Broken { file, line, rule, text, stage, count, first, operands, .. } = &found.broken;
-    let operands: Vec<Value> = operands.iter().map(|operand| operand.json()).collect();
-    json!({ "file": file, "line": line, "rule": rule.name(), "text": text, "message": found.broken.message(), "stage": stage.to_string(),
-        "count": count, "first": [first.0, first.1], "operands": operands, "modes": found.modes })
+    let mut json = found.broken.json(&found.diagnostic);
+    json["modes"] = json!(found.modes);
+    json
 }

@@ -1,5 +1,6 @@
 // Appended to a stage whose `main` was renamed. The module sets bits of `specula_check_bits`, or calls `specula_check_operands`: see
-// spirv/checks/. Each check has six words of the buffer: how often it failed, the first place where it did, and operands.
+// spirv/checks/. Each check has six words of the buffer: how often it failed, the first place where it did, and operands. A fragment
+// stage whose image has the size of the picture marks the pixels where a check fails, too.
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpeculaChecks { uint words[]; };
 
 SpeculaChecks specula_check_buffer() { return SpeculaChecks(uvec2(SPECULA_LOW, SPECULA_HIGH)); }
@@ -7,7 +8,7 @@ SpeculaChecks specula_check_buffer() { return SpeculaChecks(uvec2(SPECULA_LOW, S
 uint specula_check_bits[SPECULA_WORDS];
 bool specula_check_counts = false;
 
-void specula_check_operands(const in uint check, const in uvec4 bits) {
+void specula_check_print(const in uint check, const in uvec4 bits) {
     if (check == 0u || !specula_check_counts) return;
     SpeculaChecks checks = specula_check_buffer();
     uint at = 6u * (check - 1u);
@@ -18,10 +19,17 @@ void specula_check_operands(const in uint check, const in uvec4 bits) {
     checks.words[at + 5u] = bits.w;
 }
 
+void specula_check_operands(const in uint check, const in uvec4 bits) {
+    if (check == 0u || !specula_check_counts) return;
+    SPECULA_MARK
+    specula_check_print(check, bits);
+}
+
 void main() {
     specula_check_counts = SPECULA_COUNTS;
     // A function that is never called is left out of the module.
     specula_check_operands(0u, uvec4(0u));
+    specula_check_print(0u, uvec4(0u));
     specula_main();
     if (!specula_check_counts) return;
     SpeculaChecks checks = specula_check_buffer();

@@ -7,9 +7,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use serde_json::{Value, json};
+
 use super::compile::asserts::text_of;
 use super::library::Stage;
-use super::spirv::checks::{Check, MASK_WORDS, MOST_OPERANDS, Names, Rule, check};
+pub use super::spirv::checks::Rule;
+use super::spirv::checks::{Check, MASK_WORDS, MOST_OPERANDS, Names, check};
 use super::spirv::trace::with_constants;
 use super::trace::{EXTENSIONS, TracedValue, compile_listening};
 use super::{Compiler, Diagnostic, ShaderSet, Source, StageKind, TreePath};
@@ -18,22 +21,50 @@ use super::{Compiler, Diagnostic, ShaderSet, Source, StageKind, TreePath};
 const CHECK: usize = 2 + MOST_OPERANDS;
 /// Words of a stage in the buffer.
 const PART: usize = CHECK * 32 * MASK_WORDS;
-/// Numbers in the text that stand for the address of the stage's part, and for the words of bits that are in use.
-const STANDING_FOR: [u32; 3] = [0xC0DE_0B01, 0xC0DE_0B02, 0xC0DE_0B03];
-const NAMES: Names<'_> =
-    Names { mask: "specula_check_bits", function: "specula_check_operands", silent: "specula_check" };
+/// Numbers in the text that stand for the address of the stage's part, for the words of bits that are in use, for the address of the
+/// marks, for the width and the number of the marked pixels, and for the stage.
+const STANDING_FOR: [u32; 8] =
+    [0xC0DE_0B01, 0xC0DE_0B02, 0xC0DE_0B03, 0xC0DE_0B04, 0xC0DE_0B05, 0xC0DE_0B06, 0xC0DE_0B07, 0xC0DE_0B08];
+/// Marks the pixel of a fragment.
+const MARK: &str = "uint pixel = uint(gl_FragCoord.y) * SPECULA_WIDTH + uint(gl_FragCoord.x);
+    SpeculaChecks marks = SpeculaChecks(uvec2(SPECULA_MARKS_LOW, SPECULA_MARKS_HIGH));
+    if (pixel < SPECULA_PIXELS) marks.words[pixel] = SPECULA_STAGE | check;";
+const NAMES: Names<'_> = Names {
+    mask: "specula_check_bits",
+    function: "specula_check_operands",
+    print: "specula_check_print",
+    silent: "specula_check",
+};
 
 /// The stages of a frame, compiled with the text that checks them.
 pub struct CheckedStages<'a> {
     shaders: &'a ShaderSet,
     source: &'a Source,
     stages: Vec<CheckedStage>,
-    address: u64,
+    buffer: CheckBuffer,
     undefined: bool,
+}
+
+/// The buffer of a checked picture: a part for each stage, then a mark for each pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckBuffer {
+    /// Its address on the device.
+    pub address: u64,
+    /// Width and height of the picture.
+    pub size: (u32, u32),
+}
+
+impl CheckBuffer {
+    /// Bytes of the buffer for this many stages.
+    pub fn bytes(stages: usize, (width, height): (u32, u32)) -> u64 {
+        4 * ((PART * stages.max(1)) as u64 + u64::from(width) * u64::from(height))
+    }
 }
 
 struct CheckedStage {
     stage: Arc<Stage>,
+    /// Whether its image has the size of the picture.
+    marks: bool,
     words: Vec<u32>,
     checks: Vec<Check>,
     left_out: usize,
@@ -65,36 +96,37 @@ pub struct Broken {
 }
 
 impl<'a> CheckedStages<'a> {
-    /// Compiles these stages of `shaders`. `address` is that of a buffer of [`CheckedStages::size`] bytes. `undefined`: checks operations,
-    /// and not only what the author asserts and prints.
+    /// Compiles these stages of `shaders`, each with whether its image has the size of the picture, so that it is marked. `undefined`: checks
+    /// operations, and not only what the author asserts and prints.
     ///
     /// # Errors
     /// A message why a stage cannot be checked.
     pub fn new(
         shaders: &'a ShaderSet,
-        stages: &BTreeSet<String>,
+        stages: &BTreeMap<String, bool>,
         (compiler, source): (&Compiler, &'a Source),
-        (address, undefined): (u64, bool),
+        (buffer, undefined): (CheckBuffer, bool),
     ) -> Result<Self, String> {
-        let stages = stages.iter().filter_map(|path| shaders.stages.get(path));
-        let compiled = stages.map(|stage| {
+        let stages = stages.iter().filter_map(|(path, marks)| Some((shaders.stages.get(path)?, *marks)));
+        let compiled = stages.map(|(stage, marks)| {
             let (_, words) =
                 compile_listening(shaders, &stage.path, (compiler, source), (&text(stage.kind), EXTENSIONS))?;
-            Ok(CheckedStage { stage: stage.clone(), words, checks: Vec::new(), left_out: 0 })
+            Ok(CheckedStage { stage: stage.clone(), marks, words, checks: Vec::new(), left_out: 0 })
         });
         let stages = compiled.collect::<Result<Vec<_>, String>>()?;
-        Ok(Self { shaders, source, stages, address, undefined })
-    }
-
-    /// Bytes of the buffer for this many stages.
-    pub fn size(stages: usize) -> u64 {
-        4 * (PART * stages.max(1)) as u64
+        Ok(Self { shaders, source, stages, buffer, undefined })
     }
 
     /// The content of the buffer before the first draw: no check has failed.
     pub fn empty(&self) -> Vec<u32> {
         let check = [&[0, u32::MAX][..], &[0; MOST_OPERANDS]].concat();
-        check.repeat(32 * MASK_WORDS * self.stages.len())
+        let mut words = check.repeat(32 * MASK_WORDS * self.stages.len());
+        words.resize(words.len() + self.pixels() as usize, 0);
+        words
+    }
+
+    fn pixels(&self) -> u32 {
+        self.buffer.size.0 * self.buffer.size.1
     }
 
     /// The shaders that count.
@@ -117,6 +149,7 @@ impl<'a> CheckedStages<'a> {
 
     fn instrumented(&mut self, chosen: Option<&BTreeMap<usize, BTreeSet<usize>>>) -> Result<Arc<ShaderSet>, String> {
         let mut shaders = self.shaders.clone();
+        let (count, pixels) = (self.stages.len(), self.pixels());
         for (index, stage) in self.stages.iter_mut().enumerate() {
             let of_stage = match chosen.map(|chosen| chosen.get(&index)) {
                 None => None,
@@ -127,9 +160,14 @@ impl<'a> CheckedStages<'a> {
             let path = &stage.stage.path;
             let lacks = || format!("{path} cannot be checked");
             let checked = check(&stage.words, &NAMES, self.undefined, of_stage).ok_or_else(lacks)?;
-            let part = self.address + 4 * (PART * index) as u64;
+            let part = self.buffer.address + 4 * (PART * index) as u64;
+            let marks = self.buffer.address + 4 * (PART * count) as u64;
             let used = if chosen.is_some() { 0 } else { checked.checks.len().div_ceil(32) as u32 };
-            let values = [part as u32, (part >> 32) as u32, used];
+            let pixels = if stage.marks { pixels } else { 0 };
+            let [low, high] = [part as u32, (part >> 32) as u32];
+            let [marks_low, marks_high] = [marks as u32, (marks >> 32) as u32];
+            let number = (index as u32 + 1) << 16;
+            let values = [low, high, used, marks_low, marks_high, self.buffer.size.0, pixels, number];
             let changes: Vec<(u32, u32)> = STANDING_FOR.into_iter().zip(values).collect();
             let words = with_constants(&checked.words, &changes).ok_or_else(lacks)?;
             (stage.checks, stage.left_out) = (checked.checks, checked.left_out);
@@ -180,6 +218,16 @@ impl<'a> CheckedStages<'a> {
         found
     }
 
+    /// For each pixel, from the upper left corner, the place in `broken` of a check that failed there, from 1, or 0.
+    pub fn marks(&self, words: &[u32], broken: &[Broken]) -> Vec<u16> {
+        let place = |word: &u32| {
+            let key = ((*word >> 16) as usize).checked_sub(1).zip(((*word & 0xffff) as usize).checked_sub(1));
+            let at = key.and_then(|key| broken.iter().position(|broken| broken.key == key));
+            at.and_then(|at| u16::try_from(at + 1).ok()).unwrap_or(0)
+        };
+        words.get(PART * self.stages.len()..).unwrap_or_default().iter().map(place).collect()
+    }
+
     fn text(&self, file: &str, number: u32) -> Option<String> {
         text_of(self.shaders.texts.get(&TreePath::from(file))?, number)
     }
@@ -200,6 +248,14 @@ impl Broken {
     /// Whether it is a fault, and not only a value that is printed.
     pub fn is_fault(&self) -> bool {
         self.rule != Rule::Print
+    }
+
+    /// It for programs. `diagnostic`: the same for a reader.
+    pub fn json(&self, diagnostic: &Diagnostic) -> Value {
+        let operands: Vec<Value> = self.operands.iter().map(TracedValue::json).collect();
+        json!({ "file": self.file, "path": diagnostic.file, "line": self.line, "rule": self.rule.name(), "text": self.text,
+            "message": self.message(), "stage": self.stage.as_str(), "count": self.count,
+            "first": [self.first.0, self.first.1], "operands": operands })
     }
 
     /// The fault in one sentence, with operands, how often, and where first.
@@ -250,7 +306,14 @@ fn text(kind: StageKind) -> String {
         StageKind::Task | StageKind::Mesh => ("gl_WorkGroupID.x", "true"),
     };
     let number = |number: u32| format!("{number}u");
+    let mark = if kind == StageKind::Fragment { MARK } else { "" };
     include_str!("checks.glsl")
+        .replace("SPECULA_MARK\n", &format!("{mark}\n"))
+        .replace("SPECULA_MARKS_LOW", &number(STANDING_FOR[3]))
+        .replace("SPECULA_MARKS_HIGH", &number(STANDING_FOR[4]))
+        .replace("SPECULA_WIDTH", &number(STANDING_FOR[5]))
+        .replace("SPECULA_PIXELS", &number(STANDING_FOR[6]))
+        .replace("SPECULA_STAGE", &number(STANDING_FOR[7]))
         .replace("SPECULA_PLACE", place)
         .replace("SPECULA_COUNTS", counts)
         .replace("SPECULA_LOW", &number(STANDING_FOR[0]))

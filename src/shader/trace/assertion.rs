@@ -162,7 +162,7 @@ mod tests {
         // The middle of a long loop counts, too.
         events.extend((0..99).map(|round| event(6, Act::Store, "i", &[if round == 50 { -3.0 } else { 1.0 }])));
         let left_out = vec![(event(8, Act::Store, "j", &[]).doing, 2)];
-        let fragment = Fragment { depth: 0.5, color: None, events, left_out };
+        let fragment = Fragment { depth: 0.5, vertex: None, color: None, events, left_out };
         let check = |text: &str| Assertion::parse(text).unwrap().check(&fragment);
         for text in
             ["a.glsl:3 n >= 0", "a.glsl:3 n.y > 0.5", "a.glsl:3 n.r == 0", "a.glsl:4 d < 1", "a.glsl:5 return != 0"]

@@ -1,10 +1,11 @@
 // Appended to a stage whose `main` was renamed. The module calls `specula_trace` with each value: see spirv/trace/. The log holds the
-// number of fragments, the pixel, and a part for each fragment: see log.rs.
+// number of invocations, three numbers that say which are logged, and a part for each: see log.rs, which also replaces the words in
+// capitals.
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpeculaLog { uint words[]; };
 
 SpeculaLog specula_trace_log() { return SpeculaLog(uvec2(SPECULA_LOW, SPECULA_HIGH)); }
 
-// The first word of the fragment's part, or 0: this is another pixel.
+// The first word of the invocation's part, or 0: it is not logged.
 uint specula_trace_part = 0u;
 uint specula_trace_count = 0u;
 
@@ -30,11 +31,12 @@ void specula_trace_begin() {
     // A function that is never called is left out of the module. This call logs nothing.
     specula_trace(0u, uvec4(0u));
     SpeculaLog log = specula_trace_log();
-    if (gl_HelperInvocation || uvec2(gl_FragCoord.xy) != uvec2(log.words[1], log.words[2])) return;
-    uint fragment = atomicAdd(log.words[0], 1u);
-    if (fragment >= SPECULA_FRAGMENTS) return;
-    specula_trace_part = 4u + fragment * SPECULA_PART;
-    log.words[specula_trace_part] = floatBitsToUint(gl_FragCoord.z);
+    uvec3 logged = uvec3(log.words[1], log.words[2], log.words[3]);
+    if (!(SPECULA_IS_LOGGED)) return;
+    uint place = atomicAdd(log.words[0], 1u);
+    if (place >= SPECULA_FRAGMENTS) return;
+    specula_trace_part = 4u + place * SPECULA_PART;
+    log.words[specula_trace_part] = SPECULA_NUMBER;
 }
 
 void specula_trace_end(const in vec4 color) {
@@ -50,5 +52,5 @@ void specula_trace_end(const in vec4 color) {
 void main() {
     specula_trace_begin();
     specula_main();
-    specula_trace_end(SPECULA_COLOR);
+    specula_trace_end(SPECULA_RESULT);
 }

@@ -1,15 +1,16 @@
 //! What every statement of a stage computes at a pixel.
 //!
-//! The stage that draws the pixel is compiled once more with line information, and its module is instrumented (`spirv/trace/`), not its
+//! A stage of the picture (the one that draws the pixel, the vertices of its triangle, a pass, a compute stage) is compiled once more with line information, and its module is instrumented (`spirv/trace/`), not its
 //! text: types are exact, and macros, `#if`, headers of loops and `out` arguments need no guessing. The module writes a log to a buffer by
-//! its address, which stands in it as a constant, so no contract changes. Only the fragments of the pixel write; the other pixels of its
+//! its address, which stands in it as a constant, so no contract changes. Only the chosen invocations write; the other pixels of a
 //! quad run along, so derivatives and mip levels are the picture's. Values are bits, never floats, on their way.
 //!
 //! The set of pipelines is that of the picture except for this stage (`PipelineSet::variant`), so light and tables are the picture's.
-//! The color with which the log of the visible fragment ends is compared with the picture's, bit by bit.
+//! The color with which the log of the visible fragment ends is compared with the picture's, bit by bit; that of a pass with its image.
 
 mod assertion;
 mod calls;
+mod invocations;
 pub mod log;
 mod report;
 #[cfg(test)]
@@ -24,9 +25,11 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::spirv::trace::Purpose;
-use super::{Compiler, PixelValue, ShaderSet, Source};
+use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use assertion::Assertion;
 use calls::Calls;
+use invocations::color_of;
+pub use invocations::{Invocations, Target, TraceableStage};
 pub use log::EXTENSIONS;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
@@ -48,7 +51,7 @@ pub struct LoggingStage {
 }
 
 impl LoggingStage {
-    /// Compiles the fragment stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
+    /// Compiles the stage `stage` of `shaders` so that it writes a log to the buffer at `address`.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
@@ -58,7 +61,10 @@ impl LoggingStage {
         tools: (&Compiler, &Source),
         address: u64,
     ) -> Result<Self, String> {
-        let listener = log::listener();
+        let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
+        let color = shaders.stages.get(stage).and_then(|of| color_of(of));
+        let listener = log::listener(kind, color)
+            .ok_or_else(|| format!("{stage} cannot be traced: only fragment, vertex and compute stages can"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, Some)?;
         Ok(Self { stage, whole, listener, address })
@@ -132,24 +138,33 @@ impl LoggingStage {
 /// What happened at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The fragments, the nearest first.
+    /// The stage.
+    pub stage: String,
+    /// Its kind.
+    pub kind: StageKind,
+    /// The fragments, the nearest first. Of a vertex stage, the vertices of the triangle, each as often as it was drawn differently; of
+    /// a compute stage, the invocation.
     pub fragments: Vec<Fragment>,
     /// Fragments that were left out.
     pub left_out: u32,
-    /// The color of the pixel in the picture: its bits.
+    /// The image that holds the result of the fragments.
+    pub target: Target,
+    /// The color of the pixel there: its bits.
     pub picture: [u32; 4],
-    /// The same where the traced stage draws the picture.
+    /// The same where the traced stage draws.
     pub redrawn: [u32; 4],
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
 
-/// What one fragment did.
+/// What one fragment, vertex or compute invocation did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
-    /// Depth: 1 near, 0 at infinity.
+    /// Depth of a fragment: 1 near, 0 at infinity.
     pub depth: f32,
-    /// The bits of its color; `None` if it was discarded.
+    /// The index of a vertex.
+    pub vertex: Option<u32>,
+    /// The bits of its color, or of a vertex's position in clip space; `None` if it was discarded.
     pub color: Option<[u32; 4]>,
     /// Its events, in the order of execution for each group of files.
     pub events: Vec<Event>,
@@ -198,8 +213,14 @@ pub enum Act {
 }
 
 impl Trace {
-    /// The trace of a log that `stage` has written. `picture` and `redrawn`: see the members.
-    pub fn new(stage: &TracedStage, words: &[u32], picture: &PixelValue, redrawn: &PixelValue) -> Self {
+    /// The trace of a log that `stage` has written of these invocations. `picture` and `redrawn`: see the members.
+    pub fn new(
+        stage: &TracedStage,
+        (of, target): (Invocations, Target),
+        words: &[u32],
+        picture: &PixelValue,
+        redrawn: &PixelValue,
+    ) -> Self {
         let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
         let (logged, left_out) = log::decode(words);
         let fragment = |logged: log::LoggedFragment| {
@@ -209,24 +230,44 @@ impl Trace {
             let more = logged.left_out.iter().filter_map(|(number, count)| Some((doing(stage, *number)?, *count)));
             let left_out = more.collect();
             // As the pixel is read: without flags in alpha.
-            let color = logged.color.map(|color| bits(&PixelValue::decode(color.map(f32::from_bits))));
-            Fragment { depth: logged.depth, color, events, left_out }
+            let color = logged.color.map(|color| match target {
+                Target::Picture => bits(&PixelValue::decode(color.map(f32::from_bits))),
+                _ => color,
+            });
+            let (depth, vertex) = match of {
+                Invocations::Pixel(..) => (f32::from_bits(logged.number), None),
+                Invocations::Triangle(_) => (0.0, Some(logged.number)),
+                Invocations::Compute(_) => (0.0, None),
+            };
+            Fragment { depth, vertex, color, events, left_out }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
         // A device may draw them in any order.
-        fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color)));
+        match of {
+            Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
+            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
+        }
         let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(_) | Purpose::Leave);
         let places = stage.places().filter(|place| is_shown(&place.purpose));
         let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
         let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
-        Self { fragments, left_out, picture: bits(picture), redrawn: bits(redrawn), code: code.collect() }
+        Self {
+            stage: stage.path().to_owned(),
+            kind: stage.kind(),
+            fragments,
+            left_out,
+            target,
+            picture: bits(picture),
+            redrawn: bits(redrawn),
+            code: code.collect(),
+        }
     }
 
     /// The fragment that is seen: the nearest one with the color of the picture, or else the nearest one that was not discarded. `None`
     /// where nothing was drawn.
     pub fn visible(&self) -> Option<usize> {
         let kept = || self.fragments.iter().enumerate().filter(|(_, fragment)| fragment.color.is_some());
-        let found = kept().find(|(_, fragment)| fragment.color == Some(self.picture)).or_else(|| kept().next());
+        let found = kept().find(|(_, fragment)| self.is_shown(fragment)).or_else(|| kept().next());
         found.map(|(index, _)| index)
     }
 
@@ -253,10 +294,36 @@ impl Trace {
         Ok(())
     }
 
-    /// Whether a fragment ends with the color of the picture, bit by bit.
+    /// Whether a fragment ends with the color of the picture, bit by bit. Of a vertex or a compute invocation, whether its stage draws the
+    /// same picture.
     pub fn is_proven(&self, fragment: usize) -> bool {
-        self.fragments.get(fragment).is_some_and(|fragment| fragment.color == Some(self.picture))
+        match self.has_color() {
+            true => self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment)),
+            false => self.redrawn == self.picture,
+        }
     }
+
+    /// Whether the result of the stage is a color that can be read.
+    fn has_color(&self) -> bool {
+        self.kind == StageKind::Fragment && self.target != Target::Unknown
+    }
+
+    fn is_shown(&self, fragment: &Fragment) -> bool {
+        self.has_color() && fragment.color.is_some_and(|color| self.target.holds(color, self.picture))
+    }
+}
+
+/// Sorts vertices by the corners of their triangle. A vertex is run again for each triangle that has it, with the same values.
+fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
+    let corner = |fragment: &Fragment| corners.iter().position(|corner| Some(*corner) == fragment.vertex);
+    let mut kept: Vec<Fragment> = Vec::new();
+    for fragment in std::mem::take(fragments) {
+        if !kept.contains(&fragment) {
+            kept.push(fragment);
+        }
+    }
+    kept.sort_by_key(corner);
+    *fragments = kept;
 }
 
 /// What the statement of a log point does. `None` for the begin and the end of a function.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
+use crate::shader::StageKind;
 
 /// Values that are kept of each place from the begin, and from the end.
 const MOST_KEPT: usize = 16;
@@ -120,34 +121,75 @@ impl Trace {
     pub fn json(&self, fragment: usize) -> Value {
         let of = |(index, found): (usize, &Fragment)| {
             let left_out: u32 = found.left_out.iter().map(|(_, count)| count).sum();
-            json!({ "depth": found.depth, "color": found.color.map(floats), "discarded": found.color.is_none(),
-                "visible": self.visible() == Some(index), "left_out": left_out })
+            let mut json = json!({ "depth": found.depth, "color": found.color.map(floats),
+                "discarded": found.color.is_none(), "visible": self.visible() == Some(index), "left_out": left_out });
+            if let Some(vertex) = found.vertex {
+                json = json!({ "vertex": vertex, "position": found.color.map(floats), "left_out": left_out });
+            }
+            json
         };
         let color = self.fragments.get(fragment).and_then(|fragment| fragment.color);
-        let proof = json!({ "equal": self.is_proven(fragment), "ulp": color.map(|color| ulps(color, self.picture)),
-            "traced": color.map(floats), "picture": floats(self.picture),
+        let traced = if self.has_color() { color } else { Some(self.redrawn) };
+        let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
+            "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
             "redrawn": floats(self.redrawn) });
         json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
-            "fragment": fragment, "proof": proof,
+            "stage": self.stage, "fragment": fragment, "proof": proof,
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
             "not_reached": self.not_reached(fragment) })
     }
 
     /// How the color of a fragment compares with the picture's, in words.
     pub fn proof_text(&self, fragment: usize) -> String {
-        let color = self.fragments.get(fragment).and_then(|fragment| fragment.color);
-        let Some(color) = color else { return "discarded".to_owned() };
-        if color == self.picture {
-            return "equal to the picture".to_owned();
+        let with = self.target.name();
+        if !self.has_color() {
+            return match self.redrawn == self.picture {
+                true => "the picture is the same with the traced stage".to_owned(),
+                false => format!(
+                    "with the traced stage, {with} differs by {} ulp: passes read earlier frames, or the driver computes in another order",
+                    ulps(self.redrawn, self.picture)
+                ),
+            };
+        }
+        let found = self.fragments.get(fragment);
+        let Some((found, color)) = found.and_then(|found| Some((found, found.color?))) else {
+            return "discarded".to_owned();
+        };
+        if self.is_shown(found) {
+            return format!("equal to {with}{}", self.target.precision());
         }
         if self.visible() != Some(fragment) {
             return "hidden, or blended over".to_owned();
         }
         let why = match self.redrawn == self.picture {
-            true => "a pass after the model changes it, or other surfaces are blended with it",
+            true => "a later pass changes it, or other surfaces are blended with it",
             false => "the driver computes the traced stage in another order, or passes read earlier frames",
         };
-        format!("{} ulp from the picture: {why}", ulps(color, self.picture))
+        format!("{} ulp from {with}: {why}", ulps(color, self.picture))
+    }
+
+    /// The name of an invocation in a list of all.
+    pub fn name_of(&self, fragment: usize) -> String {
+        let Some(of) = self.fragments.get(fragment) else { return String::new() };
+        match (self.kind, of.vertex) {
+            (_, Some(vertex)) => {
+                let same = self.fragments[..fragment].iter().filter(|other| other.vertex == of.vertex).count();
+                let again = if same > 0 { format!(", draw {}", same + 1) } else { String::new() };
+                format!("Vertex {vertex}{again}")
+            }
+            (StageKind::Compute, None) => match self.fragments.len() {
+                1 => "Invocation".to_owned(),
+                _ => format!("Run {}", fragment + 1),
+            },
+            _ => {
+                let is = match (of.color, self.visible() == Some(fragment)) {
+                    (None, _) => "discarded",
+                    (_, true) => "seen",
+                    _ => "hidden or blended",
+                };
+                format!("Fragment {fragment}: {is}, depth {:.4}", of.depth)
+            }
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Traces for tests.
 
-use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
+use super::{Act, Doing, Event, Fragment, Target, Trace, TracedValue};
+use crate::shader::StageKind;
 
 /// An event in the file `a.glsl`, in the call `f`.
 pub(crate) fn event(line: u32, act: Act, name: &str, numbers: &[f32]) -> Event {
@@ -20,6 +21,15 @@ pub(crate) fn called(calls: &str, line: u32, act: Act, name: &str, numbers: &[f3
 /// A trace of one fragment, whose color is the picture's. These lines of `a.glsl` have statements.
 pub(crate) fn trace(events: Vec<Event>, statements: &[u32]) -> Trace {
     let code = statements.iter().map(|line| (("a.glsl".to_owned(), *line), format!("line {line};")));
-    let fragment = Fragment { depth: 0.5, color: Some([0; 4]), events, left_out: Vec::new() };
-    Trace { fragments: vec![fragment], left_out: 0, picture: [0; 4], redrawn: [0; 4], code: code.collect() }
+    let fragment = Fragment { depth: 0.5, vertex: None, color: Some([0; 4]), events, left_out: Vec::new() };
+    Trace {
+        stage: "a.frag".into(),
+        kind: StageKind::Fragment,
+        fragments: vec![fragment],
+        left_out: 0,
+        target: Target::Picture,
+        picture: [0; 4],
+        redrawn: [0; 4],
+        code: code.collect(),
+    }
 }

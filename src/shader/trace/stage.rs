@@ -1,4 +1,4 @@
-//! A fragment stage that logs what it computes, in a set of shaders that is otherwise the same.
+//! A stage that logs what it computes, in a set of shaders that is otherwise the same.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::RangeInclusive;
@@ -47,7 +47,7 @@ impl StageTexts {
     }
 }
 
-/// A fragment stage that has compiled with a listener.
+/// A stage that has compiled with a listener.
 pub struct ListeningStage {
     texts: Arc<StageTexts>,
     words: Vec<u32>,
@@ -75,7 +75,7 @@ pub fn compile_listening<'a>(
 }
 
 impl ListeningStage {
-    /// Compiles the fragment stage `stage` of `shaders` once more. `source` gives files their names.
+    /// Compiles the stage `stage` of `shaders` once more. `source` gives files their names.
     ///
     /// # Errors
     /// A message why the stage cannot be traced.
@@ -85,8 +85,7 @@ impl ListeningStage {
         tools: (&Compiler, &Source),
         listener: &Listener,
     ) -> Result<Self, String> {
-        let before = shaders.stages.get(stage).filter(|before| before.kind == StageKind::Fragment);
-        let before = before.ok_or_else(|| format!("{stage} is no fragment stage that has compiled"))?;
+        let before = shaders.stages.get(stage).ok_or_else(|| format!("{stage} is no stage that has compiled"))?;
         let text = (listener.text.as_str(), listener.extensions);
         let (_, words) = compile_listening(shaders, &TreePath::from(stage), tools, text)?;
         let texts = StageTexts { shaders: shaders.clone(), stage: before.clone(), source: tools.1.clone() };
@@ -138,6 +137,16 @@ pub struct TracedStage {
 }
 
 impl TracedStage {
+    /// The path of the stage.
+    pub(super) fn path(&self) -> &str {
+        self.texts.stage.path.as_str()
+    }
+
+    /// The kind of the stage.
+    pub(super) fn kind(&self) -> StageKind {
+        self.texts.stage.kind
+    }
+
     /// The log point with a number that the module has given, from 1.
     pub fn point(&self, number: u32) -> Option<&LogPoint> {
         self.traced.points.get((number as usize).checked_sub(1)?)

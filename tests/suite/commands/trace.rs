@@ -1,5 +1,6 @@
 //! `specula trace`: the values of statements at a pixel.
 
+mod stages;
 mod statements;
 
 use std::path::Path;
@@ -227,16 +228,12 @@ fn assertions_are_exit_codes() {
 fn what_cannot_be_traced_is_said() {
     let directory = tempfile::tempdir().unwrap();
     write_sphere(directory.path());
-    let toy = "void mainImage(out vec4 color, in vec2 at) { color = vec4(at / iResolution.xy, 0.0, 1.0); }";
-    std::fs::write(directory.path().join("toy.glsl"), toy).unwrap();
     let ball = |more: &[&str]| trace(directory.path(), &[&["ball.glb"][..], &EYE, more].concat());
     ball(&["--at", "1,1", "--file", "user.glsl"]).expect(2, &["the model does not cover the pixel 1,1"]);
     ball(&["--at", "50,30", "--file", "common/absent.glsl"])
         .expect(2, &["no statement of common/absent.glsl is in the stage", "brdf/ndf.glsl"]);
-    ball(&["--at", "50,30", "--mode", "path-traced"]).expect(2, &["no stage of the model draws the mode path-traced"]);
     ball(&["--at", "50,30", "--fragment", "7", "--file", "user.glsl"])
         .expect(2, &["the pixel has 1 fragment; the first is 0"]);
-    trace(directory.path(), &["toy.glsl", "--at", "50,30"]).expect(2, &["toys compute cannot be traced"]);
 }
 
 /// A quad behind another, a mask with a hole, and the background.

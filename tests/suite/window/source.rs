@@ -74,7 +74,56 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     // An edit that does not compile leaves the values.
     viewer.tree.write(NDF, &edit.replace("4.0 * alpha", "4.0 * alfa"));
     viewer.running.reload(false);
+    let kept = viewer.running.done(ask(json!({})));
+    assert_eq!((&kept["lines"], &kept["proof"]), (&edited["lines"], &edited["proof"]), "{kept}");
     viewer.tree.write(NDF, &edit);
     viewer.running.reload(true);
+
+    // Another stage of the same picture, by its name and by a file that only it has.
+    for place in [json!({ "stage": "tonemap.frag" }), json!({ "file": "common/tonemap.glsl" })] {
+        let mut command = json!({ "command": "source" });
+        place.as_object().unwrap().iter().for_each(|(field, value)| command[field] = value.clone());
+        let of_display = viewer.running.done(command);
+        assert_eq!(of_display["stage"], "tonemap.frag", "{of_display}");
+        assert_eq!(of_display["proof"]["equal"], true, "{}", of_display["proof"]);
+    }
+    let refused = viewer.running.refused(json!({ "command": "source", "stage": "tonemap.frg" }));
+    assert!(refused.contains("Did you mean `tonemap.frag`?"), "{refused}");
+    viewer.quit();
+}
+
+/// The color of marks.
+const MARK: [u8; 3] = [255, 0, 255];
+
+#[test]
+fn pixels_that_fail_a_check_are_marked_and_told() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "shader-ball"]);
+    viewer.running.event("ready");
+    assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]), "the tree asserts nothing");
+    let marks = |viewer: &mut Viewer| {
+        let file = viewer.tree.beside("window.png");
+        let _ = std::fs::remove_file(&file);
+        viewer.running.done(json!({ "command": "capture", "ui": true, "file": file }));
+        image::open(&file).unwrap().to_rgb8().pixels().filter(|pixel| pixel.0 == MARK).count()
+    };
+    assert_eq!(marks(&mut viewer), 0);
+    let picture = viewer.screenshot();
+    let assertion =
+        "void user_surface(inout Surface s, Fragment f, vec3 v) {\n    assert(s.roughness < 0.0, \"rough\");";
+    let text = viewer.tree.edited("user.glsl", "void user_surface(inout Surface s, Fragment f, vec3 v) {", assertion);
+    viewer.tree.write("user.glsl", &text);
+    viewer.running.reload(true);
+    let found = viewer.running.done(json!({ "command": "checks" }));
+    let of = found.as_array().unwrap().iter().find(|of| of["stage"] == "pbr.frag").unwrap();
+    assert_eq!((&of["rule"], &of["text"]), (&"assert".into(), &"rough".into()), "{found}");
+    assert_eq!((&of["file"], &of["line"]), (&"user.glsl".into(), &line_of(&text, "assert(s.rough").into()), "{of}");
+    let count = of["count"].as_u64().unwrap() as usize;
+    assert!(count > 1000, "{of}");
+    let marked = marks(&mut viewer);
+    assert!(marked > count / 10, "{marked} pixels are marked, and {count} failed");
+    assert!(viewer.screenshot() == picture, "the checks change the picture");
+    viewer.running.done(json!({ "command": "set", "values": { "view.checks": "off" } }));
+    assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]));
+    assert_eq!(marks(&mut viewer), 0);
     viewer.quit();
 }

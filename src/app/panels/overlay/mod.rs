@@ -9,6 +9,7 @@ mod hint;
 mod labels;
 pub(in crate::app) mod legend;
 mod light;
+mod marks;
 mod restore;
 pub(in crate::app) mod swatches;
 mod version;
@@ -32,6 +33,7 @@ use diagnostics::{Files, Shown};
 use gizmo::Gizmo;
 use labels::Labels;
 use legend::{Legend, LegendState};
+use marks::Marks;
 
 /// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
@@ -50,6 +52,7 @@ pub(in crate::app) struct Overlay {
     gizmo: Gizmo,
     labels: Labels,
     map: ShownMap,
+    marks: Marks,
 }
 
 /// Shows what lies over the picture. `with_panels`: the panels are shown as well.
@@ -100,6 +103,7 @@ fn in_picture(
     commands: &mut Commands,
 ) {
     let state = context.state;
+    marks::show(egui, state, &mut own.marks, picture);
     compare::show(egui, state, &mut own.map, picture, &mut commands.list);
     if commands.sight.inspector || commands.sight.source {
         marker(egui, &state.inspection, picture);

@@ -26,9 +26,9 @@ enum Line<'a> {
 }
 
 /// The diagnostics by file, in the order in which the files come first.
-fn grouped<'a>(diagnostics: &'a [Diagnostic], words: &Words) -> Vec<Line<'a>> {
+fn grouped<'a>(diagnostics: impl Iterator<Item = &'a Diagnostic>, words: &Words) -> Vec<Line<'a>> {
     let is_found = |diagnostic: &&Diagnostic| words.are_in(&text_of(diagnostic));
-    let diagnostics: Vec<&Diagnostic> = diagnostics.iter().filter(is_found).collect();
+    let diagnostics: Vec<&Diagnostic> = diagnostics.filter(is_found).collect();
     let mut files: Vec<&str> = Vec::new();
     for diagnostic in &diagnostics {
         if !files.contains(&diagnostic.file.as_str()) {
@@ -43,13 +43,14 @@ fn grouped<'a>(diagnostics: &'a [Diagnostic], words: &Words) -> Vec<Line<'a>> {
 }
 
 pub(super) fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let diagnostics = &state.session.diagnostics;
-    if diagnostics.is_empty() {
+    let diagnostics = || state.session.diagnostics.iter().chain(state.checks.diagnostics());
+    let count = diagnostics().count();
+    if count == 0 {
         ui.label(RichText::new("No errors and no warnings").small().color(QUIET));
         return;
     }
-    let words = search::above_kept(ui, "problems", diagnostics.len());
-    let lines = grouped(diagnostics, &words);
+    let words = search::above_kept(ui, "problems", count);
+    let lines = grouped(diagnostics(), &words);
     if lines.is_empty() {
         words.no_match(ui, "problem");
     }
@@ -115,7 +116,7 @@ mod tests {
             Line::Diagnostic(diagnostic) => diagnostic.message.clone(),
         };
         let lines =
-            |search: &str| grouped(&diagnostics, &Words::new(search)).iter().map(words).collect::<Vec<String>>();
+            |search: &str| grouped(diagnostics.iter(), &Words::new(search)).iter().map(words).collect::<Vec<String>>();
         assert_eq!(lines(""), ["b.glsl 2", "1", "3", "a.glsl 1", "2"]);
         assert_eq!(lines("ERROR b.glsl 3"), ["b.glsl 1", "3"]);
         assert!(lines("warning").is_empty());

@@ -27,8 +27,9 @@ pub(super) fn show(
     let mut area = ScrollArea::both().id_salt("code").auto_shrink(false);
     let has_values = model.lines.iter().any(|line| !line.row.notes.is_empty());
     if scroll.is_news(path.as_str(), has_values) {
-        // A file opens where the pixel reaches it.
-        let first = model.first_change().or_else(|| model.lines.iter().position(|line| !line.row.notes.is_empty()));
+        // A file opens at its first error, or where the pixel reaches it.
+        let first = model.first_error().or_else(|| model.first_change());
+        let first = first.or_else(|| model.lines.iter().position(|line| !line.row.notes.is_empty()));
         scroll.offer(first.unwrap_or(0));
     }
     if let Some(line) = scroll.take() {
@@ -38,7 +39,7 @@ pub(super) fn show(
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing, vec2(0.0, 0.0));
     area.show_rows(ui, ROW, model.shown.len(), |ui, range| {
         ui.set_min_width(width.max(ui.available_width()));
-        scroll.first = range.start;
+        scroll.first = model.line_at(range.start);
         for shown in &model.shown[range] {
             let begins = show_row(ui, (state, path), model, shown, (&look, find), commands);
             if let Some(line) = begins {

@@ -36,6 +36,27 @@ struct Typing {
     sent: Option<Arc<str>>,
     /// The text that the tree had last.
     known: Arc<str>,
+    /// Older texts of the file, which the tree may show until it has compiled the newest.
+    older: Vec<Arc<str>>,
+}
+
+impl Typing {
+    /// Takes a text of the tree. One that is older than what was saved is no change of another program.
+    fn take(&mut self, now: &Arc<str>) {
+        self.known = now.clone();
+        if **now == *self.base {
+            self.older.clear();
+        } else if *self.base == *self.text && self.sent.is_none() && !self.older.contains(now) {
+            (self.base, self.text) = (now.clone(), now.to_string());
+        }
+    }
+
+    /// Takes the text that the file has since it was saved.
+    fn saved(&mut self, text: Arc<str>) {
+        let before = std::mem::replace(&mut self.base, text);
+        self.older.retain(|older| *older != self.base);
+        self.older.push(before);
+    }
 }
 
 /// The files that are typed.
@@ -55,7 +76,10 @@ impl Editor {
     pub(super) fn begin(&mut self, path: &TreePath, text: &Arc<str>, line: usize) {
         let Some(file) = self.file(path) else { return };
         self.cursor = Some(text.split_inclusive('\n').take(line).map(|line| line.chars().count()).sum());
-        let new = || Typing { base: text.clone(), text: text.to_string(), sent: None, known: text.clone() };
+        let new = || {
+            let (base, known) = (text.clone(), text.clone());
+            Typing { base, text: text.to_string(), sent: None, known, older: Vec::new() }
+        };
         self.files.entry(file).or_insert_with(new);
     }
 
@@ -111,8 +135,11 @@ impl Editor {
         {
             match &saved.text {
                 // With the changes of other programs, unless the user has gone on.
-                Some(text) if *sent == *file.text => (file.base, file.text) = (text.clone(), text.to_string()),
-                Some(_) => file.base = sent,
+                Some(text) if *sent == *file.text => {
+                    file.text = text.to_string();
+                    file.saved(text.clone());
+                }
+                Some(_) => file.saved(sent),
                 None => {}
             }
         }
@@ -120,11 +147,7 @@ impl Editor {
             self.files.iter_mut().filter(|(of, _)| Some(&of.root) == self.root.as_ref())
         {
             let now = state.traces.saved.of(path).or_else(|| shaders.texts.get(path));
-            let Some(now) = now.filter(|now| **now != file.known) else { continue };
-            file.known = now.clone();
-            if *file.base == *file.text && file.sent.is_none() {
-                (file.base, file.text) = (now.clone(), now.to_string());
-            }
+            now.filter(|now| **now != file.known).into_iter().for_each(|now| file.take(now));
         }
     }
 
@@ -239,4 +262,30 @@ fn take_keys(ui: &Ui, id: Id, text: &str) {
             *event = Event::Text(typed);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_older_text_of_the_tree_is_no_change_of_another_program() {
+        let text = |text: &str| Arc::<str>::from(text);
+        let mut file =
+            Typing { base: text("a"), text: "b".to_owned(), sent: None, known: text("a"), older: Vec::new() };
+        file.saved(text("b"));
+        file.text = "c".to_owned();
+        file.saved(text("c"));
+        // The compiles of both saves end one after the other.
+        for now in ["a", "b", "c"] {
+            file.take(&text(now));
+            assert_eq!((&*file.base, file.text.as_str()), ("c", "c"), "{now}");
+        }
+        // Another program brings the first text back.
+        file.take(&text("a"));
+        assert_eq!((&*file.base, file.text.as_str()), ("a", "a"));
+        file.text = "typed".to_owned();
+        file.take(&text("d"));
+        assert_eq!((&*file.base, file.text.as_str()), ("a", "typed"), "what is typed stays");
+    }
 }

@@ -9,7 +9,7 @@ use super::model::CodeModel;
 use super::scroll::Scroll;
 use crate::app::command::file::EDIT;
 use crate::app::command::scene::UNPIN;
-use crate::app::command::source::{CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
+use crate::app::command::source::{CHOOSE_STAGE, CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
 use crate::app::commands::Commands;
 use crate::app::editor::Place;
 use crate::app::state::State;
@@ -19,11 +19,13 @@ use crate::app::state::trace::{PixelTrace, Progress};
 use crate::app::widgets::plural;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, icon, small_mono};
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Trace, TraceableStage};
 use crate::shader::{ShaderSet, TreePath};
 
 /// Width of the list of files, points.
 const FILES: f32 = 176.0;
+/// Width of the list of stages, points.
+const STAGES: f32 = 130.0;
 /// Height of the list of files, points.
 const MENU: f32 = 380.0;
 
@@ -38,6 +40,9 @@ pub(super) fn show(
     let newest = state.traces.newest();
     ui.horizontal_wrapped(|ui| {
         files(ui, state, shaders, model, newest.map(|newest| &**newest), commands);
+        if let Some(newest) = newest.filter(|newest| newest.stages.len() > 1) {
+            stages(ui, newest, commands);
+        }
         pixel(ui, state, commands);
         progress(ui, state, newest.map(|newest| &**newest));
         changes(ui, state, model, scroll);
@@ -86,6 +91,25 @@ fn files(
     let of = state.source.name();
     named(list.response, "File")
         .on_hover_text(format!("The file of {of} that is shown. The values are those of its statements"));
+}
+
+/// The list of stages that draw the picture.
+fn stages(ui: &mut Ui, newest: &PixelTrace, commands: &mut Commands) {
+    let is_now = |of: &&TraceableStage| of.path == newest.stage;
+    let now = newest.stages.iter().find(is_now).map_or(newest.stage.as_str(), |now| now.label.as_str());
+    let list = ComboBox::from_id_salt("stage").selected_text(RichText::new(now).small()).width(STAGES).height(MENU);
+    let list = list.truncate().show_ui(ui, |ui| {
+        ui.set_min_width(MENU);
+        for stage in &newest.stages {
+            let text = format!("{}   {}", stage.label, stage.path);
+            if ui.selectable_label(is_now(&stage), RichText::new(text).small()).clicked() {
+                commands.push(CHOOSE_STAGE.with(stage.path.clone()));
+            }
+        }
+    });
+    named(list.response, "Stage").on_hover_text(
+        "The stage whose values are shown: of the surfaces, of their vertices, or of a pass of the picture",
+    );
 }
 
 /// Whether a path names a stage that only Specula knows.
@@ -229,15 +253,7 @@ fn choices(ui: &mut Ui, now: &Choice, trace: &Trace, fragment: usize, commands: 
 }
 
 fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: usize) {
-    let name = |at: usize| {
-        let of = &trace.fragments[at];
-        let is = match (of.color, trace.visible() == Some(at)) {
-            (None, _) => "discarded",
-            (_, true) => "seen",
-            _ => "hidden or blended",
-        };
-        format!("Fragment {at}: {is}, depth {:.4}", of.depth)
-    };
+    let name = |at: usize| trace.name_of(at);
     let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(name(fragment)).small());
     let list = list.show_ui(ui, |ui| {
         for at in 0..trace.fragments.len() {
@@ -246,7 +262,7 @@ fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: us
             }
         }
     });
-    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first");
+    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there");
 }
 
 fn choose_call(ui: &mut Ui, choice: &mut Choice, calls: &[std::sync::Arc<str>]) {

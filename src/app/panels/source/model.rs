@@ -69,7 +69,8 @@ impl CodeModel {
         let text = typed(&path).unwrap_or(text);
         let address = |trace: Option<&Arc<PixelTrace>>| trace.map_or(0, |trace| Arc::as_ptr(trace) as usize);
         let display = state.source.display_path(&path);
-        let diagnostics = state.session.diagnostics.iter().filter(|found| found.file == display);
+        let diagnostics = state.session.diagnostics.iter().chain(state.checks.diagnostics());
+        let diagnostics = diagnostics.filter(|found| found.file == display);
         let inputs = Inputs {
             path,
             text,
@@ -91,10 +92,23 @@ impl CodeModel {
         self.lines.iter().position(|line| line.row.is_first_change)
     }
 
+    /// The index of the first line with an error.
+    pub(super) fn first_error(&self) -> Option<usize> {
+        let is_error = |line: &CodeLine| matches!(line.message, Some((Severity::Error, _)));
+        self.lines.iter().position(is_error)
+    }
+
     /// How many lines have values that the last edit has changed.
     pub(super) fn changes(&self) -> usize {
         let is_changed = |line: &&CodeLine| line.row.notes.iter().any(|note| note.before.is_some());
         self.lines.iter().filter(is_changed).count()
+    }
+
+    /// The index of the line that a row shows, or the next line below it.
+    pub(super) fn line_at(&self, row: usize) -> usize {
+        let below = self.shown.get(row..).unwrap_or_default();
+        let line = |shown: &Shown| if let Shown::Line(line) = shown { Some(*line) } else { None };
+        below.iter().find_map(line).unwrap_or_else(|| self.lines.len().saturating_sub(1))
     }
 
     /// The index of the row that shows a line.

@@ -5,7 +5,7 @@
 pub(super) struct Scroll {
     /// The line to bring into sight.
     to: Option<usize>,
-    /// The first row in sight.
+    /// The first line in sight, by its index.
     pub(super) first: usize,
     /// The file whose lines were shown, and whether with values.
     file: String,

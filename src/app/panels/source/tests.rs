@@ -18,6 +18,7 @@ use crate::app::gallery::Thumbnails;
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::readings::Readings;
 use crate::app::state::State;
+use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::choice::Choice;
 use crate::app::state::trace::saved::WrittenText;
 use crate::app::state::trace::subject::Subject;
@@ -27,6 +28,7 @@ use crate::settings::Settings;
 use crate::shader::trace::sample::{called, event, trace};
 use crate::shader::trace::{Act, Event};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
+use crate::threads::TracedPlace;
 use crate::write_back::TreeFile;
 
 const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
@@ -50,18 +52,26 @@ fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, state
     state.session.shaders = Some(shaders.clone());
     state.inspection.pin = Some([3, 4]);
     let of = Subject {
+        picture: PictureSubject {
+            size: (64, 48),
+            settings: Arc::new(Settings::default()),
+            shaders,
+            revisions: Default::default(),
+            model: 1,
+            light: 1,
+            clock: Default::default(),
+        },
         at: [3, 4],
-        size: (64, 48),
-        settings: Arc::new(Settings::default()),
-        shaders,
-        revisions: Default::default(),
-        model: 1,
-        light: 1,
-        time_s: 0.0,
+        stage: None,
         file: None,
     };
     state.traces.ask(of, generation);
-    let names = ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+    let names = TracedPlace {
+        stage: "a.frag".to_owned(),
+        stages: Vec::new(),
+        files: vec!["a.glsl".to_owned()],
+        file: "a.glsl".to_owned(),
+    };
     assert!(state.traces.take(generation, names, Ok(trace(events, statements))));
 }
 

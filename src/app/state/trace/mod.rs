@@ -7,12 +7,15 @@ pub(in crate::app) mod saved;
 pub(in crate::app) mod subject;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::shader::trace::Trace;
+use super::picture_subject::PictureSubject;
+use super::resting::Resting;
+use crate::shader::trace::{Trace, TraceableStage};
 use crate::shader::{ShaderSet, TreePath};
+use crate::threads::TracedPlace;
 use choice::Choice;
 use rows::{Row, Side, Sources, rows};
 use saved::{SavedText, WrittenText};
@@ -24,8 +27,10 @@ const MOST_UNSEEN: u32 = 8;
 /// A trace, and what it is of.
 pub(in crate::app) struct PixelTrace {
     pub(in crate::app) of: Subject,
-    /// The stage that draws the pixel; empty if there is none.
+    /// The stage; empty if there is none.
     pub(in crate::app) stage: String,
+    /// The stages of the picture that can be traced.
+    pub(in crate::app) stages: Vec<TraceableStage>,
     /// The files whose statements it has at the pixel.
     pub(in crate::app) files: Vec<String>,
     /// The file whose statements were traced.
@@ -37,7 +42,7 @@ pub(in crate::app) struct PixelTrace {
 impl PixelTrace {
     /// The text of the traced file.
     pub(in crate::app) fn text(&self) -> Arc<str> {
-        self.of.shaders.texts.get(&self.file).cloned().unwrap_or_default()
+        self.of.picture.shaders.texts.get(&self.file).cloned().unwrap_or_default()
     }
 
     fn side(&self) -> Option<Side<'_>> {
@@ -68,6 +73,8 @@ pub(in crate::app) enum Progress {
 /// The traces.
 #[derive(Default)]
 pub(in crate::app) struct Traces {
+    /// The stage that the user has chosen; `None` for the first that has the file, or that of the picture.
+    pub(in crate::app) stage: Option<String>,
     /// The file that the user has chosen; `None` for that of the stage.
     pub(in crate::app) file: Option<TreePath>,
     pub(in crate::app) choice: Choice,
@@ -82,7 +89,7 @@ pub(in crate::app) struct Traces {
     /// Whether the result of that request is still to come.
     is_awaited: bool,
     /// The request to send once it has stayed the same for a while.
-    resting: Option<(Subject, Instant)>,
+    resting: Resting<Subject>,
     /// Frames in which the panel was out of sight since a command asked for a trace.
     unseen: u32,
     /// The newest trace. It stays while a newer one is under way.
@@ -126,14 +133,8 @@ impl Traces {
     /// How long `subject` must still stay as it is, of a total of `rest`, before it is asked for: settings may be dragged. A click, a save and
     /// another file are traced at once.
     pub(in crate::app) fn rest_left(&mut self, subject: &Subject, rest: Duration) -> Option<Duration> {
-        self.asked.as_ref().filter(|asked| asked.settings != subject.settings)?;
-        match &self.resting {
-            Some((of, since)) if of == subject => rest.checked_sub(since.elapsed()).filter(|left| !left.is_zero()),
-            _ => {
-                self.resting = Some((subject.clone(), Instant::now()));
-                Some(rest)
-            }
-        }
+        self.asked.as_ref().filter(|asked| asked.picture.settings != subject.picture.settings)?;
+        self.resting.left(subject, rest)
     }
 
     /// Notes that a command waits for the trace of the picture.
@@ -174,7 +175,7 @@ impl Traces {
             known.as_ref().is_some_and(|known| known.of.is_same_but_version(subject) && known.trace.is_ok())
         };
         let is_other = |known: &Option<Arc<PixelTrace>>| {
-            is_known(known) && known.as_ref().is_some_and(|known| !known.of.has_same_texts(subject))
+            is_known(known) && known.as_ref().is_some_and(|known| !known.of.picture.has_same_texts(&subject.picture))
         };
         !is_other(&self.newest) && !is_other(&self.before)
     }
@@ -184,7 +185,7 @@ impl Traces {
     pub(in crate::app) fn take(
         &mut self,
         number: u64,
-        (stage, files, file): (String, Vec<String>, String),
+        TracedPlace { stage, stages, files, file }: TracedPlace,
         trace: Result<Trace, String>,
     ) -> bool {
         let is_newest = self.number == number && self.is_awaited;
@@ -199,12 +200,13 @@ impl Traces {
         let last = || self.newest.as_ref().map(|last| last.file.clone());
         let named = (!file.is_empty()).then(|| TreePath::from(file.as_str()));
         let file = named.or_else(|| of.file.clone()).or_else(last).unwrap_or_else(|| TreePath::from(""));
-        let newest = PixelTrace { of, stage, files, file, trace };
+        let newest = PixelTrace { of, stage, stages, files, file, trace };
         let fits = |old: &Arc<PixelTrace>| {
             old.trace.is_ok()
                 && old.of.is_same_but_version(&newest.of)
                 && old.file == newest.file
-                && !old.of.has_same_texts(&newest.of)
+                && (newest.stage.is_empty() || old.stage == newest.stage)
+                && !old.of.picture.has_same_texts(&newest.of.picture)
         };
         let last = self.newest.take().filter(fits);
         self.before = last.or(self.before.take().filter(fits));
@@ -217,10 +219,10 @@ impl Traces {
         let is_taken = self.number == number && self.asked.is_some() && !self.is_awaited;
         let is_missing = is_taken && self.before.is_none();
         let Some(newest) = self.newest.as_ref().filter(|_| is_missing) else { return };
-        let PixelTrace { of, stage, files, file, .. } = &**newest;
-        let of = Subject { shaders, ..of.clone() };
-        let (stage, files, file) = (stage.clone(), files.clone(), file.clone());
-        self.before = Some(Arc::new(PixelTrace { of, stage, files, file, trace: Ok(trace) }));
+        let PixelTrace { of, stage, stages, files, file, .. } = &**newest;
+        let of = Subject { picture: PictureSubject { shaders, ..of.picture.clone() }, ..of.clone() };
+        let (stage, stages, files, file) = (stage.clone(), stages.clone(), files.clone(), file.clone());
+        self.before = Some(Arc::new(PixelTrace { of, stage, stages, files, file, trace: Ok(trace) }));
     }
 
     /// The fragment whose statements are shown.
@@ -244,9 +246,9 @@ impl Traces {
         let none = "every fragment of the model is discarded at this pixel; choose one with `fragment`";
         let fragment = self.choice.fragment_of(trace).ok_or(none)?;
         let mut json = trace.json(fragment);
-        (json["pixel"], json["mode"]) = (json!(newest.of.at), json!(newest.of.settings.mode));
-        (json["file"], json["stage"], json["files"]) =
-            (json!(newest.file.as_str()), json!(newest.stage), json!(newest.files));
+        (json["pixel"], json["mode"]) = (json!(newest.of.at), json!(newest.of.picture.settings.mode));
+        (json["file"], json["files"]) = (json!(newest.file.as_str()), json!(newest.files));
+        json["stages"] = json!(newest.stages);
         json["calls"] = json!(choice::calls(trace, fragment));
         json["changed"] = self.rows(&newest.file, &newest.text()).iter().flat_map(Row::changes_json).collect();
         Ok(json)

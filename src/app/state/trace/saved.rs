@@ -3,6 +3,8 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
+use chrono::{DateTime, Local};
+
 use crate::shader::{Diagnostic, TreePath};
 use crate::write_back::TreeFile;
 
@@ -17,15 +19,22 @@ pub(in crate::app) struct WrittenText {
 /// The text of one file.
 #[derive(Default)]
 pub(in crate::app) struct SavedText {
-    /// The file that was asked for, and a hash of the errors that it had then.
+    /// The file that was asked for, and a hash of the last edit and its errors.
     asked: Option<(TreePath, u64)>,
     text: Option<(TreePath, Arc<str>)>,
 }
 
 impl SavedText {
-    /// Whether the text of a file with these errors is missing. The next call with the same counts it as asked for.
-    pub(in crate::app) fn lacks<'a>(&mut self, path: &TreePath, errors: impl Iterator<Item = &'a Diagnostic>) -> bool {
+    /// Whether the text of a file is missing after the last edit, made at a time, that has these errors. The next call with the same
+    /// counts it as asked for.
+    pub(in crate::app) fn lacks<'a>(
+        &mut self,
+        path: &TreePath,
+        errors: impl Iterator<Item = &'a Diagnostic>,
+        last_edit: Option<DateTime<Local>>,
+    ) -> bool {
         let mut hasher = DefaultHasher::new();
+        last_edit.hash(&mut hasher);
         errors.for_each(|error| error.hash(&mut hasher));
         let asked = (path.clone(), hasher.finish());
         if self.asked.as_ref() == Some(&asked) {
@@ -62,8 +71,10 @@ mod tests {
         let mut saved = SavedText::default();
         let path = TreePath::from("a.glsl");
         let errors = [Diagnostic::error("a.glsl", "one"), Diagnostic::error("a.glsl", "two")];
-        assert!(saved.lacks(&path, errors[..1].iter()) && !saved.lacks(&path, errors[..1].iter()));
-        assert!(saved.lacks(&path, errors.iter()));
+        let at = Some(Local::now());
+        assert!(saved.lacks(&path, errors[..1].iter(), None) && !saved.lacks(&path, errors[..1].iter(), None));
+        assert!(saved.lacks(&path, errors.iter(), None));
+        assert!(saved.lacks(&path, errors.iter(), at) && !saved.lacks(&path, errors.iter(), at), "another save");
         saved.take("b.glsl".into(), "b".into());
         assert_eq!(saved.of(&"b.glsl".into()), None, "nobody has asked for it");
         saved.take(path.clone(), "text".into());

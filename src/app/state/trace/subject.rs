@@ -1,47 +1,24 @@
 //! The pixel, stage and frame of a trace.
 
-use std::sync::Arc;
-
-use crate::frame::Revisions;
-use crate::settings::Settings;
-use crate::shader::{ShaderSet, TreePath};
+use crate::app::state::picture_subject::PictureSubject;
+use crate::shader::TreePath;
 
 /// A pixel of a picture, and the file whose statements are traced. Equal ones give equal traces.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub(in crate::app) struct Subject {
+    pub(in crate::app) picture: PictureSubject,
     /// Pixels from the upper left corner.
     pub(in crate::app) at: [u32; 2],
-    pub(in crate::app) size: (u32, u32),
-    pub(in crate::app) settings: Arc<Settings>,
-    pub(in crate::app) shaders: Arc<ShaderSet>,
-    pub(in crate::app) revisions: Revisions,
-    /// Addresses of the model and of the light on the device.
-    pub(in crate::app) model: usize,
-    pub(in crate::app) light: usize,
-    /// The time of the picture, seconds.
-    pub(in crate::app) time_s: f32,
+    /// `None`: the first that has the file, or that of the picture.
+    pub(in crate::app) stage: Option<String>,
     /// `None`: that of the stage.
     pub(in crate::app) file: Option<TreePath>,
 }
 
 impl Subject {
-    /// Whether the shaders of both have the same texts, so that they are one version.
-    pub(in crate::app) fn has_same_texts(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.shaders, &other.shaders) || self.shaders.texts == other.shaders.texts
-    }
-
-    /// Whether both are of the same pixel of the same picture, drawn by any version of the shaders. A version has a light of its own.
+    /// Whether both are of the same pixel of the same picture, drawn by any version of the shaders.
     pub(in crate::app) fn is_same_but_version(&self, other: &Self) -> bool {
-        let parts = |of: &Self| (of.at, of.size, of.model, of.time_s.to_bits());
-        parts(self) == parts(other) && self.file == other.file && self.settings == other.settings
-    }
-}
-
-impl PartialEq for Subject {
-    fn eq(&self, other: &Self) -> bool {
-        let light = |of: &Self| (of.light, of.revisions);
-        // Generation numbers may restart at 1.
-        let is_same_set = Arc::ptr_eq(&self.shaders, &other.shaders);
-        is_same_set && light(self) == light(other) && self.is_same_but_version(other)
+        let place = |of: &Self| (of.at, of.stage.clone(), of.file.clone());
+        place(self) == place(other) && self.picture.is_same_but_version(&other.picture)
     }
 }

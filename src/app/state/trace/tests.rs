@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::rows::Reach;
 use super::*;
+use crate::app::state::picture_subject::PictureSubject;
 use crate::settings::Settings;
 use crate::shader::trace::sample::{called, event, trace};
 use crate::shader::trace::{Act, Event};
@@ -13,14 +14,17 @@ const NEW: &str = "float f(float x) {\n    float b = 1.0;\n    float a = x * 4.0
 
 fn subject(shaders: &Arc<ShaderSet>) -> Subject {
     Subject {
+        picture: PictureSubject {
+            size: (64, 48),
+            settings: Arc::new(Settings::default()),
+            shaders: shaders.clone(),
+            revisions: Default::default(),
+            model: 1,
+            light: 1,
+            clock: Default::default(),
+        },
         at: [3, 4],
-        size: (64, 48),
-        settings: Arc::new(Settings::default()),
-        shaders: shaders.clone(),
-        revisions: Default::default(),
-        model: 1,
-        light: 1,
-        time_s: 0.0,
+        stage: None,
         file: None,
     }
 }
@@ -33,7 +37,12 @@ fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
 /// Takes a trace of a version.
 fn add(traces: &mut Traces, shaders: &Arc<ShaderSet>, number: u64, events: Vec<Event>, statements: &[u32]) {
     traces.ask(subject(shaders), number);
-    let names = ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+    let names = TracedPlace {
+        stage: "a.frag".to_owned(),
+        stages: Vec::new(),
+        files: vec!["a.glsl".to_owned()],
+        file: "a.glsl".to_owned(),
+    };
     assert!(traces.take(number, names, Ok(trace(events, statements))));
 }
 
@@ -95,7 +104,7 @@ fn another_pixel_has_no_version_before() {
     let other = Subject { at: [9, 9], ..subject(&newest) };
     assert!(traces.lacks_before(&other));
     traces.ask(other, 2);
-    let names = || ("a.frag".to_owned(), Vec::new(), "a.glsl".to_owned());
+    let names = || TracedPlace { stage: "a.frag".to_owned(), file: "a.glsl".to_owned(), ..TracedPlace::default() };
     assert!(traces.take(2, names(), Ok(trace(new_events(), &[1]))));
     assert!(traces.before().is_none());
     // The thread traces it, too.
@@ -194,7 +203,12 @@ fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
         let newest = shaders(2, NEW);
         traces.ask(subject(&newest), 1);
         traces.progress = meanwhile;
-        let names = || ("a.frag".to_owned(), vec!["a.glsl".to_owned()], "a.glsl".to_owned());
+        let names = || TracedPlace {
+            stage: "a.frag".to_owned(),
+            stages: Vec::new(),
+            files: vec!["a.glsl".to_owned()],
+            file: "a.glsl".to_owned(),
+        };
         assert!(traces.take(1, names(), Ok(trace(new_events(), &[1]))), "{meanwhile:?}");
         assert_eq!(traces.progress, meanwhile, "the picture is not that of the trace yet");
         assert!(!traces.take(1, names(), Ok(trace(old_events(), &[1]))), "a result is taken once");

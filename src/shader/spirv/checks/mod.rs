@@ -30,6 +30,8 @@ pub struct Names<'a> {
     pub mask: &'a str,
     /// `void function(const in uint check, const in uvec4 bits)`: gets the number of a check from 1, or 0 if its rule is kept, and operands.
     pub function: &'a str,
+    /// The same for a `print()`.
+    pub print: &'a str,
     /// Functions whose names begin with this are not checked.
     pub silent: &'a str,
 }
@@ -65,7 +67,10 @@ pub struct Checked {
 pub fn check(words: &[u32], names: &Names<'_>, undefined: bool, chosen: Option<&BTreeSet<usize>>) -> Option<Checked> {
     let mut module = Module::parse(words)?;
     let to = match chosen {
-        Some(chosen) => Report::Operands { function: module.named(&format!("{}(", names.function)).next()?, chosen },
+        Some(chosen) => {
+            let [function, print] = [names.function, names.print].map(|name| module.named(&format!("{name}(")).next());
+            Report::Operands { function: function?, print: print?, chosen }
+        }
         None => Report::Bits { mask: module.named(names.mask).next()? },
     };
     let extended = module.head.iter().find(|i| i.op == Op::ExtInstImport).map(|i| module[*i][1]);
@@ -105,7 +110,7 @@ enum Report<'a> {
     /// Sets a bit of the array.
     Bits { mask: Id },
     /// Calls the function, if it is one of these.
-    Operands { function: Id, chosen: &'a BTreeSet<usize> },
+    Operands { function: Id, print: Id, chosen: &'a BTreeSet<usize> },
 }
 
 struct Checker<'a> {
@@ -215,7 +220,8 @@ impl<'a> Checker<'a> {
                 let broken = self.any(out, suspect.broken);
                 self.set_bit(out, mask, broken, number);
             }
-            Report::Operands { function, chosen } if chosen.contains(&number) => {
+            Report::Operands { function, print, chosen } if chosen.contains(&number) => {
+                let function = if suspect.rule == Rule::Print { print } else { function };
                 self.call(out, function, suspect, number as u32);
             }
             Report::Operands { .. } => {}

@@ -1,0 +1,154 @@
+//! What the checks of the picture have found: assertions that fail, values that are printed, operations whose result is open.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::picture_subject::PictureSubject;
+use super::resting::Resting;
+use crate::headless::CheckedPicture;
+use crate::shader::checks::Broken;
+use crate::shader::compile::asserts::has_calls;
+use crate::shader::{Diagnostic, ShaderSet};
+
+/// How long the checks of a moment of a moving picture stand, before the next moment is checked.
+const MOMENT: Duration = Duration::from_secs(2);
+
+/// How far the newest check is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) enum CheckProgress {
+    /// The next frame decides whether there is something to check.
+    #[default]
+    Unknown,
+    /// The setting is off, or the shaders have nothing to check.
+    Nothing,
+    /// The picture is not final, or the thread works.
+    Waits,
+    /// The result is that of the picture.
+    Done,
+}
+
+/// The checks of the picture.
+#[derive(Default)]
+pub(in crate::app) struct Checks {
+    pub(in crate::app) progress: CheckProgress,
+    /// The last request, when it was made, and its number.
+    asked: Option<(PictureSubject, Instant)>,
+    number: u64,
+    resting: Resting<PictureSubject>,
+    /// The newest result, and what it is of.
+    result: Option<(PictureSubject, Result<Arc<CheckedPicture>, String>)>,
+    diagnostics: Vec<Diagnostic>,
+    /// Whether shaders assert or print something.
+    asserting: Option<(Arc<ShaderSet>, bool)>,
+    /// Whether the first pixel that fails is to be pinned, once the checks are those of the picture: a panel that opens makes it smaller.
+    pub(in crate::app) seeks: bool,
+}
+
+impl Checks {
+    /// The last request.
+    pub(in crate::app) fn asked(&self) -> Option<&PictureSubject> {
+        self.asked.as_ref().map(|(asked, _)| asked)
+    }
+
+    /// The last request, while a moving picture need not be checked again: it is under way, or new.
+    pub(in crate::app) fn moment(&self) -> Option<&PictureSubject> {
+        let (asked, since) = self.asked.as_ref()?;
+        (!self.is_taken() || since.elapsed() < MOMENT).then_some(asked)
+    }
+
+    fn is_taken(&self) -> bool {
+        let of = self.result.as_ref().map(|(of, _)| of);
+        self.asked().is_some_and(|asked| of == Some(asked))
+    }
+
+    /// Notes that checks of `subject` were asked for, by the number of the request.
+    pub(in crate::app) fn ask(&mut self, subject: PictureSubject, number: u64) {
+        (self.asked, self.number) = (Some((subject, Instant::now())), number);
+        self.progress = CheckProgress::Waits;
+    }
+
+    /// Notes that the picture is still that of the last request.
+    pub(in crate::app) fn resume(&mut self) {
+        self.progress = if self.is_taken() { CheckProgress::Done } else { CheckProgress::Waits };
+    }
+
+    /// Forgets all: nothing is checked.
+    pub(in crate::app) fn forget(&mut self) {
+        let asserting = self.asserting.take();
+        *self = Self { progress: CheckProgress::Nothing, asserting, ..Self::default() };
+    }
+
+    /// Whether shaders assert or print something.
+    pub(in crate::app) fn has_asserts(&mut self, shaders: &Arc<ShaderSet>) -> bool {
+        if let Some((_, answer)) = self.asserting.as_ref().filter(|(of, _)| Arc::ptr_eq(of, shaders)) {
+            return *answer;
+        }
+        let answer = shaders.texts.values().any(|text| has_calls(text));
+        self.asserting = Some((shaders.clone(), answer));
+        answer
+    }
+
+    /// Notes that a command waits for the checks of the picture.
+    pub(in crate::app) fn expect(&mut self) {
+        self.progress = CheckProgress::Unknown;
+    }
+
+    /// How long a subject with other settings than the last must still stay as it is: settings may be dragged.
+    pub(in crate::app) fn rest_left(&mut self, subject: &PictureSubject, rest: Duration) -> Option<Duration> {
+        self.asked().filter(|asked| asked.settings != subject.settings)?;
+        self.resting.left(subject, rest)
+    }
+
+    /// Takes the result of a request, if it is the newest. Returns whether it is.
+    pub(in crate::app) fn take(&mut self, number: u64, result: Result<Arc<CheckedPicture>, String>) -> bool {
+        let Some(of) = self.asked().filter(|_| self.number == number).cloned() else { return false };
+        if self.progress == CheckProgress::Waits {
+            self.progress = CheckProgress::Done;
+        }
+        let found = result.as_ref().map(|picture| picture.broken.as_slice()).unwrap_or_default();
+        self.diagnostics = found.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();
+        self.result = Some((of, result));
+        true
+    }
+
+    /// Records that the thread has failed. The same checks would fail again, so they are not asked for again.
+    pub(in crate::app) fn fail(&mut self, message: &str) {
+        self.take(self.number, Err(message.to_owned()));
+    }
+
+    /// What the newest checks have found, as errors and warnings.
+    pub(in crate::app) fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// The newest result, even if the picture has changed since.
+    pub(in crate::app) fn newest(&self) -> Option<&Result<Arc<CheckedPicture>, String>> {
+        self.result.as_ref().map(|(_, result)| result)
+    }
+
+    /// The result, if it is that of the picture.
+    pub(in crate::app) fn of_picture(&self) -> Option<&Arc<CheckedPicture>> {
+        self.newest().filter(|_| self.progress == CheckProgress::Done)?.as_ref().ok()
+    }
+
+    /// The first pixel of the picture that fails, and its failure.
+    pub(in crate::app) fn first_mark(&self) -> Option<([u32; 2], &Broken)> {
+        let picture = self.of_picture()?;
+        let (place, mark) = picture.marks.iter().enumerate().find(|(_, mark)| **mark > 0)?;
+        let (place, width) = (u32::try_from(place).ok()?, picture.size.0.max(1));
+        let (broken, _) = picture.broken.get(usize::from(*mark) - 1)?;
+        Some(([place % width, place / width], broken))
+    }
+
+    /// The result for a command that waits for the checks of the picture, once there is one.
+    pub(in crate::app) fn answer(&self) -> Option<Result<Value, String>> {
+        match (self.progress, self.newest()) {
+            (CheckProgress::Nothing, _) => Some(Ok(Value::Array(Vec::new()))),
+            (CheckProgress::Done, Some(Ok(picture))) => Some(Ok(picture.json())),
+            (CheckProgress::Done, Some(Err(message))) => Some(Err(message.clone())),
+            _ => None,
+        }
+    }
+}

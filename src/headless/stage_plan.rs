@@ -1,0 +1,197 @@
+//! Which stage of a frame is traced, which of its invocations, and which image holds their result.
+
+use super::HeadlessError;
+use crate::frame::FrameState;
+use crate::frame::stages::DEFORM;
+use crate::scene;
+use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
+use crate::shader::graph::RenderPhase;
+use crate::shader::trace::{Invocations, Target, TraceableStage};
+use crate::shader::{GraphPass, StageKind, TreePath};
+
+/// The part of a scene that is drawn for a trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// The instances near the pixel.
+    Near,
+    /// One instance.
+    Instance(usize),
+    /// All.
+    All,
+}
+
+/// How a stage is traced.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StagePlan {
+    /// The path of the stage.
+    pub(super) stage: String,
+    /// The invocations that are logged.
+    pub(super) of: Invocations,
+    /// The image that holds their result.
+    pub(super) target: Target,
+    /// What is drawn.
+    pub(super) extent: Extent,
+    /// Whether all pixels are drawn, and not only the one.
+    pub(super) is_whole: bool,
+}
+
+impl StagePlan {
+    /// Why nothing was logged at a pixel of the picture.
+    pub(super) fn nothing(&self, (x, y): (u32, u32)) -> String {
+        match self.of {
+            Invocations::Pixel(..) if !self.is_whole => {
+                format!("the model does not cover the pixel {x},{y}: no fragment is drawn there")
+            }
+            Invocations::Pixel(x, y) => format!("{} draws nothing at the pixel {x},{y} of its image", self.stage),
+            Invocations::Triangle(_) => format!("{} draws no vertex of the triangle at the pixel {x},{y}", self.stage),
+            Invocations::Compute([x, y, z]) => format!("{} has no invocation {x},{y},{z}", self.stage),
+        }
+    }
+}
+
+/// The stages of a frame that can be traced: those of the model, of its passes, of its joints.
+pub(super) fn traceable(state: &FrameState) -> Vec<TraceableStage> {
+    let request = &state.pipelines;
+    let mut all: Vec<TraceableStage> = Vec::new();
+    let mut add = |path: &str, label: &str| {
+        let is_new = !path.is_empty() && all.iter().all(|known| known.path != *path);
+        if is_new && state.shaders.stages.contains_key(path) {
+            all.push(TraceableStage { path: path.to_owned(), label: label.to_owned() });
+        }
+    };
+    if let Some(pass) = shown_pass(state) {
+        add(&pass.desc.stage, &pass.desc.label);
+    }
+    if request.draws_model {
+        add(&request.stage, "Surfaces of the model");
+        add(vertex_stage(state), "Vertices of the model");
+    }
+    request.passes.iter().for_each(|pass| add(&pass.desc.stage, &pass.desc.label));
+    if request.deforms {
+        add(DEFORM, "Joints and morph targets");
+    }
+    all
+}
+
+/// The pass whose image is shown, or which makes the picture without a model.
+fn shown_pass(state: &FrameState) -> Option<&GraphPass> {
+    let request = &state.pipelines;
+    let passes = || request.passes.iter().rev();
+    let covering = || passes().find(|pass| pass.covers()).or_else(|| passes().find(|pass| !pass.desc.is_built_in()));
+    let shown = request.shown().or_else(|| covering().filter(|_| !request.draws_model));
+    shown.map(|pass| &**pass)
+}
+
+/// The vertex stage that draws the model; empty if another kind of stage does.
+fn vertex_stage(state: &FrameState) -> &str {
+    let before = state.pipelines.model_pass().map(|pass| &pass.pre_rasterization);
+    before.filter(|before| before.mesh.is_none()).map_or("", |before| before.vertex.as_str())
+}
+
+/// The stage that `wanted` names; otherwise the first that has all of these files, or that of the picture.
+///
+/// # Errors
+/// The frame has no such stage.
+pub(super) fn choose(state: &FrameState, wanted: Option<&str>, files: &[&str]) -> Result<String, HeadlessError> {
+    let all = traceable(state);
+    let list = || all.iter().map(|stage| stage.path.as_str()).collect::<Vec<_>>().join(", ");
+    if let Some(wanted) = wanted {
+        return match all.iter().any(|stage| stage.path == wanted) {
+            true => Ok(wanted.to_owned()),
+            false => fails(format!("the picture has no stage {wanted} that can be traced; it has {}", list())),
+        };
+    }
+    let has = |stage: &&TraceableStage, file: &str| {
+        let known = state.shaders.stages.get(&stage.path);
+        known.is_some_and(|known| known.path.as_str() == file || known.dependencies.contains(&TreePath::from(file)))
+    };
+    let with_files = all.iter().find(|stage| files.iter().all(|file| has(stage, file)));
+    match with_files.or(all.first()) {
+        Some(stage) => Ok(stage.path.clone()),
+        None => fails("the picture has no stage that can be traced".to_owned()),
+    }
+}
+
+/// The plan to trace a stage of [`traceable`] at a pixel of the picture. `invocation` names one of a compute stage.
+///
+/// # Errors
+/// The stage does not run for this pixel, or which invocation is meant is not known.
+pub(super) fn plan(
+    state: &FrameState,
+    stage: &str,
+    at: (u32, u32),
+    invocation: Option<[u32; 3]>,
+) -> Result<StagePlan, HeadlessError> {
+    let request = &state.pipelines;
+    let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
+    let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
+    let make = |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole };
+    if invocation.is_some() && kind != Some(StageKind::Compute) {
+        return fails(format!("{stage} is no compute stage, so it has no invocation to choose"));
+    }
+    let is_models = request.draws_model && request.stage == stage && pass.is_none_or(|pass| pass.desc.is_built_in());
+    match kind {
+        Some(StageKind::Fragment) if is_models => {
+            let extent = if request.follows_paths() { Extent::All } else { Extent::Near };
+            Ok(make(Invocations::Pixel(at.0, at.1), Target::Picture, extent, false))
+        }
+        Some(StageKind::Vertex) => {
+            let (instance, triangle) = triangle(state, at)?;
+            Ok(make(Invocations::Triangle(triangle), Target::Picture, Extent::Instance(instance), false))
+        }
+        Some(StageKind::Fragment) => {
+            let Some(pass) = pass else { return fails(format!("no pass of the picture draws {stage}")) };
+            let (x, y) = place_in(&pass.desc, state.size, at);
+            Ok(make(Invocations::Pixel(x, y), target_of(pass), Extent::All, true))
+        }
+        Some(StageKind::Compute) => {
+            let of_pixel = pass.filter(|pass| pass.desc.to == PassTarget::Image).map(|pass| {
+                let (x, y) = place_in(&pass.desc, state.size, at);
+                [x, y, 0]
+            });
+            let Some(of) = invocation.or(of_pixel) else {
+                return fails(format!("{stage} does not run for a pixel: name an invocation of it"));
+            };
+            Ok(make(Invocations::Compute(of), Target::Unknown, Extent::All, true))
+        }
+        _ => fails(format!("{stage} cannot be traced: only fragment, vertex and compute stages can")),
+    }
+}
+
+/// The instance whose triangle is nearest at a pixel, and the indices of its vertices.
+fn triangle(state: &FrameState, at: (u32, u32)) -> Result<(usize, [u32; 3]), HeadlessError> {
+    let hit = state
+        .scene
+        .as_ref()
+        .and_then(|scene| scene::pick(scene.model(), &state.camera, state.size, at, |instance| scene.sides(instance)));
+    match hit {
+        Some(hit) => Ok((hit.instance, hit.triangle)),
+        None => fails(format!("no triangle of the model is at the pixel {},{}", at.0, at.1)),
+    }
+}
+
+/// The pixel of a pass's image at a pixel of the picture.
+fn place_in(desc: &PassDesc, size: (u32, u32), (x, y): (u32, u32)) -> (u32, u32) {
+    if desc.to != PassTarget::Image {
+        return (x, y);
+    }
+    let of = desc.size.pixels(size);
+    let row = y * of.1 / size.1;
+    (x * of.0 / size.0, if desc.rows_up { of.1.saturating_sub(row + 1) } else { row })
+}
+
+/// The image that a pass draws to.
+fn target_of(pass: &GraphPass) -> Target {
+    match (pass.desc.to, pass.phase) {
+        (PassTarget::Image, _) if matches!(pass.desc.format, PassFormat::Rgba16f | PassFormat::Rgba32f) => {
+            Target::Image(pass.name().to_owned(), pass.desc.format)
+        }
+        (PassTarget::Image, _) => Target::Unknown,
+        (_, RenderPhase::Tonemap | RenderPhase::Display) => Target::Display,
+        _ => Target::Picture,
+    }
+}
+
+fn fails<T>(message: String) -> Result<T, HeadlessError> {
+    Err(HeadlessError::Settings(message))
+}

@@ -1,0 +1,116 @@
+//! Stages other than that of the surfaces: vertices, passes, compute stages, files of Shadertoy.
+
+use serde_json::{Value, json};
+
+use super::{AT, EYE, done, near, trace, vector, write_sphere};
+use crate::support::{Tree, line_of};
+
+/// What a variable has at a line of a file: the values of its first times.
+fn values(found: &Value, file: &str, line: u32, name: &str) -> Vec<Value> {
+    let all = done(found, file, line);
+    let named = all.iter().find(|(act, of, _)| of == name || (act == name && of.is_empty()));
+    named.unwrap_or_else(|| panic!("{file}:{line} has no {name}, but {all:?} in {found}")).2.clone()
+}
+
+/// The corners of the triangle at the pixel, whose places on the screen are around it.
+#[test]
+fn vertices_and_the_tone_map_of_a_picture_are_traced() {
+    let directory = tempfile::tempdir().unwrap();
+    write_sphere(directory.path());
+    let place = [&["ball.glb"][..], &AT, &EYE].concat();
+    let vertices = ["--stage", "pbr.vert", "--json"];
+    let found = trace(directory.path(), &[&place[..], &vertices].concat()).expect(0, &[]).json();
+    assert_eq!((&found["stage"], &found["proof"]["equal"]), (&json!("pbr.vert"), &json!(true)), "{}", found["proof"]);
+    let corners = found["fragments"].as_array().unwrap();
+    let mut numbers: Vec<u64> = corners.iter().map(|corner| corner["vertex"].as_u64().unwrap()).collect();
+    numbers.dedup();
+    assert_eq!((corners.len(), numbers.len()), (3, 3), "{found}");
+    let on_screen = |corner: &Value| {
+        let clip: Vec<f64> = corner["position"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+        [(clip[0] / clip[3] + 1.0) * 48.0 - 50.5, (clip[1] / clip[3] + 1.0) * 32.0 - 30.5]
+    };
+    let around: Vec<[f64; 2]> = corners.iter().map(on_screen).collect();
+    let side = |a: [f64; 2], b: [f64; 2]| (a[0] * b[1] - a[1] * b[0]).signum();
+    let sides = [(0, 1), (1, 2), (2, 0)].map(|(a, b)| side(around[a], around[b]));
+    assert!(sides == [1.0; 3] || sides == [-1.0; 3], "the pixel is outside of {around:?}");
+    // Vertices of a unit sphere.
+    let position = done(&found, "pbr.vert", line_of(&Tree::new().read("pbr.vert"), "fragment.to_eye_ws ="));
+    let (.., to_eye) = position.iter().find(|(_, name, _)| name == "fragment.to_eye_ws").unwrap();
+    let to_eye = vector(&to_eye[0]);
+    let radius = (to_eye[0].powi(2) + to_eye[1].powi(2) + (4.0 - to_eye[2]).powi(2)).sqrt();
+    assert!(near(radius, 1.0, 1e-5), "{radius}");
+
+    // A file of the tone map finds its stage.
+    let file = ["--file", "common/tonemap.glsl", "--json"];
+    let found = trace(directory.path(), &[&place[..], &file].concat()).expect(0, &[]).json();
+    assert_eq!((&found["stage"], &found["proof"]["with"]), (&json!("tonemap.frag"), &json!("the display")));
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    let text = trace(directory.path(), &[&place[..], &["--stage", "tonemap.frag", "--file", "tonemap.frag"]].concat());
+    text.expect(0, &[]);
+    assert!(
+        text.stdout.contains("tonemap.frag, fragment 0 of 1: equal to the display, in 8 bits\n"),
+        "{}",
+        text.stdout
+    );
+
+    trace(directory.path(), &[&place[..], &["--stage", "pbr.geom"]].concat())
+        .expect(2, &["no stage pbr.geom that can be traced; it has pbr.frag, pbr.vert", "tonemap.frag"]);
+    trace(directory.path(), &[&place[..], &["--invocation", "1,2"]].concat()).expect(2, &["no compute stage"]);
+    let beside = ["ball.glb", "--at", "1,1", "--stage", "pbr.vert"];
+    trace(directory.path(), &[&beside[..], &EYE].concat()).expect(2, &["no triangle of the model is at the pixel 1,1"]);
+}
+
+/// A pass with an image of half the size, and a compute pass.
+#[test]
+fn passes_are_traced_at_the_pixel_of_their_image() {
+    let tree = Tree::new();
+    let half = "//@pass half \"Half\" size=1/2\n#version 460\n#include \"interface.glsl\"\n#include \"pass.glsl\"\n\
+        uniform sampler2D picture;\nvoid main() {\n    vec2 at = gl_FragCoord.xy;\n    color = vec4(at / 3.0, 0.0, 1.0);\n    \
+        color += min(texelFetch(picture, ivec2(0), 0), vec4(0.0));\n}\n";
+    let cells = "//@pass cells \"Cells\" size=1/2\n#version 460\n#include \"interface.glsl\"\n\
+        layout(local_size_x = 8, local_size_y = 8) in;\nlayout(rgba16f) uniform writeonly image2D cells;\nuniform sampler2D picture;\n\
+        void main() {\n    ivec2 cell = ivec2(gl_GlobalInvocationID.xy);\n    \
+        imageStore(cells, cell, vec4(cell, textureSize(picture, 0)));\n}\n";
+    tree.write("passes/half.frag", half);
+    tree.write("passes/cells.comp", cells);
+    let root = tree.root();
+    let common = ["sphere-grid", "--at", "50,31", "--json", "--shaders", root.to_str().unwrap()];
+    let run = |more: &[&str]| trace(&root, &[&common[..], more].concat());
+    let mode = ["--mode", "pass:half"];
+    let found = run(&mode).expect(0, &[]).json();
+    assert_eq!((&found["stage"], &found["proof"]["with"]), (&json!("passes/half.frag"), &json!("the image half")));
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    let line = line_of(half, "vec2 at =");
+    assert_eq!(values(&found, "passes/half.frag", line, "at"), [json!([25.5, 15.5])]);
+    let mode = ["--mode", "pass:cells"];
+    let found = run(&mode).expect(0, &[]).json();
+    assert_eq!((&found["stage"], &found["proof"]["equal"]), (&json!("passes/cells.comp"), &json!(true)));
+    let line = line_of(cells, "ivec2 cell =");
+    assert_eq!(values(&found, "passes/cells.comp", line, "cell"), [json!([25, 15])]);
+    let found = run(&[&mode[..], &["--invocation", "3,4"]].concat()).expect(0, &[]).json();
+    assert_eq!(values(&found, "passes/cells.comp", line, "cell"), [json!([3, 4])]);
+    run(&[&mode[..], &["--invocation", "9999,4"]].concat()).expect(2, &["has no invocation 9999,4,0"]);
+}
+
+/// The image of a toy, and a buffer that counts frames.
+#[test]
+fn toys_are_traced_with_the_frames_before() {
+    let directory = tempfile::tempdir().unwrap();
+    let image = "#iChannel0 \"buffer.glsl\"\nvoid mainImage(out vec4 color, in vec2 at) {\n    vec2 uv = at / iResolution.xy;\n    \
+        float count = texelFetch(iChannel0, ivec2(0), 0).x;\n    color = vec4(uv, 0.1 * count, 1.0);\n}\n";
+    let buffer = "#iChannel0 \"self\"\nvoid mainImage(out vec4 color, in vec2 at) {\n    \
+        float before = texelFetch(iChannel0, ivec2(at), 0).x;\n    color = vec4(before + 1.0);\n}\n";
+    std::fs::write(directory.path().join("toy.glsl"), image).unwrap();
+    std::fs::write(directory.path().join("buffer.glsl"), buffer).unwrap();
+    let found =
+        trace(directory.path(), &["toy.glsl", "--at", "24,15", "--json", "--frames", "4"]).expect(0, &[]).json();
+    assert_eq!((&found["proof"]["equal"], &found["proof"]["with"]), (&json!(true), &json!("the display")), "{found}");
+    let file = "opened/toy.glsl";
+    let uv = vector(&json!([values(&found, file, 3, "uv")[0][0], values(&found, file, 3, "uv")[0][1], 0]));
+    assert!(near(uv[0], 24.5 / 96.0, 1e-6) && near(uv[1], (64.0 - 15.5) / 64.0, 1e-6), "{uv:?}");
+    assert_eq!(values(&found, file, 4, "count"), [json!(4.0)]);
+    let stage = ["toy.glsl", "--at", "24,15", "--json", "--frames", "4", "--file", "opened/buffer.glsl"];
+    let found = trace(directory.path(), &stage).expect(0, &[]).json();
+    assert_eq!(values(&found, "opened/buffer.glsl", 3, "before"), [json!(3.0)], "{found}");
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+}
