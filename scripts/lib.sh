@@ -122,7 +122,7 @@ shaderc_cache() {
     printf '%s\n' "${SPECULA_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/specula}/shaderc-$version-$(host_triple)-g++$gxx"
 }
 
-# Sets SHADERC_CONFIG: cargo options that link the cached shaderc library instead of building it (ten minutes of C++).
+# Sets SHADERC_CONFIG: cargo options that link the cached shaderc library instead of building it.
 #
 # shaderc-sys with `build-from-source` ignores SHADERC_LIB_DIR, so this overrides its build script by cargo's `links`
 # key. Cargo rebuilds everything that depends on shaderc-sys when the override changes. So a target folder that has
@@ -140,7 +140,7 @@ use_kept_shaderc() {
         )
         say "using the cached shader compiler in $cache"
     else
-        say "building the shader compiler (C++, once; about ten minutes on two cores)"
+        say "building the shader compiler (C++, once; about two minutes on two cores)"
     fi
 }
 

@@ -102,6 +102,15 @@ pub enum Event<'a> {
         /// Mode, file, line, code and value, as `specula probe` prints them; or a message.
         not_finite: serde_json::Value,
     },
+    /// Another pixel is pinned, or the picture under it has changed and rests.
+    Pinned {
+        /// Pixels from the upper left corner of the picture; null if none is pinned.
+        pixel: Option<[u32; 2]>,
+        /// Shader generation.
+        generation: u64,
+        /// The folder of the shader tree; null for the built-in one.
+        tree: Option<&'a std::path::Path>,
+    },
     /// Assertions and operations of the picture were checked, as `view.checks` says.
     Checked {
         /// Shader generation.

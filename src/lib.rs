@@ -4,6 +4,7 @@
 //! Each module imports only from modules above it in this list:
 //!
 //! - [`cpu_clock`]: CPU time of a thread.
+//! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: all settings of the user.
@@ -39,6 +40,7 @@ pub mod cpu_clock;
 #[cfg(test)]
 mod damaged;
 mod disk_cache;
+mod distribution;
 pub mod events;
 pub mod file_kind;
 pub mod frame;

@@ -43,7 +43,7 @@ use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
-use winit::window::{Window, WindowId};
+use winit::window::{Window, WindowAttributes, WindowId};
 
 use crate::control::Asked;
 use crate::events::{Event, emit};
@@ -107,6 +107,18 @@ pub fn run(mut options: AppOptions) -> Result<(), AppError> {
     app.result
 }
 
+/// The window with the name of its desktop file, which gives it its icon.
+#[cfg(target_os = "linux")]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    // X11 uses this name, too.
+    winit::platform::wayland::WindowAttributesExtWayland::with_name(attributes, "specula", "specula")
+}
+
+#[cfg(not(target_os = "linux"))]
+fn named(attributes: WindowAttributes) -> WindowAttributes {
+    attributes
+}
+
 /// winit's reason, without the position in its source code that winit puts before it.
 fn no_display(error: winit::error::EventLoopError) -> AppError {
     let text = error.to_string();
@@ -149,7 +161,7 @@ impl App {
         if let Some((x, y)) = options.at {
             attributes = attributes.with_position(PhysicalPosition::new(x, y));
         }
-        let window = event_loop.create_window(attributes).map_err(|e| AppError::NoDisplay(e.to_string()))?;
+        let window = event_loop.create_window(named(attributes)).map_err(|e| AppError::NoDisplay(e.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.display_handle().map_err(|e| AppError::NoDisplay(e.to_string()))?;
         let gpu = Gpu::new(&GpuOptions {

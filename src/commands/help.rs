@@ -1,8 +1,11 @@
 //! `specula help`: a command's help, or the list of all settings; and the answer to a command that does not exist.
 
+mod documents;
+
 use std::path::{Path, PathBuf};
 
-use clap::Command;
+use clap::{Command, ValueEnum as _};
+use clap_complete::Shell;
 use specula::app::{Described, described};
 use specula::message::{nearest, print_output};
 use specula::scene::BUILT_IN;
@@ -18,40 +21,69 @@ use super::common::{compiler, source};
 /// Topics that are not commands.
 const SETTINGS: &str = "set";
 const CONTROL: &str = "commands";
+const MAN: &str = "man";
+const COMPLETIONS: &str = "completions";
 /// Width of the last column of the list of settings.
 const MEANING: usize = 60;
 
 /// Options of `help`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A command, as `render` or `brdf plot`; `set`, for the list of all settings; or `commands`, for what a window takes on stdin and on
-    /// its socket
+    /// A command, as `render` or `brdf plot`; `set`, for the list of all settings; `commands`, for what a window takes on stdin and on
+    /// its socket; `man`, or `man render`, for a man page; or `completions bash` (elvish, fish, powershell, zsh) for a shell's script
     topic: Vec<String>,
     /// For `set`: also list the settings of the shader tree in this folder [default: ./shaders if it is one]
     #[arg(long, value_name = "DIR|FILE")]
     shaders: Option<PathBuf>,
+    /// For `man`: write the pages of all commands to this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 /// Runs the command. `command` is that of the program.
-pub fn run(args: &Args, mut command: Command) -> Result<(), Failure> {
-    if args.topic == [SETTINGS] {
-        return print_settings(args.shaders.as_deref());
+pub fn run(args: &Args, command: Command) -> Result<(), Failure> {
+    let topic: Vec<&str> = args.topic.iter().map(String::as_str).collect();
+    if args.out.is_some() && topic != [MAN] {
+        return Err(Failure::Usage("--out takes the man pages of all commands: `specula help man --out DIR`".into()));
     }
-    if args.topic == [CONTROL] {
-        print_commands();
-        return Ok(());
+    match topic[..] {
+        [SETTINGS] => print_settings(args.shaders.as_deref())?,
+        [CONTROL] => print_commands(),
+        [MAN, ..] => match &args.out {
+            Some(folder) => documents::write_man_pages(command, folder)?,
+            None => documents::print_man_page(find(command, &topic[1..])?)?,
+        },
+        [COMPLETIONS, ref rest @ ..] => documents::print_completions(command, shell(rest)?),
+        _ => print_output(find(command, &topic)?.render_long_help().to_string().trim_end()),
     }
+    Ok(())
+}
+
+/// The command that these words name. No word names the program.
+fn find(mut command: Command, words: &[&str]) -> Result<Command, Failure> {
     command.build();
-    for name in &args.topic {
-        let names: Vec<String> = names(&command).chain([SETTINGS, CONTROL].map(str::to_owned)).collect();
+    for name in words {
+        let topics = [SETTINGS, CONTROL, MAN, COMPLETIONS].map(str::to_owned);
+        let names: Vec<String> = names(&command).chain(topics).collect();
         command = command.find_subcommand(name).cloned().ok_or_else(|| {
             let known = names.iter().map(String::as_str);
             let hint = nearest(name, known).map(|name| format!(" Did you mean '{name}'?")).unwrap_or_default();
             Failure::Usage(format!("there is no help about '{name}'.{hint} Topics: {}", names.join(", ")))
         })?;
     }
-    print_output(command.render_long_help().to_string().trim_end());
-    Ok(())
+    Ok(command)
+}
+
+/// The shell that is named as the only word.
+fn shell(words: &[&str]) -> Result<Shell, Failure> {
+    let named = match words {
+        [name] => Shell::from_str(name, true).ok(),
+        _ => None,
+    };
+    named.ok_or_else(|| {
+        let known: Vec<String> = Shell::value_variants().iter().map(ToString::to_string).collect();
+        Failure::Usage(format!("`specula help completions` takes the name of a shell: {}", known.join(", ")))
+    })
 }
 
 /// Fails when a word is no command, no file and no built-in model.

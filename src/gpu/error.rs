@@ -3,14 +3,17 @@
 use ash::vk;
 use gpu_allocator::AllocationError;
 
+use crate::distribution::install_driver;
+
 /// A failure of the Vulkan device or of a request to it.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// There is no Vulkan loader library.
-    #[error(
-        "no Vulkan loader found ({0}). Install one; on Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers"
-    )]
+    #[error("no usable Vulkan device: there is no Vulkan loader ({0}). {advice}", advice = install_driver())]
     NoLoader(String),
+    /// The loader is there, but no driver.
+    #[error("no usable Vulkan device: the Vulkan loader found no driver. {advice}", advice = install_driver())]
+    NoDriver,
     /// The loader is there, but Specula can use none of its devices.
     #[error("no usable Vulkan device: {0}")]
     NoDevice(String),

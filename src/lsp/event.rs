@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use lsp_server::RequestId;
 
 use super::diagnostics::ByFile;
-use super::traced::Traced;
+use super::traced::{Pinned, Traced};
 
 /// A message to the server's thread.
 #[derive(Debug)]
@@ -17,6 +17,10 @@ pub enum Event {
     Changed(PathBuf, BTreeSet<PathBuf>),
     /// A window has answered a request.
     Answered(RequestId, Result<(), String>),
+    /// A window tells of its pinned pixel, and of its shader tree.
+    Pinned(Pinned),
+    /// A window has closed.
+    WindowClosed(PathBuf),
     /// A pixel was traced.
     Traced(Traced),
 }

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use lsp_types::{InlayHint, InlayHintLabel, InlayHintTooltip, Range as Span};
 
 use super::source_text::SourceText;
-use super::traced::TracedFile;
+use super::traced::{TracedFile, TracedLine};
 use crate::shader::expression::lines_before;
-use crate::shader::trace::LineOfTrace;
 
 /// The longest hint, in characters.
 const LONGEST: usize = 100;
@@ -16,17 +15,17 @@ const LONGEST: usize = 100;
 /// lines are now.
 pub fn hints(traced: &TracedFile, source: &SourceText, span: Span) -> Vec<InlayHint> {
     let places = places(&traced.text, &source.text);
-    let hint = |line: &LineOfTrace| {
+    let hint = |line: &TracedLine| {
         let now = *places.get(&(line.line as usize).checked_sub(1)?)?;
         let number = u32::try_from(now).ok()?;
         let bytes = source.line(now);
         let end = bytes.start + source.text[bytes].trim_end().len();
         (span.start.line..=span.end.line).contains(&number).then(|| InlayHint {
             position: source.place(end),
-            label: InlayHintLabel::String(short(&line.text())),
+            label: InlayHintLabel::String(short(&line.text)),
             kind: None,
             text_edits: None,
-            tooltip: Some(InlayHintTooltip::String(calls(line))),
+            tooltip: Some(InlayHintTooltip::String(line.calls.clone())),
             padding_left: Some(true),
             padding_right: None,
             data: None,
@@ -38,8 +37,8 @@ pub fn hints(traced: &TracedFile, source: &SourceText, span: Span) -> Vec<InlayH
 /// The values of a line of the text as it is now, from 0, in words.
 pub fn values_of(traced: &TracedFile, source: &SourceText, line: usize) -> Option<String> {
     let places = places(&traced.text, &source.text);
-    let is_it = |of: &&LineOfTrace| (of.line as usize).checked_sub(1).and_then(|of| places.get(&of)) == Some(&line);
-    traced.lines.iter().find(is_it).map(LineOfTrace::text)
+    let is_it = |of: &&TracedLine| (of.line as usize).checked_sub(1).and_then(|of| places.get(&of)) == Some(&line);
+    traced.lines.iter().find(is_it).map(|line| line.text.clone())
 }
 
 /// Where the lines of `old` that have not changed are in `new`, from 0.
@@ -57,18 +56,6 @@ fn short(text: &str) -> String {
         Some((at, _)) => format!("{}…", &text[..at]),
         None => text.to_owned(),
     }
-}
-
-/// The calls that led to the values of a line.
-fn calls(line: &LineOfTrace) -> String {
-    let each = line.done.iter().map(|done| {
-        let once = done.first.iter().chain(&done.last).map(|once| {
-            let value = once.value.map(|value| value.text()).unwrap_or_default();
-            format!("  {value}  in {}", once.calls)
-        });
-        format!("{}\n{}", done.text(), once.collect::<Vec<_>>().join("\n"))
-    });
-    each.collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod completion;
 mod diagnostics;
 mod documents;
 mod event;
+mod following;
 mod hints;
 mod hover;
 mod meaning;

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::event::Event;
-use super::traced::{Asked, Traced, TracedFile};
+use super::traced::{Asked, Traced, TracedFile, TracedLine};
+use super::window;
 use crate::headless::{Headless, HeadlessError, TraceRequest};
 use crate::message::catch_panic;
 use crate::shader::{Change, Diagnostic, Mode, Source};
@@ -63,6 +64,9 @@ impl Thread {
     }
 
     fn trace(&mut self, asked: &Asked) -> Result<(Vec<TracedFile>, String), String> {
+        if let Some(socket) = &asked.window {
+            return window::values(socket, asked);
+        }
         let (headless, mode) = self.opened(asked)?;
         let shaders = headless.shaders();
         let mode: Mode = shaders
@@ -80,7 +84,11 @@ impl Thread {
                 Ok(trace) => match trace.visible() {
                     Some(fragment) => {
                         proof = trace.proof_text(fragment);
-                        files.push(TracedFile { path: path.clone(), text, lines: trace.lines(fragment) });
+                        files.push(TracedFile {
+                            path: path.clone(),
+                            text,
+                            lines: trace.lines(fragment).iter().map(TracedLine::from).collect(),
+                        });
                     }
                     None => problem = Some("every fragment of the model is discarded at this pixel".to_owned()),
                 },
@@ -111,7 +119,7 @@ impl Thread {
 
 /// Two questions as one: the newer pixel, the files of both if they are of one tree.
 fn joined(older: Asked, newer: Asked) -> Asked {
-    let is_same = older.root == newer.root;
+    let is_same = (&older.root, &older.window) == (&newer.root, &newer.window);
     let files = older.files.into_iter().filter(|_| is_same).chain(newer.files).collect();
     let changed = older.changed.into_iter().filter(|_| is_same).chain(newer.changed).collect();
     Asked { files, changed, requests: older.requests.into_iter().chain(newer.requests).collect(), ..newer }

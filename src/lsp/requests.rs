@@ -181,6 +181,7 @@ fn inlay_hints(state: &mut State, of: &InlayHintParams) -> Result<Answer, Refuse
         Some((super::trees::tree_path(&root, &path)?, root))
     });
     let (Some(file), Some((path, root))) = (file, place) else { return now(Value::Array(Vec::new())) };
+    state.join_windows();
     let asked = state.values.question(&root, &path);
     state.ask(asked);
     match state.values.of(&root, &path) {
@@ -208,7 +209,7 @@ fn execute(state: &mut State, request: &RequestId, of: &ExecuteCommandParams) ->
             let Some(root) = path.and_then(|path| state.root(&path)) else {
                 return Err((ErrorCode::RequestFailed, "no file of a shader tree is open".to_owned()));
             };
-            state.values.pin(Some(Pin { root: root.clone(), at: (x, y) }));
+            state.values.pin(Some(Pin { root: root.clone(), at: (x, y), window: None }));
             let asked = state.values.again(state.open_files(&root), BTreeSet::new(), Some(request.clone()));
             state.ask(asked);
             Ok(Answer::Later)

@@ -99,6 +99,8 @@ impl Server {
             Event::Diagnosed(root, files) => self.state.diagnosed(&root, files),
             Event::Changed(root, paths) => self.state.changed_on_disk(&root, &paths),
             Event::Traced(traced) => self.state.traced(&traced),
+            Event::Pinned(pinned) => self.state.pinned_in_window(&pinned),
+            Event::WindowClosed(socket) => self.state.window_closed(&socket),
             Event::Answered(request, result) => self.state.out.send(match result {
                 Ok(()) => Response::new_ok(request, Value::Null),
                 Err(why) => failed(request, why),

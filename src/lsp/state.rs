@@ -12,12 +12,13 @@ use super::compiling::{Compiling, mended};
 use super::diagnostics::{ByFile, shown};
 use super::documents::Documents;
 use super::event::Event;
+use super::following::Following;
 use super::pixel_trace::{OpenTree, PixelTrace};
-use super::traced::{Asked, Traced};
+use super::traced::{Asked, Pinned, Traced};
 use super::transport::Outgoing;
 use super::trees::{Trees, open_in, root_of, tree_path};
 use super::uri::uri_of;
-use super::values::Values;
+use super::values::{Pin, Values};
 use crate::shader::{Compiler, Diagnostic, TreePath, Watcher};
 
 /// A tree with an open file.
@@ -63,6 +64,7 @@ pub struct State {
     compiled: BTreeMap<PathBuf, CompiledTree>,
     open: Option<OpenTree>,
     tracing: Option<PixelTrace>,
+    following: Following,
     requests: i32,
 }
 
@@ -83,6 +85,7 @@ impl State {
             compiled: BTreeMap::new(),
             open: Some(config.open),
             tracing: None,
+            following: Following::default(),
             requests: 0,
         }
     }
@@ -125,7 +128,8 @@ impl State {
         if self.compiled.contains_key(root) {
             self.compile_tree(root, changed.clone());
         }
-        if self.values.root() == Some(root) {
+        // A window tells when it shows the change.
+        if self.values.pinned().is_some_and(|pin| pin.root == root && pin.window.is_none()) {
             let asked = self.values.again(self.open_files(root), changed, None);
             self.ask(asked);
         }
@@ -142,6 +146,42 @@ impl State {
     /// The open files of a tree.
     pub fn open_files(&self, root: &Path) -> BTreeSet<TreePath> {
         open_in(&self.documents, root).map(|(path, _)| path).collect()
+    }
+
+    /// Joins the windows that run, to follow the pixels that are pinned there.
+    pub fn join_windows(&mut self) {
+        self.following.look(self.socket.as_deref(), &self.events);
+    }
+
+    /// Follows the pixel that is pinned in a window of the tree of an open file. The picture may be another one each time.
+    pub fn pinned_in_window(&mut self, pinned: &Pinned) {
+        let of_window = |pin: &Pin| pin.window.as_deref() == Some(&*pinned.socket);
+        let tree = pinned.tree.as_ref().and_then(|tree| tree.canonicalize().ok());
+        let roots: BTreeSet<PathBuf> = self.documents.with_paths().filter_map(|(path, _)| self.root(path)).collect();
+        let root = roots.into_iter().find(|root| tree.is_some() && root.canonicalize().ok() == tree);
+        let Some((root, at)) = root.zip(pinned.pixel) else {
+            if self.values.pinned().is_some_and(of_window) {
+                self.values.pin(None);
+                self.refresh_hints();
+            }
+            return;
+        };
+        // The values stay until the new ones come, if the pixel is the same.
+        let pin = Pin { root: root.clone(), at, window: Some(pinned.socket.clone()) };
+        if self.values.pinned() != Some(&pin) {
+            self.values.pin(Some(pin));
+        }
+        let asked = self.values.again(self.open_files(&root), BTreeSet::new(), None);
+        self.ask(asked);
+    }
+
+    /// Ends the following of a window.
+    pub fn window_closed(&mut self, socket: &Path) {
+        self.following.closed(socket);
+        if self.values.pinned().is_some_and(|pin| pin.window.as_deref() == Some(socket)) {
+            self.values.pin(None);
+            self.refresh_hints();
+        }
     }
 
     /// Asks for the values at the pinned pixel.

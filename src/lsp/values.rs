@@ -9,12 +9,14 @@ use super::traced::{Asked, Traced, TracedFile};
 use crate::shader::TreePath;
 
 /// A pixel of a tree that is traced.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pin {
     /// The folder of the tree.
     pub root: PathBuf,
     /// Counted from the upper left corner.
     pub at: (u32, u32),
+    /// The socket of the window in which it is pinned; `None` if the editor has pinned it.
+    pub window: Option<PathBuf>,
 }
 
 /// The values at the pinned pixel.
@@ -45,6 +47,7 @@ impl Values {
             root: pin.root.clone(),
             at: pin.at,
             files: BTreeSet::from([path.clone()]),
+            window: pin.window.clone(),
             ..Asked::default()
         })
     }
@@ -58,18 +61,21 @@ impl Values {
     ) -> Option<Asked> {
         let pin = self.pin.as_ref()?;
         self.asked.clone_from(&files);
-        Some(Asked { root: pin.root.clone(), at: pin.at, files, changed, requests: request.into_iter().collect() })
+        let (root, window) = (pin.root.clone(), pin.window.clone());
+        Some(Asked { root, at: pin.at, files, changed, requests: request.into_iter().collect(), window })
     }
 
-    /// The tree of the pinned pixel.
-    pub fn root(&self) -> Option<&Path> {
-        self.pin.as_ref().map(|pin| pin.root.as_path())
+    /// The pinned pixel.
+    pub fn pinned(&self) -> Option<&Pin> {
+        self.pin.as_ref()
     }
 
     /// Takes an answer. Returns whether it is about the pinned pixel.
     pub fn take(&mut self, traced: &Traced) -> bool {
-        let is_current =
-            self.pin.as_ref().is_some_and(|pin| (&pin.root, pin.at) == (&traced.asked.root, traced.asked.at));
+        let is_current = self.pin.as_ref().is_some_and(|pin| {
+            let asked = &traced.asked;
+            (&pin.root, pin.at, &pin.window) == (&asked.root, asked.at, &asked.window)
+        });
         if is_current && let Ok((files, _)) = &traced.result {
             self.files.extend(files.iter().map(|file| (file.path.clone(), file.clone())));
         }

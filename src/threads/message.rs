@@ -63,6 +63,8 @@ pub(crate) enum Message {
     Traced(u64, Box<Traced>),
     /// The same in an older version of the shaders.
     TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
+    /// A trace for another program, for the request with this number.
+    GuestTraced(u64, Box<Traced>),
     /// What the checks of the picture have found, for the request with this number.
     OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
     /// The text of a file of the tree as it was saved.
@@ -122,6 +124,8 @@ pub(crate) enum TaskKind {
     Finder,
     /// Traces the statements of a pixel.
     PixelTracer,
+    /// The same for other programs.
+    GuestTracer,
     /// Checks assertions and operations of the picture.
     OperationChecker,
     Capture(u64),

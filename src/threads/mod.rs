@@ -125,6 +125,8 @@ pub(crate) struct Threads {
     pub(crate) finder: Finder,
     pub(crate) operation_checker: OperationChecker,
     pub(crate) tracer: Tracer,
+    /// Traces for other programs.
+    pub(crate) guest_tracer: Tracer,
     gpu: Arc<Gpu>,
     /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
     /// compile a second shader tree.
@@ -156,7 +158,8 @@ impl Threads {
             measurer: Measurer::new(device.0, sender),
             finder: Finder::new(device.0, sender),
             operation_checker: OperationChecker::new(device.0, sender),
-            tracer: Tracer::new(device.0, sender),
+            tracer: Tracer::new(device.0, sender, TaskKind::PixelTracer, Message::Traced),
+            guest_tracer: Tracer::new(device.0, sender, TaskKind::GuestTracer, Message::GuestTraced),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturer: None,

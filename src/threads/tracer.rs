@@ -50,13 +50,20 @@ enum Asked {
 pub(crate) struct Tracer {
     gpu: Arc<Gpu>,
     thread: Newest<Asked>,
+    done: fn(u64, Box<Traced>) -> Message,
     /// Whether the thread may hold memory of the device.
     is_used: bool,
 }
 
 impl Tracer {
-    pub(crate) fn new(gpu: &Arc<Gpu>, sender: &MessageSender) -> Self {
-        Self { gpu: gpu.clone(), thread: Newest::new(TaskKind::PixelTracer, sender), is_used: false }
+    /// `done`: the message of a trace, by the number of its request.
+    pub(super) fn new(
+        gpu: &Arc<Gpu>,
+        sender: &MessageSender,
+        task: TaskKind,
+        done: fn(u64, Box<Traced>) -> Message,
+    ) -> Self {
+        Self { gpu: gpu.clone(), thread: Newest::new(task, sender), done, is_used: false }
     }
 
     /// Traces a pixel, then the same in an older version, and drops the previous request. Returns the number of the request.
@@ -74,7 +81,7 @@ impl Tracer {
 
     fn ask(&mut self, asked: Asked) -> u64 {
         self.thread.request(asked, || {
-            let (gpu, mut tracer) = (self.gpu.clone(), None);
+            let (gpu, done, mut tracer) = (self.gpu.clone(), self.done, None);
             move |sender: &MessageSender, turn: &Turn<'_>, asked| match asked {
                 Asked::Release => tracer = None,
                 Asked::Trace(mut request, before) => {
@@ -86,7 +93,7 @@ impl Tracer {
                     }
                     let is_good = result.trace.is_ok();
                     let ms = start.elapsed().as_secs_f64() * 1e3;
-                    sender.send(Message::Traced(number, Box::new(Traced { ms, ..result })));
+                    sender.send(done(number, Box::new(Traced { ms, ..result })));
                     let Some(before) = before.filter(|_| is_good) else { return };
                     let result = trace(&gpu, &mut tracer, &mut request, Some(&before), turn);
                     // Without it, the newer trace stands alone: the older version may lack the file, or its light is gone.

@@ -14,7 +14,7 @@ use syn::{Attribute, Item, UseTree, Visibility};
 /// of one layer do not know each other.
 const LAYERS: &[&[&str]] = &[
     &["astc", "cancel", "cpu_clock", "interface", "message", "regular_file"],
-    &["disk_cache", "settings", "state_folder"],
+    &["disk_cache", "distribution", "settings", "state_folder"],
     &["shader", "gpu", "scene"],
     &["frame", "picture_difference", "control", "file_kind", "recovery"],
     &["pipeline", "session"],

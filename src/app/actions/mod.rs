@@ -5,6 +5,7 @@ pub(super) mod compare;
 pub(super) mod edits;
 pub(super) mod exercises;
 pub(super) mod files;
+pub(super) mod guests;
 pub(super) mod inspect;
 pub(super) mod restored;
 pub(super) mod select;

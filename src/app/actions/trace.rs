@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::engine::Engine;
-use crate::app::frames::progress::{awaits_edit, is_settled, moves};
+use crate::app::frames::progress::{awaits_edit, is_settled, lacks_nothing, moves};
 use crate::app::state::State;
 use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::Progress;
@@ -50,22 +50,34 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
         return Some(left);
     }
     let before = if state.traces.lacks_before(&subject) { version_before(state, engine) } else { None };
+    let place = (subject.stage.clone(), subject.file.as_ref());
+    let request = request_of(state, engine, &subject.picture, subject.at, place);
+    let number = engine.threads.tracer.trace(request, before);
+    state.traces.ask(subject, number);
+    None
+}
+
+/// The request to trace a pixel of a picture.
+pub(in crate::app) fn request_of(
+    state: &State,
+    engine: &Engine,
+    picture: &PictureSubject,
+    at: [u32; 2],
+    (stage, file): (Option<String>, Option<&TreePath>),
+) -> TraceRequest {
     let mut session = state.session.clone();
-    session.settings.clone_from(&subject.picture.settings);
-    let request = TraceRequest {
+    session.settings.clone_from(&picture.settings);
+    TraceRequest {
         compiler: engine.compiler.clone(),
         session,
         resources: engine.resources.clone(),
         source: state.source.clone(),
-        clock: subject.picture.clock,
-        size: subject.picture.size,
+        clock: picture.clock,
+        size: picture.size,
         at: at.into(),
-        stage: subject.stage.clone(),
-        file: subject.file.as_ref().map(|file| file.as_str().to_owned()),
-    };
-    let number = engine.threads.tracer.trace(request, before);
-    state.traces.ask(subject, number);
-    None
+        stage,
+        file: file.map(|file| file.as_str().to_owned()),
+    }
 }
 
 /// Has the shown file read while there are errors: the shaders in use have older texts, of files without an error, too.
@@ -112,7 +124,7 @@ pub(in crate::app) fn final_picture(
     let is_final = shown.shaders.generation == shaders.generation
         && shaders.is_complete()
         && !awaits_edit(state, engine)
-        && is_settled(state, engine);
+        && (is_settled(state, engine) || moves(state) && lacks_nothing(state, engine));
     if !is_final {
         return None;
     }

@@ -24,5 +24,5 @@ pub(in crate::app) static SHOW_FAILURE: Spec<()> = Spec::fallible("show-failure"
 
 fn checks(state: &mut State, _: &mut Engine, (): ()) -> Outcome {
     state.checks.expect();
-    Ok(Until::Found(|state| state.checks.answer()))
+    Ok(Until::Found(Box::new(|state| state.checks.answer())))
 }

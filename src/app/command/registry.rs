@@ -63,6 +63,8 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &checks::CHECKS,
     &checks::SHOW_FAILURE,
     &source::CHOOSE_STAGE,
+    &source::PINNED,
+    &source::TRACE,
     &source::CHOOSE_TRACE,
     &shaders::ASK_EXPRESSION,
     &shaders::ASK_DEFAULTS,

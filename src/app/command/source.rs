@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use serde::Deserialize;
+use serde_json::json;
 
 use super::spec::{Outcome, Spec, Until};
 use crate::app::actions::edits::save_typed;
@@ -10,6 +11,7 @@ use crate::app::engine::Engine;
 use crate::app::source_line::SourceLine;
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
+use crate::app::state::guests::Guest;
 use crate::app::state::trace::choice::Choice;
 use crate::app::state::workspace::PanelRequest;
 use crate::message::did_you_mean;
@@ -93,7 +95,34 @@ fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment,
     state.traces.choice = Choice { fragment, call, time: time.filter(|time| *time > 0) };
     state.traces.expect();
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
-    Ok(Until::Found(|state| state.traces.answer()))
+    Ok(Until::Found(Box::new(|state| state.traces.answer())))
+}
+
+/// Fields of `trace`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Trace {
+    file: String,
+    stage: Option<String>,
+    at: Option<[u32; 2]>,
+}
+
+pub(in crate::app) static PINNED: Spec<()> = Spec::fallible("pinned", |state, _, ()| {
+    let tree = state.source.root();
+    Ok(Until::Now(json!({ "pixel": state.inspection.pin, "generation": state.shown_generation(), "tree": tree })))
+})
+.line("The pinned pixel, or null, and the folder of the shader tree. The event `pinned` tells of changes. Result: pixel, generation, tree");
+
+pub(in crate::app) static TRACE: Spec<Trace> = Spec::new("trace", trace).takes(
+    r#""file": "brdf/ndf.glsl", "stage"?: "tonemap.frag", "at"?: [x,y]"#,
+    "Traces what a file's statements do at a pixel, or at the pinned one; the panels stay as they are. Result: as `specula trace --json`, with `file`",
+);
+
+fn trace(state: &mut State, _: &mut Engine, Trace { file, stage, at }: Trace) -> Outcome {
+    let file = file_of(state, &file)?;
+    let at = at.or(state.inspection.pin).ok_or("no pixel is pinned; name one with `at`")?;
+    let number = state.guests.ask(Guest { at, file, stage });
+    Ok(Until::Found(Box::new(move |state| state.guests.answer(number))))
 }
 
 /// The file of the tree that a path, or the end of one, names.

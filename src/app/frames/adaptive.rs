@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::picture::interim;
-use super::progress::{awaits_edit, is_settled};
+use super::progress::{awaits_edit, is_settled, moves};
 use crate::app::engine::Engine;
 use crate::app::screen::{ENLARGE, POLL, Part, Screen};
 use crate::app::state::State;
@@ -246,7 +246,8 @@ pub(super) fn take_times(state: &mut State, screen: &Screen) {
 /// Draws the next part of the whole picture, if the last frame lacks it and nothing goes before.
 pub(super) fn draw_part(state: &mut State, engine: &Engine, screen: &mut Screen) -> Result<Step, GpuError> {
     let Some(wait) = state.previews.time_to_parts(is_awaited(state), Instant::now()) else { return Ok(Step::Done) };
-    if awaits_edit(state, engine) {
+    // An animation never rests, and what else is drawn between frames waits for its own time.
+    if awaits_edit(state, engine) || moves(state) {
         return Ok(Step::Done);
     }
     if !wait.is_zero() {

@@ -67,7 +67,12 @@ pub(in crate::app) fn set_shortage(state: &mut State, engine: &mut Engine, error
 /// light of the settings is baked, every stage is compiled, and the frame shows no preview. After an error, a stage that is missing stays
 /// so until the next edit.
 pub(in crate::app) fn is_settled(state: &State, engine: &Engine) -> bool {
+    state.previews.is_whole() && lacks_nothing(state, engine)
+}
+
+/// Whether the window could show the final picture, whether or not the last frame has: it shows a preview while the picture moves.
+pub(in crate::app) fn lacks_nothing(state: &State, engine: &Engine) -> bool {
     let is_complete = state.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
     let awaits = awaits_edit(state, engine) || state.model.loading;
-    state.picture.shows_settings && state.previews.is_whole() && !awaits && (is_complete || state.has_errors())
+    state.picture.shows_settings && !awaits && (is_complete || state.has_errors())
 }

@@ -13,6 +13,7 @@ use crate::app::actions::compare::write::on_version_written;
 use crate::app::actions::edits::{on_typed_written, on_written};
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
 use crate::app::actions::files::on_tree_found;
+use crate::app::actions::guests::on_guest_traced;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
 use crate::app::actions::trace::on_traced;
@@ -68,6 +69,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
         Message::Traced(number, traced) => on_traced(state, number, *traced),
         Message::OperationsChecked(number, result) => on_operations_checked(state, number, result),
+        Message::GuestTraced(number, traced) => on_guest_traced(state, number, *traced),
         Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),

@@ -63,6 +63,10 @@ pub(in crate::app) fn on_panic(state: &mut State, engine: &mut Engine, task: Tas
             state.traces.fail("the trace failed");
             "pixel tracer"
         }
+        TaskKind::GuestTracer => {
+            state.guests.fail("the trace failed");
+            "guest tracer"
+        }
         TaskKind::OperationChecker => {
             state.checks.fail("the checks failed");
             "operation checker"

@@ -9,6 +9,7 @@ pub(super) mod compare;
 pub(super) mod dialog;
 pub(super) mod exercise;
 pub(super) mod grid;
+pub(super) mod guests;
 pub(super) mod hint;
 pub(super) mod history;
 pub(super) mod inspection;
@@ -56,6 +57,7 @@ use compare::Compare;
 use dialog::Dialog;
 use exercise::Learning;
 use grid::Grid;
+use guests::Guests;
 use hint::Hint;
 use history::History;
 use inspection::Inspection;
@@ -116,6 +118,8 @@ pub(super) struct State {
     pub(super) inspection: Inspection,
     /// The traces of the inspected pixel.
     pub(super) traces: Traces,
+    /// Traces for other programs.
+    pub(super) guests: Guests,
     /// The checks of the picture.
     pub(super) checks: Checks,
     /// The modes that the picture shows side by side.
@@ -201,6 +205,7 @@ impl State {
             history: History::default(),
             inspection: Inspection::default(),
             traces: Traces::default(),
+            guests: Guests::default(),
             checks: Checks::default(),
             grid: Grid::default(),
             recent: Recent::default(),

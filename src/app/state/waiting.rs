@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 use super::captures::Job;
 use crate::control::Reply;
 
+/// Looks for a result in the state of the window.
+type Find<S> = Box<dyn Fn(&S) -> Option<Result<Value, String>>>;
+
 /// When a command is done, and its result, which may depend on the state `S` of the window.
 pub(in crate::app) enum Until<S> {
     Now(Value),
@@ -27,7 +30,7 @@ pub(in crate::app) enum Until<S> {
     /// Once the shader files have these edits.
     EditsWritten(Value),
     /// Once there is a result, or a reason why there is none.
-    Found(fn(&S) -> Option<Result<Value, String>>),
+    Found(Find<S>),
     /// Once the final picture is written.
     Screen(Option<PathBuf>),
     /// The same for the window with its panels.
@@ -93,7 +96,8 @@ impl<S> Waiting<S> {
     /// Whether a command waits for the final picture.
     pub(in crate::app) fn needs_picture(&self) -> bool {
         let waits = |until: &Until<S>| {
-            let waits_for_more = matches!(until, Until::Reloaded | Until::Compared(_) | Until::Picture(_));
+            let waits_for_more =
+                matches!(until, Until::Reloaded | Until::Compared(_) | Until::Picture(_) | Until::Found(_));
             waits_for_more || matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_))
         };
         self.list.iter().any(|(_, until)| waits(until)) || self.copying.is_some()

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 
 use ash::{khr, vk};
 
-use super::instance::{Instance, NO_DRIVER};
+use super::instance::Instance;
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
 use crate::message::did_you_mean;
@@ -79,7 +79,7 @@ pub(in crate::gpu) fn choose(
     let named = |info: &AdapterInfo| part.is_none_or(|p| info.name.to_lowercase().contains(&p.to_lowercase()));
     match all.into_iter().find(|(_, info)| info.refused.is_none() && named(info)) {
         Some(found) => Ok(found),
-        None if list.is_empty() => Err(GpuError::NoDevice(NO_DRIVER.into())),
+        None if list.is_empty() => Err(GpuError::NoDriver),
         None => Err(GpuError::NoDevice(match part {
             Some(part) => {
                 let hint = did_you_mean(part, names.iter().flat_map(|name| name.split_whitespace()));

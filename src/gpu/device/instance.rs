@@ -11,10 +11,6 @@ use crate::gpu::error::Context;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// Advice when the loader finds no driver.
-pub(in crate::gpu) const NO_DRIVER: &str = "the Vulkan loader found no driver. Install one; a software driver for Debian and \
-                                    Ubuntu: apt-get install mesa-vulkan-drivers";
-
 /// A loaded Vulkan library and an instance made from it. `Drop` destroys the messenger, then the instance.
 pub(in crate::gpu) struct Instance {
     pub(in crate::gpu) entry: ash::Entry,
@@ -57,7 +53,7 @@ impl Instance {
         // SAFETY: all pointers in `info` live until the call returns.
         let raw = unsafe { entry.create_instance(&info, None) };
         let raw = match raw {
-            Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(GpuError::NoDevice(NO_DRIVER.into())),
+            Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(GpuError::NoDriver),
             Err(vk::Result::ERROR_EXTENSION_NOT_PRESENT) if display.is_some() => {
                 return Err(GpuError::NoDevice("the Vulkan loader cannot open windows on this display".into()));
             }

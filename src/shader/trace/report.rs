@@ -222,10 +222,10 @@ impl LineOfTrace {
         let once = |once: &Once| json!({ "value": once.value.map(|value| value.json()), "calls": *once.calls });
         let done = |done: &Done| {
             let kind = done.first.first().and_then(|once| once.value).map(|value| value.type_name());
-            json!({ "act": done.act, "name": done.name, "type": kind, "count": done.count, "left_out": done.left_out,
+            json!({ "act": done.act, "name": done.name, "type": kind, "text": done.text(), "count": done.count, "left_out": done.left_out,
                 "first": done.first.iter().map(once).collect::<Vec<_>>(), "last": done.last.iter().map(once).collect::<Vec<_>>() })
         };
-        json!({ "file": self.file, "line": self.line, "code": self.code,
+        json!({ "file": self.file, "line": self.line, "code": self.code, "text": self.text(),
             "done": self.done.iter().map(done).collect::<Vec<_>>() })
     }
 

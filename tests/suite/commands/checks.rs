@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use serde_json::{Value, json};
+use specula::learn::exercises;
 
 use crate::support::process::{Finished, run};
-use crate::support::{Session, Tree, assert_same, failed, glb, is_long, line_of, model, open_image, ready, settings};
+use crate::support::{
+    Session, Tree, assert_same, failed, glb, is_long, line_of, model, open_image, ready, renderer, settings,
+};
 
 const VIEW: [&str; 5] = ["--size", "48x32", "--env", "none", "--validate"];
 /// `zero`, `izero` and `uzero` are 0, which the compiler does not know. Each line breaks one rule, and has its name and operands.
@@ -142,6 +145,40 @@ fn the_shipped_tree_is_clean() {
         let checked = run(Path::new("."), &["check", "--undefined", "--mode", modes, "--size", "64x48", model]);
         checked.expect(0, &[]);
         assert!(checked.stdout.contains("none failed or was undefined"), "{}", checked.stdout);
+    }
+}
+
+/// Each choice of the parameters, each example and the solution of each exercise. With SPECULA_LONG all; otherwise the first of each.
+#[test]
+fn choices_examples_and_exercises_are_clean() {
+    let most = if is_long() { usize::MAX } else { 1 };
+    let clean = |what: &str, args: &[&str]| {
+        let checked =
+            run(Path::new("."), &[&["check", "--undefined", "--size", "64x48", "sphere-grid"], args].concat());
+        assert_eq!(checked.code, Some(0), "{what}: {}{}", checked.stdout, checked.stderr);
+    };
+    let renderer = renderer(model("sphere-grid"), settings(&[]), (64, 48));
+    let constants = renderer.shaders().constants.clone();
+    drop(renderer);
+    let choices = constants.iter().filter(|constant| constant.choices.len() > 1).take(most);
+    for (name, (choice, _)) in
+        choices.flat_map(|of| of.choices.iter().skip(1).take(most).map(|choice| (&of.name, choice)))
+    {
+        let setting = format!("{name}={choice}");
+        clean(&setting, &["--mode", "final,clay", "--set", &setting]);
+    }
+    let examples = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples")).unwrap();
+    let mut examples: Vec<String> = examples.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    examples.sort();
+    for example in examples.iter().take(most) {
+        clean(example, &["--shaders", &format!("examples:{example}")]);
+    }
+    // Solved, an exercise is the shipped tree with settings of its own and files that it adds.
+    for exercise in exercises().iter().take(most) {
+        let tree = Tree::new();
+        exercise.solution().for_each(|(path, text)| tree.write(path.as_str(), text));
+        let settings = exercise.settings().iter().flat_map(|set| ["--set", set.as_str()]).collect::<Vec<_>>();
+        clean(exercise.slug(), &[&["--shaders", tree.root().to_str().unwrap()][..], &settings].concat());
     }
 }
 

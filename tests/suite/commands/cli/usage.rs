@@ -265,6 +265,25 @@ fn help_set_lists_every_setting() {
 }
 
 #[test]
+fn help_writes_man_pages_and_completions() {
+    let directory = tempfile::tempdir().unwrap();
+    let help = |words: &[&str]| run(directory.path(), &[&["help"], words].concat());
+    let page = help(&["man", "brdf", "plot"]).expect(0, &[]).stdout.clone();
+    assert!(page.contains(".TH specula-brdf-plot 1"), "{page}");
+    help(&["man", "--out", "man1"]).expect(0, &[]);
+    for name in ["specula", "specula-render", "specula-brdf-plot"] {
+        let page = std::fs::read_to_string(directory.path().join(format!("man1/{name}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {name} 1")), "{page}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = help(&["completions", shell]).expect(0, &[]).stdout.clone();
+        assert!(script.contains("specula") && script.contains("tonemap"), "{shell}: {script}");
+    }
+    help(&["completions", "csh"]).expect(2, &["bash, elvish, fish, powershell, zsh"]);
+    help(&["render", "--out", "man1"]).expect(2, &["specula help man --out DIR"]);
+}
+
+#[test]
 fn help_commands_lists_what_a_window_takes() {
     let directory = tempfile::tempdir().unwrap();
     let help = run(directory.path(), &["help", "commands"]);

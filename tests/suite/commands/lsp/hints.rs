@@ -1,11 +1,17 @@
 //! Values at a pinned pixel beside the lines.
 
 use std::collections::BTreeMap;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::net::UnixStream;
 
 use serde_json::{Value, json};
 
-use super::client::{Opened, uri};
+use super::client::{Client, Opened, uri};
+use crate::support::Tree;
 use crate::support::process::run;
+use crate::support::window::Viewer;
+
+const NDF: &str = "brdf/ndf.glsl";
 
 const OPTIONS: [&str; 5] = ["--env", "none", "--size", "96x64", "--validate"];
 const PIN: [u32; 2] = [50, 30];
@@ -89,6 +95,62 @@ fn hints_are_those_of_the_trace_and_follow_edits() {
     opened.client.ask("workspace/executeCommand", json!({ "command": "specula.unpinPixel" }));
     assert!(hints(&mut opened).is_empty());
     opened.client.quit();
+}
+
+/// A window of the same tree, in which a pixel is clicked.
+#[test]
+fn hints_follow_the_pixel_that_is_pinned_in_a_window() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "followed"]);
+    viewer.running.event("ready");
+    let socket = viewer.tree.beside("runtime/specula/followed.sock");
+    let mut window = BufReader::new(UnixStream::connect(&socket).unwrap());
+    let mut id = 0;
+    let mut command = |mut command: Value| {
+        id += 1;
+        command["id"] = id.into();
+        writeln!(window.get_mut(), "{command}").unwrap();
+        let mut line = String::new();
+        loop {
+            line.clear();
+            window.read_line(&mut line).unwrap();
+            let answer: Value = serde_json::from_str(&line).unwrap();
+            if answer["id"] == id && answer["event"] != "progress" {
+                assert_eq!(answer["event"], "done", "{command}: {answer}");
+                return answer["result"].clone();
+            }
+        }
+    };
+    let (path, text) = (viewer.tree.path(NDF), viewer.tree.read(NDF));
+    let client = Client::start(&viewer.tree.root(), &["--socket", socket.to_str().unwrap()]);
+    let mut opened = Opened { tree: Tree::new(), client, path: path.clone(), text: text.clone() };
+    opened.client.open(&path, &text);
+    assert!(hints(&mut opened).is_empty(), "no pixel is pinned in the window");
+    let refreshed = |message: &Value| message["method"] == "workspace/inlayHint/refresh";
+    let center = command(json!({ "command": "capture" }));
+    let at = [center["width"].as_u64().unwrap() / 2, center["height"].as_u64().unwrap() / 2];
+    command(json!({ "command": "pick", "at": at }));
+    opened.client.until("hints of the window", refreshed);
+    let shown = hints(&mut opened);
+    let of_window = command(json!({ "command": "trace", "file": NDF }));
+    assert_eq!(of_window["proof"]["equal"], true, "{}", of_window["proof"]);
+    let lines = of_window["lines"].as_array().unwrap().iter();
+    let expected = lines.map(|line| (line["line"].as_u64().unwrap() - 1, line["text"].as_str().unwrap().to_owned()));
+    assert_eq!(shown, expected.collect::<BTreeMap<_, _>>());
+    assert!(shown.len() > 2, "{shown:?}");
+
+    // A save that changes the values.
+    let squared = u64::from(opened.line("float a2 = alpha"));
+    viewer.tree.write(NDF, &text.replace("float a2 = alpha * alpha;", "float a2 = alpha * alpha * 0.5;"));
+    opened.edit("float a2 = alpha * alpha;", "float a2 = alpha * alpha * 0.5;");
+    opened.client.until("hints after a save", refreshed);
+    let saved = hints(&mut opened);
+    assert!(saved.contains_key(&squared) && saved[&squared] != shown[&squared], "{saved:?}");
+
+    command(json!({ "command": "pick" }));
+    opened.client.until("no hints", refreshed);
+    assert!(hints(&mut opened).is_empty());
+    opened.client.quit();
+    viewer.quit();
 }
 
 #[test]
