@@ -92,13 +92,12 @@ pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Wr
     let bytes = bytes.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
     let on_disk = std::str::from_utf8(&bytes).map_err(|_| format!("{} is no UTF-8", file.display()))?;
     let form = TextForm::of(on_disk);
-    let merged = merge::merge(base, &form.read(on_disk), text).map_err(|line| {
+    let new = merge::merge(&form.write(base), on_disk, &form.write(text)).map_err(|line| {
         format!(
             "{} was changed by another program in the same place, at line {line}, so it stays as it is",
             file.display()
         )
     })?;
-    let new = form.write(&merged);
     let text = form.read(&new);
     let new = new.into_bytes();
     if new != bytes {

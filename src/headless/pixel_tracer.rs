@@ -108,6 +108,10 @@ impl<'a> TracePlan<'a> {
     /// # Errors
     /// The frame has no such stage, or it does not run for this pixel.
     pub fn new(pixel: &'a TracedPixel<'a>, files: &[&str]) -> Result<Self, HeadlessError> {
+        let (x, y) = pixel.at;
+        if x >= pixel.whole.size.0 || y >= pixel.whole.size.1 {
+            return Err(HeadlessError::Settings(format!("the pixel {x},{y} is outside of the picture")));
+        }
         let near = NearPixel::new(pixel.whole, pixel.settings, pixel.revisions, pixel.at);
         let near = near.ok_or_else(|| HeadlessError::Settings("there is no picture to trace".to_owned()))?;
         let all = near.state_of(stage_plan::Extent::All, pixel.mode, pixel.clock, &pixel.whole.shaders);

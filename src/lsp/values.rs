@@ -76,6 +76,10 @@ impl Values {
             let asked = &traced.asked;
             (&pin.root, pin.at, &pin.window) == (&asked.root, asked.at, &asked.window)
         });
+        if is_current {
+            // Of what was asked for, nothing older stays.
+            self.files.retain(|path, _| !traced.asked.files.contains(path));
+        }
         if is_current && let Ok((files, _)) = &traced.result {
             self.files.extend(files.iter().map(|file| (file.path.clone(), file.clone())));
         }

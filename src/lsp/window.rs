@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+#[cfg(unix)]
 use std::time::Duration;
 
 #[cfg(not(unix))]
@@ -11,6 +12,7 @@ use serde_json::json;
 use super::traced::{Asked, Pinned, TracedFile, TracedLine};
 
 /// How long a window may take for an answer: one with large shaders may compile for long.
+#[cfg(unix)]
 const ANSWER: Duration = Duration::from_mins(2);
 
 /// The sockets that were named, or all of the user. Some may be left over from a window that has crashed.
@@ -70,6 +72,10 @@ pub fn values(socket: &Path, asked: &Asked) -> Result<(Vec<TracedFile>, String),
             }
             Err(why) => problem = Some(why),
         }
+        // An answer that is late would be taken for that of the next file.
+        if line.is_lost() {
+            break;
+        }
     }
     match problem {
         Some(problem) if files.is_empty() => Err(problem),
@@ -119,6 +125,7 @@ mod line {
     pub(super) struct Line {
         socket: PathBuf,
         stream: BufReader<UnixStream>,
+        is_lost: bool,
     }
 
     impl Line {
@@ -128,7 +135,7 @@ mod line {
                 Ok(stream)
             });
             let stream = stream.map_err(|error| failed(socket, &error))?;
-            Ok(Self { socket: socket.to_owned(), stream: BufReader::new(stream) })
+            Ok(Self { socket: socket.to_owned(), stream: BufReader::new(stream), is_lost: false })
         }
 
         pub(super) fn send(&mut self, command: &Value) -> Result<(), String> {
@@ -145,6 +152,11 @@ mod line {
             let mut line = String::new();
             let read = self.stream.read_line(&mut line).ok()?;
             (read > 0).then(|| serde_json::from_str(&line).unwrap_or_default())
+        }
+
+        /// Whether an answer did not come, so that the next line may be about anything.
+        pub(super) fn is_lost(&self) -> bool {
+            self.is_lost
         }
 
         /// Sends a command, and waits for its result.
@@ -164,6 +176,7 @@ mod line {
                     _ => {}
                 }
             }
+            self.is_lost = true;
             Err(format!("the window at {} does not answer, or has closed", self.socket.display()))
         }
     }
@@ -175,6 +188,7 @@ mod line {
 
 /// This system has no sockets for windows.
 #[cfg(not(unix))]
+#[allow(dead_code)]
 struct Line;
 
 #[cfg(not(unix))]
@@ -193,6 +207,10 @@ impl Line {
 
     fn next(&mut self) -> Option<Value> {
         None
+    }
+
+    fn is_lost(&self) -> bool {
+        true
     }
 
     fn ask(&mut self, _: &Value) -> Result<Value, String> {

@@ -30,7 +30,7 @@ pub(in crate::app) fn update_checks(state: &mut State, engine: &mut Engine, is_s
     }
     let moment = state.checks.moment().filter(|_| moves(state)).cloned();
     let Some(subject) = final_picture(state, engine, moment.as_ref()) else {
-        state.checks.progress = CheckProgress::Waits;
+        state.checks.set(CheckProgress::Waits);
         return None;
     };
     if state.checks.asked() == Some(&subject) {
@@ -39,8 +39,9 @@ pub(in crate::app) fn update_checks(state: &mut State, engine: &mut Engine, is_s
         return None;
     }
     let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
-    if let Some(left) = state.checks.rest_left(&subject, rest) {
-        state.checks.progress = CheckProgress::Waits;
+    // Settings of a moving picture may change in each of its frames.
+    if let Some(left) = state.checks.rest_left(&subject, rest).filter(|_| !moves(state)) {
+        state.checks.set(CheckProgress::Waits);
         return Some(left);
     }
     let mut session = state.session.clone();
@@ -64,7 +65,7 @@ fn seek(state: &mut State) {
     if !state.checks.seeks || !state.workspace.sight.source || state.checks.of_picture().is_none() {
         return;
     }
-    state.checks.seeks = false;
+    (state.checks.seeks, state.checks.redraws) = (false, true);
     if let Some((at, broken)) = state.checks.first_mark() {
         let file = TreePath::from(broken.file.as_str());
         (state.inspection.pin, state.traces.stage, state.traces.file) = (Some(at), None, Some(file));
@@ -77,7 +78,8 @@ pub(in crate::app) fn on_operations_checked(
     number: u64,
     result: Result<Arc<CheckedPicture>, String>,
 ) {
-    let (generation, error) = (state.shown_generation(), result.as_ref().err().cloned());
+    let generation = state.checks.asked().map_or(0, |asked| asked.shaders.generation);
+    let error = result.as_ref().err().cloned();
     if !state.checks.take(number, result) {
         return;
     }

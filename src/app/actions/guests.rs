@@ -19,13 +19,16 @@ pub(in crate::app) fn update_guests(state: &mut State, engine: &mut Engine, is_s
     }
     let asked = state.guests.next().cloned();
     if asked.is_none() && state.events.is_empty() {
+        if state.guests.is_idle() {
+            engine.threads.guest_tracer.release();
+        }
         return None;
     }
     let picture = final_picture(state, engine, None)?;
     if let Some(guest) = asked {
         let request = request_of(state, engine, &picture, guest.at, (guest.stage, Some(&guest.file)));
         let number = engine.threads.guest_tracer.trace(request, None);
-        state.guests.begin(number);
+        state.guests.begin(number, picture.settings.mode.clone());
     }
     // A picture that moves would be told of in each of its frames.
     let now = (picture, state.inspection.pin);
@@ -47,8 +50,7 @@ pub(in crate::app) fn update_guests(state: &mut State, engine: &mut Engine, is_s
 /// Takes the result of a trace for another program.
 pub(in crate::app) fn on_guest_traced(state: &mut State, number: u64, traced: Traced) {
     let Traced { place, trace, .. } = traced;
-    let mode = state.session.settings.mode.clone();
-    state.guests.take(number, |guest| {
+    state.guests.take(number, |guest, mode| {
         let trace = trace?;
         let fragment = trace.visible().ok_or("every fragment of the model is discarded at this pixel")?;
         let mut json = trace.json(fragment);

@@ -121,7 +121,9 @@ pub(in crate::app) fn final_picture(
     moment: Option<&PictureSubject>,
 ) -> Option<PictureSubject> {
     let (shown, shaders) = (state.shown()?, state.session.shaders.clone()?);
-    let is_final = shown.shaders.generation == shaders.generation
+    // The picture of the tree before stays while a new one does not compile.
+    let is_final = state.shader.root.as_deref() == state.source.root()
+        && shown.shaders.generation == shaders.generation
         && shaders.is_complete()
         && !awaits_edit(state, engine)
         && (is_settled(state, engine) || moves(state) && lacks_nothing(state, engine));

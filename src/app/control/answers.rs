@@ -78,6 +78,18 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
     }
 }
 
+/// Answers the commands for which a thread has found something, or for which nothing is to be found. No frame need follow.
+pub(in crate::app) fn answer_found(state: &mut State) {
+    for (reply, until) in state.waiting.take() {
+        let found = if let Until::Found(result) = &until { result(state) } else { None };
+        match found {
+            Some(Ok(result)) => reply.done(result),
+            Some(Err(message)) => reply.error(message),
+            None => state.waiting.push(reply, until),
+        }
+    }
+}
+
 /// Whether another frame must follow, because a command waits for nothing else. Messages wake the window for all others.
 pub(in crate::app) fn has_unanswered(state: &State, engine: &Engine) -> bool {
     is_settled(state, engine) && state.waiting.needs_frame()

@@ -12,6 +12,7 @@ use crate::app::actions::checks::update_checks;
 use crate::app::actions::guests::update_guests;
 use crate::app::actions::inspect::{begin_values, values_complete};
 use crate::app::actions::trace::update_trace;
+use crate::app::control::answer_found;
 use crate::app::engine::Engine;
 use crate::app::panels::timeline::THUMBNAIL;
 use crate::app::screen::{BetweenRequest, Build, Inspected, InspectorRequest, POLL, RestingPicture};
@@ -54,6 +55,10 @@ impl Drawing {
                 Step::After(wait) => Some(wait),
                 Step::Done => self.draw_background(state, engine)?,
             };
+            if std::mem::take(&mut state.checks.redraws) {
+                self.interface.outdate();
+                return Ok(Next::Frame);
+            }
         }
         Ok(wait.into_iter().chain(left(self.due)).min().map_or(Next::Event, Next::After))
     }
@@ -77,6 +82,7 @@ impl Drawing {
         let trace = update_trace(state, engine, is_safe_mode);
         let checks = update_checks(state, engine, is_safe_mode);
         let guests = update_guests(state, engine, is_safe_mode);
+        answer_found(state);
         let preview = prepare_next(state, engine, &mut self.screen)?;
         let drawn = self.draw_between(state, engine, is_safe_mode)?;
         Ok(trace.into_iter().chain(checks).chain(guests).chain(preview).chain(drawn).min())

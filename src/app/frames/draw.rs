@@ -204,6 +204,10 @@ impl Drawing {
             }
             return Ok(Some(Duration::ZERO));
         }
+        if std::mem::take(&mut state.checks.redraws) {
+            self.interface.outdate();
+            return Ok(Some(Duration::ZERO));
+        }
         if !has_run {
             // The last frame before the window rests shows the panels as they are.
             self.interface.outdate();

@@ -12,8 +12,10 @@ use crate::shader::checks::Broken;
 use crate::shader::compile::asserts::has_calls;
 use crate::shader::{Diagnostic, ShaderSet};
 
-/// How long the checks of a moment of a moving picture stand, before the next moment is checked.
+/// How long the checks of a moment of a moving picture stand at least, before the next moment is checked, and how many times as long as
+/// they took.
 const MOMENT: Duration = Duration::from_secs(2);
+const TIMES: u32 = 4;
 
 /// How far the newest check is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,8 +25,10 @@ pub(in crate::app) enum CheckProgress {
     Unknown,
     /// The setting is off, or the shaders have nothing to check.
     Nothing,
-    /// The picture is not final, or the thread works.
+    /// The picture is not final.
     Waits,
+    /// The thread works.
+    UnderWay,
     /// The result is that of the picture.
     Done,
 }
@@ -36,6 +40,8 @@ pub(in crate::app) struct Checks {
     /// The last request, when it was made, and its number.
     asked: Option<(PictureSubject, Instant)>,
     number: u64,
+    /// When the newest result came, and how long it took.
+    taken: Option<(Instant, Duration)>,
     resting: Resting<PictureSubject>,
     /// The newest result, and what it is of.
     result: Option<(PictureSubject, Result<Arc<CheckedPicture>, String>)>,
@@ -44,6 +50,8 @@ pub(in crate::app) struct Checks {
     asserting: Option<(Arc<ShaderSet>, bool)>,
     /// Whether the first pixel that fails is to be pinned, once the checks are those of the picture: a panel that opens makes it smaller.
     pub(in crate::app) seeks: bool,
+    /// Whether the window shows what does not hold any more.
+    pub(in crate::app) redraws: bool,
 }
 
 impl Checks {
@@ -54,8 +62,8 @@ impl Checks {
 
     /// The last request, while a moving picture need not be checked again: it is under way, or new.
     pub(in crate::app) fn moment(&self) -> Option<&PictureSubject> {
-        let (asked, since) = self.asked.as_ref()?;
-        (!self.is_taken() || since.elapsed() < MOMENT).then_some(asked)
+        let is_new = |(at, took): (Instant, Duration)| at.elapsed() < MOMENT.max(took * TIMES);
+        self.asked().filter(|_| !self.is_taken() || self.taken.is_some_and(is_new))
     }
 
     fn is_taken(&self) -> bool {
@@ -66,18 +74,26 @@ impl Checks {
     /// Notes that checks of `subject` were asked for, by the number of the request.
     pub(in crate::app) fn ask(&mut self, subject: PictureSubject, number: u64) {
         (self.asked, self.number) = (Some((subject, Instant::now())), number);
-        self.progress = CheckProgress::Waits;
+        self.set(CheckProgress::UnderWay);
+    }
+
+    /// Notes how far the checks are. Marks of another picture go.
+    pub(in crate::app) fn set(&mut self, progress: CheckProgress) {
+        let had_marks = self.of_picture().is_some_and(|picture| !picture.marks.is_empty());
+        self.redraws |= had_marks && progress != CheckProgress::Done;
+        self.progress = progress;
     }
 
     /// Notes that the picture is still that of the last request.
     pub(in crate::app) fn resume(&mut self) {
-        self.progress = if self.is_taken() { CheckProgress::Done } else { CheckProgress::Waits };
+        self.set(if self.is_taken() { CheckProgress::Done } else { CheckProgress::UnderWay });
     }
 
     /// Forgets all: nothing is checked.
     pub(in crate::app) fn forget(&mut self) {
+        let redraws = self.redraws || !self.diagnostics.is_empty();
         let asserting = self.asserting.take();
-        *self = Self { progress: CheckProgress::Nothing, asserting, ..Self::default() };
+        *self = Self { progress: CheckProgress::Nothing, asserting, redraws, ..Self::default() };
     }
 
     /// Whether shaders assert or print something.
@@ -104,8 +120,15 @@ impl Checks {
     /// Takes the result of a request, if it is the newest. Returns whether it is.
     pub(in crate::app) fn take(&mut self, number: u64, result: Result<Arc<CheckedPicture>, String>) -> bool {
         let Some(of) = self.asked().filter(|_| self.number == number).cloned() else { return false };
-        if self.progress == CheckProgress::Waits {
+        let took = self.asked.as_ref().map_or(Duration::ZERO, |(_, since)| since.elapsed());
+        self.taken = Some((Instant::now(), took));
+        // It may come while the picture is not final any more.
+        if self.progress == CheckProgress::UnderWay {
             self.progress = CheckProgress::Done;
+        }
+        // A tree may have functions of its own with these names.
+        if result.as_ref().is_ok_and(|picture| picture.checks == 0) {
+            self.asserting = Some((of.shaders.clone(), false));
         }
         let found = result.as_ref().map(|picture| picture.broken.as_slice()).unwrap_or_default();
         self.diagnostics = found.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();

@@ -24,13 +24,22 @@ pub(in crate::app) struct Guest {
 /// The picture, and the pixel that is pinned in it.
 pub(in crate::app) type Pinned = (PictureSubject, Option<[u32; 2]>);
 
+/// A question that the thread works on.
+struct UnderWay {
+    request: u64,
+    number: u64,
+    guest: Guest,
+    /// The mode that is traced.
+    mode: String,
+}
+
 /// The questions of other programs.
 #[derive(Default)]
 pub(in crate::app) struct Guests {
     next: u64,
     waiting: VecDeque<(u64, Guest)>,
     /// The question that the thread works on, by its own number.
-    under_way: Option<(u64, u64, Guest)>,
+    under_way: Option<UnderWay>,
     results: BTreeMap<u64, Result<Value, String>>,
     /// What other programs were told last.
     told: Option<Pinned>,
@@ -50,26 +59,40 @@ impl Guests {
         self.waiting.front().filter(|_| self.under_way.is_none()).map(|(_, guest)| guest)
     }
 
+    /// Whether nobody waits for a trace.
+    pub(in crate::app) fn is_idle(&self) -> bool {
+        self.waiting.is_empty() && self.under_way.is_none()
+    }
+
     /// Notes that the thread works on the next question, by the number of its request.
-    pub(in crate::app) fn begin(&mut self, request: u64) {
-        self.under_way = self.waiting.pop_front().map(|(number, guest)| (request, number, guest));
+    pub(in crate::app) fn begin(&mut self, request: u64, mode: String) {
+        self.under_way = self.waiting.pop_front().map(|(number, guest)| UnderWay { request, number, guest, mode });
     }
 
     /// Takes a result of the thread. Returns whether it is the one that is awaited.
-    pub(in crate::app) fn take(&mut self, request: u64, result: impl FnOnce(&Guest) -> Result<Value, String>) -> bool {
-        let Some((_, number, guest)) = self.under_way.take_if(|(of, ..)| *of == request) else { return false };
-        self.results.insert(number, result(&guest));
-        while self.results.len() > MOST_RESULTS {
-            self.results.pop_first();
-        }
+    pub(in crate::app) fn take(
+        &mut self,
+        request: u64,
+        result: impl FnOnce(&Guest, &str) -> Result<Value, String>,
+    ) -> bool {
+        let Some(done) = self.under_way.take_if(|of| of.request == request) else { return false };
+        self.results.insert(done.number, result(&done.guest, &done.mode));
+        self.forget_old();
         true
     }
 
     /// Answers all questions by the reason why they cannot be.
     pub(in crate::app) fn fail(&mut self, message: &str) {
-        let under_way = self.under_way.take().map(|(_, number, _)| number);
+        let under_way = self.under_way.take().map(|of| of.number);
         let waiting = self.waiting.drain(..).map(|(number, _)| number);
         self.results.extend(under_way.into_iter().chain(waiting).map(|number| (number, Err(message.to_owned()))));
+        self.forget_old();
+    }
+
+    fn forget_old(&mut self) {
+        while self.results.len() > MOST_RESULTS {
+            self.results.pop_first();
+        }
     }
 
     /// The result of a question, once there is one.
@@ -105,19 +128,19 @@ mod tests {
         let guest = |file: &str| Guest { at: [1, 2], file: file.into(), stage: None };
         let [first, second] = ["a.glsl", "b.glsl"].map(|file| guests.ask(guest(file)));
         assert_eq!(guests.next(), Some(&guest("a.glsl")));
-        guests.begin(7);
+        guests.begin(7, String::new());
         assert_eq!((guests.next(), guests.answer(first)), (None, None), "one at a time");
-        assert!(!guests.take(6, |_| Ok(json!(0))));
-        assert!(guests.take(7, |guest| Ok(json!(guest.file.as_str()))));
+        assert!(!guests.take(6, |_, _| Ok(json!(0))));
+        assert!(guests.take(7, |guest, _| Ok(json!(guest.file.as_str()))));
         assert_eq!((guests.answer(first), guests.answer(second)), (Some(Ok(json!("a.glsl"))), None));
         assert_eq!(guests.next(), Some(&guest("b.glsl")));
-        guests.begin(8);
+        guests.begin(8, String::new());
         guests.fail("no");
         assert_eq!(guests.answer(second), Some(Err("no".to_owned())));
         for number in 0..100 {
             guests.ask(guest("c.glsl"));
-            guests.begin(100 + number);
-            guests.take(100 + number, |_| Ok(Value::Null));
+            guests.begin(100 + number, String::new());
+            guests.take(100 + number, |_, _| Ok(Value::Null));
         }
         assert_eq!((guests.answer(first), guests.results.len()), (None, MOST_RESULTS));
     }

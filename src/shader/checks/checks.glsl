@@ -21,7 +21,7 @@ void specula_check_print(const in uint check, const in uvec4 bits) {
 
 void specula_check_operands(const in uint check, const in uvec4 bits) {
     if (check == 0u || !specula_check_counts) return;
-    SPECULA_MARK
+    SPECULA_MARK;
     specula_check_print(check, bits);
 }
 

@@ -308,7 +308,7 @@ fn text(kind: StageKind) -> String {
     let number = |number: u32| format!("{number}u");
     let mark = if kind == StageKind::Fragment { MARK } else { "" };
     include_str!("checks.glsl")
-        .replace("SPECULA_MARK\n", &format!("{mark}\n"))
+        .replace("SPECULA_MARK;", mark)
         .replace("SPECULA_MARKS_LOW", &number(STANDING_FOR[3]))
         .replace("SPECULA_MARKS_HIGH", &number(STANDING_FOR[4]))
         .replace("SPECULA_WIDTH", &number(STANDING_FOR[5]))
