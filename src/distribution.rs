@@ -31,7 +31,9 @@ fn advice(os_release: &str) -> String {
         Some((_, command)) => {
             format!("Install the driver of your GPU, or Mesa's, which also draws without a GPU: {command}")
         }
-        None => "Install the Vulkan loader, and the driver of your GPU or Mesa's, which also draws without a GPU".into(),
+        None => {
+            "Install the Vulkan loader, and the driver of your GPU or Mesa's, which also draws without a GPU".into()
+        }
     }
 }
 
