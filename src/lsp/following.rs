@@ -1,12 +1,13 @@
 //! Follows the pixels that are pinned in running windows: they tell of them on their sockets.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::Sender;
 
 use super::event::Event;
+use super::traced::Pinned;
 use super::window;
 
 /// Windows are looked for at most this often.
@@ -17,6 +18,10 @@ const LOOK: Duration = Duration::from_secs(1);
 pub struct Following {
     joined: BTreeSet<PathBuf>,
     looked: Option<Instant>,
+    /// The pixel that each window has told of last.
+    pixels: BTreeMap<PathBuf, Option<(u32, u32)>>,
+    /// Whether the editor has unpinned the pixel, so that only a click pins another one.
+    pub is_muted: bool,
 }
 
 impl Following {
@@ -43,8 +48,38 @@ impl Following {
         }
     }
 
+    /// Takes note of what a window tells. Returns whether the user has clicked there since it told last.
+    pub fn is_click(&mut self, pinned: &Pinned) -> bool {
+        let before = self.pixels.insert(pinned.socket.clone(), pinned.pixel);
+        before.is_some_and(|before| before != pinned.pixel)
+    }
+
     /// Takes note that a window has closed.
     pub fn closed(&mut self, socket: &Path) {
         self.joined.remove(socket);
+        self.pixels.remove(socket);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_pixel_is_a_click_and_another_picture_is_none() {
+        let mut following = Following::default();
+        let pinned = |socket: &str, pixel| Pinned { socket: socket.into(), tree: None, pixel };
+        for (socket, pixel, is_click) in [
+            ("a", Some((1, 2)), false),
+            ("a", Some((1, 2)), false),
+            ("b", None, false),
+            ("a", Some((3, 2)), true),
+            ("b", Some((1, 2)), true),
+            ("b", None, true),
+        ] {
+            assert_eq!(following.is_click(&pinned(socket, pixel)), is_click, "{socket} {pixel:?}");
+        }
+        following.closed(Path::new("a"));
+        assert!(!following.is_click(&pinned("a", Some((9, 9)))), "another window of the name");
     }
 }

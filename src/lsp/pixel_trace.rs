@@ -51,8 +51,9 @@ struct Thread {
 
 impl Thread {
     fn run(mut self, events: &Sender<Event>) {
-        while let Ok(first) = self.jobs.recv() {
-            let asked = self.jobs.try_iter().fold(first, joined);
+        let mut waiting: Vec<Asked> = Vec::new();
+        while let Some(first) = waiting.pop().or_else(|| self.jobs.recv().ok()) {
+            let asked = newest(first, self.jobs.try_iter(), &mut waiting);
             let result = catch_panic(|| self.trace(&asked)).unwrap_or_else(|panic| {
                 self.tree = None;
                 Err(format!("the trace failed: {panic}"))
@@ -117,11 +118,27 @@ impl Thread {
     }
 }
 
-/// Two questions as one: the newer pixel, the files of both if they are of one tree.
+/// The newest question, with the older ones about the same pixel. Of other pixels, those that a request waits for go to `waiting`.
+fn newest(first: Asked, more: impl Iterator<Item = Asked>, waiting: &mut Vec<Asked>) -> Asked {
+    more.fold(first, |older, mut newer| {
+        let place = |of: &Asked| (of.root.clone(), of.at, of.window.clone());
+        if place(&older) == place(&newer) {
+            return joined(older, newer);
+        }
+        if older.root == newer.root {
+            newer.changed.extend(older.changed.iter().cloned());
+        }
+        if !older.requests.is_empty() {
+            waiting.push(older);
+        }
+        newer
+    })
+}
+
+/// Two questions about the same pixel as one, about the files of both.
 fn joined(older: Asked, newer: Asked) -> Asked {
-    let is_same = (&older.root, &older.window) == (&newer.root, &newer.window);
-    let files = older.files.into_iter().filter(|_| is_same).chain(newer.files).collect();
-    let changed = older.changed.into_iter().filter(|_| is_same).chain(newer.changed).collect();
+    let files = older.files.into_iter().chain(newer.files).collect();
+    let changed = older.changed.into_iter().chain(newer.changed).collect();
     Asked { files, changed, requests: older.requests.into_iter().chain(newer.requests).collect(), ..newer }
 }
 
@@ -132,5 +149,27 @@ pub fn text_of(error: &HeadlessError) -> String {
             diagnostics.first().map_or_else(|| error.to_string(), Diagnostic::one_line)
         }
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_is_answered_about_its_own_pixel() {
+        let asked = |x: u32, file: &str, request: Option<i32>| Asked {
+            at: (x, 0),
+            files: [file.into()].into(),
+            changed: [file.into()].into(),
+            requests: request.into_iter().map(Into::into).collect(),
+            ..Asked::default()
+        };
+        let mut waiting = Vec::new();
+        let more = [asked(1, "b", Some(7)), asked(2, "c", None), asked(3, "d", None), asked(3, "e", None)];
+        let newest = newest(asked(1, "a", None), more.into_iter(), &mut waiting);
+        assert_eq!((newest.at, newest.files.len(), newest.changed.len()), ((3, 0), 2, 5));
+        let kept: Vec<_> = waiting.iter().map(|of| (of.at, of.files.len(), of.requests.len())).collect();
+        assert_eq!(kept, [((1, 0), 2, 1)]);
     }
 }

@@ -216,6 +216,7 @@ fn execute(state: &mut State, request: &RequestId, of: &ExecuteCommandParams) ->
         }
         UNPIN => {
             state.values.pin(None);
+            state.following.is_muted = true;
             state.refresh_hints();
             now(Value::Null)
         }

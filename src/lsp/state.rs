@@ -64,7 +64,8 @@ pub struct State {
     compiled: BTreeMap<PathBuf, CompiledTree>,
     open: Option<OpenTree>,
     tracing: Option<PixelTrace>,
-    following: Following,
+    /// The windows that run.
+    pub following: Following,
     requests: i32,
 }
 
@@ -153,9 +154,11 @@ impl State {
         self.following.look(self.socket.as_deref(), &self.events);
     }
 
-    /// Follows the pixel that is pinned in a window of the tree of an open file. The picture may be another one each time.
+    /// Follows the pixel that is pinned in a window of the tree of an open file. The picture may be another one each time. Of several windows
+    /// it is the one with the last click, and a pixel that the editor has pinned or unpinned counts until the next click.
     pub fn pinned_in_window(&mut self, pinned: &Pinned) {
         let of_window = |pin: &Pin| pin.window.as_deref() == Some(&*pinned.socket);
+        let is_click = self.following.is_click(pinned);
         let tree = pinned.tree.as_ref().and_then(|tree| tree.canonicalize().ok());
         let roots: BTreeSet<PathBuf> = self.documents.with_paths().filter_map(|(path, _)| self.root(path)).collect();
         let root = roots.into_iter().find(|root| tree.is_some() && root.canonicalize().ok() == tree);
@@ -166,6 +169,11 @@ impl State {
             }
             return;
         };
+        let is_free = self.values.pinned().map_or(!self.following.is_muted, of_window);
+        if !is_free && !is_click {
+            return;
+        }
+        self.following.is_muted = false;
         // The values stay until the new ones come, if the pixel is the same.
         let pin = Pin { root: root.clone(), at, window: Some(pinned.socket.clone()) };
         if self.values.pinned() != Some(&pin) {
