@@ -69,7 +69,7 @@ pub(super) struct Screen {
     pub(super) view: View,
     /// The parts of a picture that is drawn between frames.
     parts: Parts,
-    /// What draws previews, while there are any.
+    /// Draws previews, while there are any.
     preview: Option<Preview>,
     frames: Frames,
     gpu: Arc<Gpu>,

@@ -50,7 +50,7 @@ pub struct Args {
 struct Pair {
     name: String,
     compared: Result<Comparison, String>,
-    /// What the report shows of it, if there is one.
+    /// Its part of the report, if there is one.
     reported: Option<ReportPair>,
 }
 

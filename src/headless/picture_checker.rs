@@ -41,7 +41,7 @@ impl CheckedPicture {
         self.broken.iter().map(|(broken, _)| broken).filter(|broken| broken.is_fault())
     }
 
-    /// What was found, for programs.
+    /// The findings, for programs.
     pub fn json(&self) -> Value {
         self.broken.iter().map(|(broken, diagnostic)| broken.json(diagnostic)).collect()
     }

@@ -29,7 +29,7 @@ pub(super) struct StagePlan {
     pub(super) of: Invocations,
     /// The image that holds their result.
     pub(super) target: Target,
-    /// What is drawn.
+    /// The part of the scene that is drawn.
     pub(super) extent: Extent,
     /// Whether all pixels are drawn, and not only the one.
     pub(super) is_whole: bool,

@@ -6,7 +6,7 @@ use crate::frame::Clock;
 use crate::shader::Mode;
 use crate::shader::trace::Trace;
 
-/// What is traced.
+/// The question of a trace.
 #[derive(Clone, Copy, Debug)]
 pub struct TraceRequest<'a> {
     /// The pixel, counted from the upper left corner.

@@ -45,7 +45,7 @@ pub struct TracedLine {
     pub line: u32,
     /// The line itself, without the space around it.
     pub code: String,
-    /// What its statements computed, in short.
+    /// The values that its statements computed, in short.
     pub text: String,
     /// Each value with the calls that led to it.
     pub calls: String,

@@ -65,7 +65,7 @@ pub(crate) enum Message {
     TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
     /// A trace for another program, for the request with this number.
     GuestTraced(u64, Box<Traced>),
-    /// What the checks of the picture have found, for the request with this number.
+    /// The findings of the checks of the picture, for the request with this number.
     OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
     /// The text of a file of the tree as it was saved.
     SourceText(TreePath, Arc<str>),

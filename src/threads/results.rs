@@ -86,7 +86,7 @@ pub(crate) struct MeasuredCurves {
     pub(crate) ms: f64,
 }
 
-/// What was traced at a pixel, and what else can be.
+/// The stage and the file that were traced at a pixel, and which others can be.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TracedPlace {
     /// The stage; empty if there is none.

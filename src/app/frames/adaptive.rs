@@ -170,18 +170,18 @@ fn at_scale(clock: Clock, side: f32) -> Clock {
     Clock { mouse_px: clock.mouse_px.map(|pixels| pixels * side), cursor_px, ..clock }
 }
 
-/// What a frame draws of the picture.
+/// The part of the picture that a frame draws.
 pub(super) enum Drawing {
     /// Nothing of it is new.
     Nothing,
     Whole,
-    /// What follows the model, which is drawn in parts.
+    /// All that follows the model, which is drawn in parts.
     Rest,
     Preview,
 }
 
 impl Drawing {
-    /// What the next frame draws.
+    /// The part that the next frame draws.
     pub(super) fn of(screen: &Screen, frame: Option<&BoundFrame>, plan: Plan) -> Self {
         let Some(frame) = frame else { return Self::Nothing };
         match plan {

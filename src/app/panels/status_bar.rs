@@ -37,7 +37,7 @@ pub(super) struct Status<'a> {
     pub(super) progress: Option<f32>,
     /// The pixels of the picture with NaN or infinity.
     pub(super) not_finite: Option<NotFinitePixels>,
-    /// What the checks of the picture have found.
+    /// The findings of the checks of the picture.
     pub(super) checked: Option<&'a CheckedPicture>,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,

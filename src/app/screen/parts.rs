@@ -66,7 +66,7 @@ impl Parts {
 /// How many rows the next part has, after one with `rows` took so many milliseconds.
 fn next_rows(rows: u32, ms: f64) -> u32 {
     let fits = f64::from(rows) * AIM_MS / ms.max(0.01);
-    // What the rows show differs, and the first part does more than draw rows.
+    // Rows differ in their content, and the first part does more than draw rows.
     (fits.min(f64::from(rows) * 4.0) as u32).max(rows / 4).max(LEAST)
 }
 

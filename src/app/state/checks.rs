@@ -1,4 +1,4 @@
-//! What the checks of the picture have found: assertions that fail, values that are printed, operations whose result is open.
+//! Findings of the checks of the picture: assertions that fail, values that are printed, operations whose result is open.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -141,7 +141,7 @@ impl Checks {
         self.take(self.number, Err(message.to_owned()));
     }
 
-    /// What the newest checks have found, as errors and warnings.
+    /// The findings of the newest checks, as errors and warnings.
     pub(in crate::app) fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }

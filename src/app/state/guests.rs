@@ -41,7 +41,7 @@ pub(in crate::app) struct Guests {
     /// The question that the thread works on, by its own number.
     under_way: Option<UnderWay>,
     results: BTreeMap<u64, Result<Value, String>>,
-    /// What other programs were told last.
+    /// The picture and the pixel that other programs were told of last.
     told: Option<Pinned>,
     resting: Resting<Pinned>,
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// What is about to be asked for, and since when it is the same.
+/// The next question, and since when it is the same.
 pub(in crate::app) struct Resting<T>(Option<(T, Instant)>);
 
 impl<T> Default for Resting<T> {

@@ -63,7 +63,7 @@ fn settings_in(path: &Path) -> Option<String> {
     Some(files + &look.settings.to_toml())
 }
 
-/// What the report shows of two pictures, of which one may be missing.
+/// The part of the report about two pictures, of which one may be missing.
 pub(super) fn reported(
     (name, compared): (&str, &Result<Comparison, String>),
     sides: [Option<&Opened>; 2],

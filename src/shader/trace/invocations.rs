@@ -81,7 +81,7 @@ impl Target {
 pub struct TraceableStage {
     /// Its path.
     pub path: String,
-    /// What it draws, for a list.
+    /// Its purpose, for a list.
     pub label: String,
 }
 

@@ -71,7 +71,7 @@ pub fn empty(of: Invocations) -> [u32; START] {
     [0, a, b, c]
 }
 
-/// What one invocation has done.
+/// The log of one invocation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedFragment {
     /// Of a fragment, the bits of its depth; of a vertex, its index.

@@ -157,7 +157,7 @@ pub struct Trace {
     code: BTreeMap<(String, u32), String>,
 }
 
-/// What one fragment, vertex or compute invocation did.
+/// The statements and the result of one fragment, vertex or compute invocation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragment {
     /// Depth of a fragment: 1 near, 0 at infinity.

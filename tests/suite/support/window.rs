@@ -194,7 +194,7 @@ impl Viewer {
         command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));
         // So does the arrangement of the panels.
         command.env("XDG_STATE_HOME", tree.beside("state"));
-        // What the window shows is the picture, however slow the device is.
+        // The window shows the whole picture, however slow the device is.
         command.args(["--set", "view.msaa=1", "--set", "view.adaptive=off"]).envs(environment.iter().copied());
         for (option, value) in [("--shaders", "shaders"), ("--env", "none"), ("--size", "640x480")] {
             if !more.contains(&option) {

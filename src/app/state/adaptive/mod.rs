@@ -29,7 +29,7 @@ const REST_TO_WARM: Duration = Duration::from_millis(500);
 /// Most frames whose times are awaited.
 const MOST_AWAITED: usize = 8;
 
-/// What differs from the frame before.
+/// The difference from the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Change {
     Nothing,
@@ -78,7 +78,7 @@ impl Movement {
     }
 }
 
-/// What a submitted frame has drawn, for its time.
+/// The part of the picture that a submitted frame has drawn, for its time.
 struct Awaited {
     serial: u64,
     drawn: Drawn,

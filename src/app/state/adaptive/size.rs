@@ -16,7 +16,7 @@ const PATIENCE: u32 = 4;
 /// So many previews pass before a size that was too slow is tried again.
 const REMEMBERED: u32 = 100;
 
-/// What a frame has drawn of the picture.
+/// The part of the picture that a frame has drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::app) enum Drawn {
     /// The whole picture, after parts that took this long, milliseconds.

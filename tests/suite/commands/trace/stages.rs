@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{AT, EYE, done, near, trace, vector, write_sphere};
 use crate::support::{Tree, line_of};
 
-/// What a variable has at a line of a file: the values of its first times.
+/// The values of a variable at a line of a file, of its first times.
 fn values(found: &Value, file: &str, line: u32, name: &str) -> Vec<Value> {
     let all = done(found, file, line);
     let named = all.iter().find(|(act, of, _)| of == name || (act == name && of.is_empty()));
