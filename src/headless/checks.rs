@@ -24,13 +24,7 @@ impl Headless {
         let state =
             |shaders: &Arc<ShaderSet>, index| session.frame_state_of(shaders, sequence.clock(index), size, target);
         let request = CheckRequest { state: &state, frames: sequence.frames, shaders: &shaders, set: &set, undefined };
-        let library = self.reloader.library();
-        let mut tools = TraceTools {
-            resources: &mut self.resources,
-            compiler: library.compiler(),
-            source: library.source(),
-            is_canceled: &|| false,
-        };
+        let mut tools = TraceTools::new(&mut self.resources, &self.reloader);
         let picture = checker.check(&request, &mut tools)?;
         self.tell_endless_loop(picture.endless_loop)?;
         Ok(picture)

@@ -10,7 +10,7 @@ use super::offscreen_view::OffscreenView;
 use super::stage_plan::{self, StagePlan};
 use crate::frame::{Clock, FrameState, Revisions};
 use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
-use crate::pipeline::PipelineSet;
+use crate::pipeline::{PipelineSet, Reloader};
 use crate::render::{BoundFrame, Redraw, Resources};
 use crate::settings::Settings;
 use crate::shader::trace::{LoggingStage, Target, Trace, TraceableStage, TracedStage, log};
@@ -59,6 +59,14 @@ pub struct TraceTools<'a> {
     pub source: &'a Source,
     /// Whether the result is no longer needed.
     pub is_canceled: &'a dyn Fn() -> bool,
+}
+
+impl<'a> TraceTools<'a> {
+    /// Those of a command, which nothing cancels.
+    pub fn new(resources: &'a mut Resources, reloader: &'a Reloader) -> Self {
+        let library = reloader.library();
+        Self { resources, compiler: library.compiler(), source: library.source(), is_canceled: &|| false }
+    }
 }
 
 /// Lists of constants with which a stage is specialized.

@@ -55,13 +55,7 @@ impl Headless {
         };
         let plan = TracePlan::new(&pixel, files)?;
         let mut tracer = PixelTracer::new(&self.gpu, &self.layouts)?;
-        let library = self.reloader.library();
-        let mut tools = TraceTools {
-            resources: &mut self.resources,
-            compiler: library.compiler(),
-            source: library.source(),
-            is_canceled: &|| false,
-        };
+        let mut tools = TraceTools::new(&mut self.resources, &self.reloader);
         let shown = tracer.value(&plan, &mut tools)?;
         tracer.trace(&plan, &mut tools, files, &shown)
     }

@@ -1,4 +1,4 @@
-//! What every statement of a stage computes at a pixel.
+//! Values that every statement of a stage computes at a pixel.
 //!
 //! A stage of the picture (the one that draws the pixel, the vertices of its triangle, a pass, a compute stage) is compiled once more with line information, and its module is instrumented (`spirv/trace/`), not its
 //! text: types are exact, and macros, `#if`, headers of loops and `out` arguments need no guessing. The module writes a log to a buffer by
@@ -135,7 +135,7 @@ impl LoggingStage {
     }
 }
 
-/// What happened at a pixel.
+/// The invocations of a stage at a pixel, with all that they did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The stage.
@@ -168,11 +168,11 @@ pub struct Fragment {
     pub color: Option<[u32; 4]>,
     /// Its events, in the order of execution for each group of files.
     pub events: Vec<Event>,
-    /// What it did once the log was full, and how often.
+    /// Statements that ran once the log was full, and how often.
     pub left_out: Vec<(Doing, u32)>,
 }
 
-/// What a statement does.
+/// A statement, and the kind of its effect.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Doing {
     /// The file, as the tree names it.
