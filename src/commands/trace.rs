@@ -132,7 +132,7 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
         }
         Some(wanted) => Ok(wanted),
         None => trace.visible().ok_or_else(|| {
-            Failure::Input("every fragment of the model is discarded at this pixel; choose one with --fragment".into())
+            Failure::Input("every fragment is discarded at this pixel; choose one with --fragment".into())
         }),
     }
 }

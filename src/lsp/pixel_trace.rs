@@ -91,7 +91,7 @@ impl Thread {
                             lines: trace.lines(fragment).iter().map(TracedLine::from).collect(),
                         });
                     }
-                    None => problem = Some("every fragment of the model is discarded at this pixel".to_owned()),
+                    None => problem = Some("every fragment is discarded at this pixel".to_owned()),
                 },
                 Err(error) => problem = Some(text_of(&error)),
             }

@@ -52,7 +52,7 @@ pub(in crate::app) fn on_guest_traced(state: &mut State, number: u64, traced: Tr
     let Traced { place, trace, .. } = traced;
     state.guests.take(number, |guest, mode| {
         let trace = trace?;
-        let fragment = trace.visible().ok_or("every fragment of the model is discarded at this pixel")?;
+        let fragment = trace.visible().ok_or("every fragment is discarded at this pixel")?;
         let mut json = trace.json(fragment);
         (json["pixel"], json["mode"], json["file"]) = (json!(guest.at), json!(mode), json!(place.file));
         json["proof"]["text"] = json!(trace.proof_text(fragment));

@@ -243,7 +243,7 @@ impl Traces {
     pub(in crate::app) fn json(&self) -> Result<Value, String> {
         let newest = self.newest.as_ref().ok_or("no pixel has been traced")?;
         let trace = newest.trace.as_ref().map_err(Clone::clone)?;
-        let none = "every fragment of the model is discarded at this pixel; choose one with `fragment`";
+        let none = "every fragment is discarded at this pixel; choose one with `fragment`";
         let fragment = self.choice.fragment_of(trace).ok_or(none)?;
         let mut json = trace.json(fragment);
         (json["pixel"], json["mode"]) = (json!(newest.of.at), json!(newest.of.picture.settings.mode));
