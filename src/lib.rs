@@ -4,6 +4,7 @@
 //! Each module imports only from modules above it in this list:
 //!
 //! - [`cpu_clock`]: CPU time of a thread.
+//! - [`process_end`]: ends the process while its threads run.
 //! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`interface`]: the contract between Rust and GLSL.
@@ -56,6 +57,7 @@ pub mod message;
 pub mod picture;
 pub mod picture_difference;
 pub mod pipeline;
+pub mod process_end;
 pub mod recovery;
 mod regular_file;
 pub mod render;

@@ -49,6 +49,7 @@ use crate::control::Asked;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
 use crate::pipeline::DiskPipelines;
+use crate::process_end::end_process;
 use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
@@ -241,7 +242,7 @@ fn end_within(time: Duration) {
         std::thread::sleep(time);
         crate::message::warn("a thread did not end with the window, so the program ends without it");
         let _unfinished = crate::picture::remove_unfinished();
-        std::process::exit(0);
+        end_process(0);
     };
     // Without this thread, closing waits as long as it takes.
     let _ = std::thread::Builder::new().name("specula-closing".to_owned()).spawn(end);
