@@ -16,7 +16,7 @@ PACKAGES_PLAY=(
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
 # To test: validation layers, an X server for the window tests, and an editor for the language server.
-PACKAGES_TEST=(neovim vulkan-validationlayers xauth xdotool xvfb)
+PACKAGES_TEST=(chromium chromium-driver neovim vulkan-validationlayers xauth xdotool xvfb)
 
 say() { printf '%s\n' "specula: $*" >&2; }
 

@@ -7,6 +7,7 @@
 //! - [`process_end`]: ends the process while its threads run.
 //! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
+//! - [`report`]: pages of HTML about a result.
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: all settings of the user.
 //! - [`shader`]: compiles files to SPIR-V. Has no device and no scene.
@@ -61,6 +62,7 @@ pub mod process_end;
 pub mod recovery;
 mod regular_file;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod settings;

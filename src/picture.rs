@@ -52,6 +52,14 @@ pub fn numbered_as(stem: &str, ending: &str) -> PathBuf {
 /// The file extension is neither .png nor .exr, the folder does not exist, or `path` is a folder.
 pub fn check_path(path: &Path) -> Result<(), String> {
     format_of(path)?;
+    check_place(path)
+}
+
+/// Fails if no file of any format can be written to `path`.
+///
+/// # Errors
+/// A message.
+pub fn check_place(path: &Path) -> Result<(), String> {
     let cannot = |why: String| Err(format!("cannot write {}: {why}", path.display()));
     if path.is_dir() {
         return cannot("it is a folder".to_owned());

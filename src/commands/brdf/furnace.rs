@@ -2,10 +2,11 @@
 
 use serde_json::json;
 use specula::measure::{Claim, Grid, Surface};
+use specula::report::{Heat, Lines, Series};
 use specula::settings::ShaderValue;
 use specula::shader::Constant;
 
-use super::options::{Opened, Options, SurfaceOptions, listed, short};
+use super::options::{Opened, Options, SurfaceOptions, listed, short, title};
 use crate::commands::{Failure, print_json};
 
 /// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.
@@ -54,6 +55,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let broken = without.is_empty() && !conserves;
+    let verdict = match (without.as_slice(), conserves) {
+        ([], true) => format!("Conserves energy: no albedo is above {MOST}."),
+        ([], false) => format!("Claims to conserve energy, but reflects up to {max:.4} of the light that arrives."),
+        (without, _) => format!("Does not claim to conserve energy ({}): {min:.4} to {max:.4}.", listed(without)),
+    };
+    opened.report(&args.options, "White furnace", |report| {
+        report.verdict(!broken, &verdict);
+        report.note(&format!(
+            "{}. Directional albedo, the largest channel: the part of white light from everywhere that the surface reflects. 1 loses nothing.",
+            title(surface)
+        ));
+        report.lines(&lines(&albedo));
+        report.heat(&heat(&albedo));
+    })?;
     opened.close()?;
     if broken {
         let found = if max.is_nan() { "a value that is not a number".to_owned() } else { format!("up to {max:.4}") };
@@ -85,6 +100,42 @@ pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
         values().reduce(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) }).unwrap_or(f64::NAN)
     };
     (with(f64::min), with(f64::max))
+}
+
+/// The largest channels, row by row.
+fn largest(albedo: &[[f64; 3]]) -> Vec<f64> {
+    albedo.iter().map(|[r, g, b]| r.max(*g).max(*b)).collect()
+}
+
+/// Albedo over the angle for a few rows.
+fn lines(albedo: &[[f64; 3]]) -> Lines {
+    let values = largest(albedo);
+    let rows = (0..GRID.rows).step_by(4).chain([GRID.rows - 1]);
+    let series = |row: u32| {
+        let first = (row * GRID.columns) as usize;
+        let cells = (0..GRID.columns).zip(&values[first..first + GRID.columns as usize]);
+        let points = cells.map(|(column, value)| (GRID.theta_of(column), *value)).collect();
+        Series { name: format!("roughness {:.2}", GRID.roughness_of(row)), points }
+    };
+    Lines {
+        title: "Albedo over the angle".to_owned(),
+        x: "angle to the normal, degrees".to_owned(),
+        y: "albedo".to_owned(),
+        series: rows.map(series).collect(),
+        least: 0.1,
+    }
+}
+
+fn heat(albedo: &[[f64; 3]]) -> Heat {
+    Heat {
+        title: "Albedo by roughness and angle: blue loses light, red adds some".to_owned(),
+        axes: ["roughness".to_owned(), "degrees".to_owned()],
+        rows: (0..GRID.rows).map(|row| format!("{:.2}", GRID.roughness_of(row))).collect(),
+        columns: (0..GRID.columns).map(|column| format!("{:.0}", GRID.theta_of(column))).collect(),
+        values: largest(albedo),
+        middle: 1.0,
+        span: 0.2,
+    }
 }
 
 fn print_rows(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {

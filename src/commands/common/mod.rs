@@ -7,6 +7,7 @@ mod look;
 pub mod names;
 pub mod opened;
 pub mod parse;
+pub mod report;
 pub mod unchecked;
 
 use std::path::{Path, PathBuf};
