@@ -10,5 +10,6 @@ mod learn;
 mod lsp;
 mod probe;
 mod readme;
+mod serve;
 mod trace;
 mod watch;
