@@ -59,9 +59,25 @@ impl OffscreenCapture {
         clock: Clock,
         canceled: &Arc<AtomicBool>,
     ) -> Result<Self, GpuError> {
-        let own = OffscreenView::new(gpu, resources.layouts())?;
+        Self::with_view(None, gpu, session, resources, (clock, canceled))
+    }
+
+    /// [`Self::new`] with the view of an earlier capture, whose targets may fit.
+    pub(crate) fn with_view(
+        view: Option<OffscreenView>,
+        gpu: &Arc<Gpu>,
+        session: Session,
+        resources: Resources,
+        (clock, canceled): (Clock, &Arc<AtomicBool>),
+    ) -> Result<Self, GpuError> {
+        let own = view.map_or_else(|| OffscreenView::new(gpu, resources.layouts()), Ok)?;
         let (gpu, canceled) = (gpu.clone(), canceled.clone());
         Ok(Self { gpu, session, resources, own, clock, count: 1, is_linear: false, canceled })
+    }
+
+    /// The view, for the next capture.
+    pub(crate) fn into_view(self) -> OffscreenView {
+        self.own
     }
 
     /// Sets the number of frames that each capture takes.

@@ -23,6 +23,7 @@ mod output;
 mod probe;
 mod progress;
 mod render;
+mod serve;
 mod signals;
 mod trace;
 mod view;
@@ -63,8 +64,10 @@ struct Cli {
 enum Command {
     /// Open the window (the default)
     View(view::Args),
-    /// Render a picture to a PNG or EXR file, without a window
+    /// Render a picture to a PNG, EXR or NumPy file, without a window
     Render(render::Args),
+    /// Serve a program: commands on stdin, events on stdout, pictures as files; without a window
+    Serve(serve::Args),
     /// List the debug modes, constants and parameters of the shader tree
     Modes(modes::Args),
     /// Compile every shader, and build the pipelines of every mode and choice; or draw a model and check its assertions and operations; for CI
@@ -140,6 +143,7 @@ fn main(start: Instant) -> ExitCode {
             .and_then(|()| view::run(cli.view, start)),
         Some(Command::View(args)) => view::run(args, start),
         Some(Command::Render(args)) => render::run(args, start),
+        Some(Command::Serve(args)) => serve::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Info(args)) => info::run(args),

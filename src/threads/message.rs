@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
-use crossbeam_channel::Receiver;
+use crossbeam_channel::{Receiver, Sender};
 use winit::event_loop::EventLoopProxy;
 
 use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, WorkerMessage};
@@ -55,6 +55,8 @@ pub(crate) enum Message {
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
     TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
+    /// A text that a program has sent was written to a file of the tree, or the reason why not, by the number of the request.
+    TextWritten(u64, TreeFile, Result<Written, String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
@@ -139,22 +141,20 @@ pub(crate) enum TaskKind {
     External,
 }
 
-/// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
+/// Sends messages to the window, or to the loop of a session without one, and wakes it. After its end, messages are dropped.
 #[derive(Clone)]
-pub(crate) struct MessageSender(EventLoopProxy<Message>);
+pub(crate) enum MessageSender {
+    Window(EventLoopProxy<Message>),
+    Loop(Sender<Message>),
+}
 
 impl MessageSender {
-    pub(crate) fn new(proxy: EventLoopProxy<Message>) -> Self {
-        Self(proxy)
-    }
-
     pub(crate) fn send(&self, message: Message) {
-        let _ = self.0.send_event(message);
-    }
-
-    /// A handle with which AccessKit sends messages to the window.
-    pub(crate) fn proxy(&self) -> EventLoopProxy<Message> {
-        self.0.clone()
+        // Fails only after the end.
+        match self {
+            Self::Window(proxy) => drop(proxy.send_event(message)),
+            Self::Loop(sender) => drop(sender.send(message)),
+        }
     }
 
     /// Sends the commands from outside, on a thread that lasts as long as the process.

@@ -6,6 +6,7 @@ use crate::app::control;
 use crate::app::engine::Engine;
 use crate::app::screen::Screen;
 use crate::app::state::State;
+use crate::app::state::captures::Job;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
 use crate::picture;
@@ -48,6 +49,15 @@ fn write_screenshot(state: &mut State, capture: &Capture) {
     }
 }
 
+/// Whether the picture on screen is the one that a command renders, bit by bit: in full floats, alone, without earlier frames, and for a
+/// file of linear light with plain averages of the samples.
+fn is_rendered(state: &State, screen: &Screen, frame: &BoundFrame, is_linear: bool) -> bool {
+    let request = &frame.state.pipelines;
+    let is_alone = !state.has_window && !state.compare.is_on() && !screen.has_reference();
+    let is_single = frame.stands_alone() && !request.accumulates && !frame.state.display.is_measured();
+    is_alone && is_single && (!is_linear || request.target.samples == 1)
+}
+
 fn read_picture(
     state: &mut State,
     engine: &mut Engine,
@@ -61,7 +71,8 @@ fn read_picture(
     read
 }
 
-/// Takes the requested captures of what is on screen. A lack of memory fails only them.
+/// Takes the requested captures of what is on screen. A lack of memory fails only them. A picture that a command would render otherwise is
+/// drawn on the thread of captures.
 pub(super) fn take_shots(
     state: &mut State,
     engine: &mut Engine,
@@ -72,6 +83,11 @@ pub(super) fn take_shots(
         return Ok(());
     }
     for shot in control::take_shots(state, engine) {
+        if shot.is_rendered && !is_rendered(state, screen, frame, shot.to.holds_light()) {
+            let job = Job::Picture { to: shot.to, size: None, mode: None, frames: 1 };
+            control::begin_capture(state, engine, shot.reply, job);
+            continue;
+        }
         match read_picture(state, engine, screen, frame) {
             Ok(Some(capture)) => control::write_shot(state, engine, shot, capture),
             Ok(None) => shot.reply.error("there is no picture"),

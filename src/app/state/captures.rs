@@ -3,16 +3,41 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use crate::capture::Turn;
+use crate::picture::{Encoding, holds_light};
 
 /// Most captures that are drawn or wait. Each keeps the images of its picture on the device.
 const MOST: usize = 64;
 
+/// Where a picture goes, and in which form.
+#[derive(Clone, Debug)]
+pub(in crate::app) struct Destination {
+    /// `None` is the first free `specula-N.png`.
+    pub(in crate::app) file: Option<PathBuf>,
+    /// `None` is the encoding that the file's extension names.
+    pub(in crate::app) encoding: Option<Encoding>,
+    /// When it was asked for.
+    pub(in crate::app) since: Instant,
+}
+
+impl Destination {
+    /// A file whose extension names its encoding.
+    pub(in crate::app) fn named(file: Option<PathBuf>) -> Self {
+        Self { file, encoding: None, since: Instant::now() }
+    }
+
+    /// Whether the file holds linear light.
+    pub(in crate::app) fn holds_light(&self) -> bool {
+        self.encoding.map_or_else(|| self.file.as_deref().is_some_and(holds_light), Encoding::holds_light)
+    }
+}
+
 /// Job of the background render thread.
 #[derive(Clone, Debug)]
 pub(in crate::app) enum Job {
-    Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
+    Picture { to: Destination, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
     Probe { at: (u32, u32), names: Vec<String> },
     Sheet { file: PathBuf, names: Vec<String>, size: (u32, u32), columns: Option<u32> },
     Turntable { file: PathBuf, frames: u32, fps: f32, size: Option<(u32, u32)>, turn: Turn },

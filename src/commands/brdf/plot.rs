@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices};
+use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices, extremes};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
-use super::furnace::extremes;
 use super::options::{Opened, Options, SurfaceOptions, short, unit};
 use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
 use crate::commands::Failure;

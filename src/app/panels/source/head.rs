@@ -7,7 +7,7 @@ use egui::{ComboBox, RichText, ScrollArea, Ui};
 use super::edit::Editor;
 use super::model::CodeModel;
 use super::scroll::Scroll;
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::scene::UNPIN;
 use crate::app::command::source::{CHOOSE_STAGE, CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
 use crate::app::commands::Commands;
@@ -226,7 +226,7 @@ fn open_in_editor(ui: &mut Ui, state: &State, model: &CodeModel, commands: &mut 
         .on_hover_text(format!("Open {display} in your editor"))
         .clicked()
     {
-        commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None }));
+        commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(display), line: None, column: None }));
     }
 }
 
