@@ -145,9 +145,13 @@ impl Program {
     /// Ends a process that was started, and waits until it has ended. A window stays open.
     pub fn end(&self) {
         if let Some(Link { lines, ended, .. }) = lock(&self.link).take() {
-            // The end of its input ends it.
+            let is_own = matches!(self.connection, Connection::Start(_));
+            if is_own {
+                // At once: the end of its input alone would let it finish what was canceled.
+                let _ = lines.send(json!({ "command": "quit" }).to_string());
+            }
             drop(lines);
-            if matches!(self.connection, Connection::Start(_)) {
+            if is_own {
                 let _ = ended.recv_timeout(FAREWELL);
             }
         }

@@ -24,7 +24,7 @@ def main():
     config = {
         "typeCheckingMode": "strict",
         "pythonVersion": "3.9",
-        "include": [str(package / "specula"), str(here)],
+        "include": [os.path.relpath(package / "specula"), "."],
         "extraPaths": [str(package)],
     }
     (here / "pyrightconfig.json").write_text(json.dumps(config), encoding="utf-8")

@@ -239,6 +239,9 @@ class Channel:
         if os.getpid() != self._owner:
             return
         self._is_closed = True
+        if self._process is not None:
+            # At once: the end of its input alone would let it finish the commands before.
+            self._send({"command": "quit"})
         self._lines.put(None)
         if self._process is not None:
             try:

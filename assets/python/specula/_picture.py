@@ -53,6 +53,12 @@ class Picture(_Array):
         # ndarray's own leaves the attributes out.
         return (Picture, (np.asarray(self), self.mode, self.encode))
 
+    def __repr__(self) -> str:
+        if self.ndim not in (2, 3):
+            return super().__repr__()
+        size = " x ".join(str(side) for side in (self.shape[1], self.shape[0], *self.shape[2:]))
+        return f"<Picture {size} {self.dtype}{', mode ' + self.mode if self.mode else ''}>"
+
     def display(self) -> "npt.NDArray[np.uint8]":
         """The picture as 8 bits for a screen. Raw values are clipped, without a tone map; NaN is magenta."""
         values = np.asarray(self)

@@ -21,7 +21,7 @@ _KINDS = {".png": "image/png", ".gif": "image/gif", ".webp": "image/webp", ".mp4
 
 
 class Media:
-    """A file in memory that shows itself in Jupyter: a contact sheet, an animation, a map of differences."""
+    """A file in memory that shows itself in Jupyter: a contact sheet or an animation."""
 
     def __init__(self, data: bytes, ending: str) -> None:
         self.data = data
@@ -217,10 +217,11 @@ class Difference:
     differing: int
     """Pixels that are not equal bit by bit."""
     pixels: int
-    map: Optional[Media] = field(repr=False)
+    map: Picture = field(repr=False)
+    """Where they differ: of FLIP in colors, or of raw values in their own unit."""
 
     def _repr_png_(self) -> Optional[bytes]:
-        return self.map.data if self.map and self.map.ending == ".png" else None
+        return self.map.png()
 
 
 def _number(value: Any) -> float:

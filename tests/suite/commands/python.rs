@@ -94,7 +94,9 @@ fn a_wheel_in_a_new_environment_draws_a_picture() {
         print('drawn')";
     let numpy = finish(Command::new(python).args(["-c", "import numpy; print(numpy.__path__[0])"]));
     let site = Path::new(numpy.stdout.trim()).parent().unwrap();
-    let link = finish(in_folder(&path("new/bin/python")).args(["-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]));
+    let link = finish(
+        in_folder(&path("new/bin/python")).args(["-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]),
+    );
     fs::write(Path::new(link.stdout.trim()).join("numpy-of-the-tests.pth"), site.display().to_string()).unwrap();
     // No program on PATH, and none in the variable: that of the wheel.
     let mut draw = in_folder(&path("new/bin/python"));
