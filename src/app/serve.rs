@@ -7,6 +7,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
 
 use super::AppError;
 use super::ending::Ending;
+use super::engine::Engine;
 use super::frames::background::Next;
 use super::frames::draw::Drawing;
 use super::frames::progress::{is_settled, moves};
@@ -14,6 +15,8 @@ use super::messages::on_message;
 use super::options::{AppOptions, Early};
 use super::screen::Screen;
 use super::start::start;
+use super::state::State;
+use crate::control::Asked;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::threads::{Message, MessageSender};
@@ -55,8 +58,12 @@ pub fn serve(mut options: AppOptions) -> Result<(), AppError> {
 /// Takes messages and draws the frames that follow from them, until the session ends.
 fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), GpuError> {
     let Ending { state, engine, drawing, .. } = session;
+    let mut early = Vec::new();
     loop {
-        messages.try_iter().for_each(|message| on_message(state, engine, message));
+        messages.try_iter().for_each(|message| take(state, engine, &mut early, message));
+        if knows_names(state, engine) {
+            early.drain(..).for_each(|asked| on_message(state, engine, Message::Asked(asked)));
+        }
         if state.quit || state.quits_by_hand {
             return Ok(());
         }
@@ -69,7 +76,7 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), GpuErro
         while wait.is_none_or(|wait| !wait.is_zero()) {
             let record = engine.recorder.rest();
             if let Some(message) = next(messages, wait.into_iter().chain(record).min()) {
-                on_message(state, engine, message);
+                take(state, engine, &mut early, message);
                 break;
             }
             wait = match drawing.go_on(None, state, engine)? {
@@ -79,6 +86,22 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), GpuErro
             };
         }
     }
+}
+
+/// Takes a message. Commands wait in `early` for the first shaders, whose names they may use; but not those that end something.
+fn take(state: &mut State, engine: &mut Engine, early: &mut Vec<Box<Asked>>, message: Message) {
+    match message {
+        Message::Asked(asked) if !knows_names(state, engine) && !["quit", "cancel"].contains(&&*asked.command) => {
+            early.push(asked);
+        }
+        message => on_message(state, engine, message),
+    }
+}
+
+/// Whether all stages have been compiled, or cannot be.
+fn knows_names(state: &State, engine: &Engine) -> bool {
+    let is_complete = state.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
+    is_complete || state.names_checked || (state.has_errors() && !engine.threads.worker.is_compiling())
 }
 
 /// The next message; `None` if none comes for so long.

@@ -12,5 +12,6 @@ mod mcp;
 mod probe;
 mod python;
 mod readme;
+mod serve;
 mod trace;
 mod watch;

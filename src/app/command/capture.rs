@@ -8,6 +8,7 @@ use serde_json::Value;
 use winit::keyboard::NamedKey;
 
 use super::about::Group;
+use super::fields;
 use super::shortcut::Shortcut;
 use super::spec::{Outcome, Spec, Until};
 use crate::app::engine::Engine;
@@ -142,11 +143,23 @@ pub(in crate::app) static TIMELINE: Spec<Timeline> = Spec::new("timeline", |_, _
     )
     .required(&["file"]);
 
-pub(in crate::app) static CANCEL: Spec<()> = Spec::fallible("cancel", |state, _, ()| {
-    state.cancel_captures();
-    Ok(Until::CapturesEnded)
+/// Ends a command by the identifier in its line; all captures without one.
+pub(in crate::app) static CANCEL: Spec<Option<Value>> = Spec::new("cancel", |state, _, of: Option<Value>| match of {
+    None => {
+        state.cancel_captures();
+        Ok(Until::CapturesEnded)
+    }
+    Some(id) if state.waiting.cancel_of(&id) || state.captures.cancel_of(&id) => Ok(Until::DONE),
+    Some(id) => Err(format!("no command with the id {id} can be canceled: it has ended, or it ends soon")),
 })
-.line("Ends the captures, sheets, animations and probes that are under way; each answers with an error");
+.parsed(
+    r#""of"?: id"#,
+    "Ends the command with this id, which answers with the error `canceled`; without a field, all captures, sheets, animations and probes",
+    |about, mut fields| {
+        let of = fields::take(&mut fields, "of");
+        fields::end(about, of, fields)
+    },
+);
 
 /// Ends the capture with a number.
 pub(in crate::app) static CANCEL_ONE: Spec<u64> =

@@ -42,8 +42,9 @@ impl Job {
                     offscreen.settings().mode = mode;
                 }
                 offscreen.set_count(frames)?;
-                offscreen.set_linear(to.holds_light());
-                let capture = offscreen.capture(own.unwrap_or(size))?;
+                let (is_linear, size) = (to.holds_light(), own.unwrap_or(size));
+                offscreen.set_linear(is_linear);
+                let capture = if is_linear { offscreen.capture(size) } else { offscreen.capture_display(size) }?;
                 let shown = SessionState { settings: offscreen.session().shared_settings(), ..work };
                 write_capture(&capture, &shown, &to).map_err(CaptureError::Write)
             }
@@ -90,7 +91,7 @@ impl Job {
 
 /// Draws on the thread of captures.
 pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, reply: Reply, job: Job) {
-    let (number, canceled) = match state.captures.begin(job.title()) {
+    let (number, canceled) = match state.captures.begin(job.title(), reply.id()) {
         Ok(begun) => begun,
         Err(message) => return reply.error(message),
     };

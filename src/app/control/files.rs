@@ -14,18 +14,18 @@ use crate::app::state::waiting::{Shot, WindowShot};
 use crate::gpu::Buffer;
 use crate::picture;
 use crate::recovery::SessionState;
-use crate::render::Capture;
+use crate::render::{Capture, Readback};
 use crate::threads::TaskKind;
 
-/// Writes the picture of the screen, and answers.
-pub(in crate::app) fn write_shot(state: &State, engine: &Engine, shot: Shot, capture: Capture) {
+/// Writes the picture of the screen, whose copy has finished, and answers.
+pub(in crate::app) fn write_shot(state: &State, engine: &mut Engine, shot: Shot, readback: Readback) {
     let work = shown_session_state(state);
-    engine.threads.wait(move || {
+    engine.threads.use_device(TaskKind::External, move |_| {
+        let capture = if shot.to.holds_light() { readback.finish() } else { readback.finish_picture() };
         match write_capture(&capture, &work, &shot.to) {
             Ok(result) => shot.reply.done(result),
             Err(message) => shot.reply.error(message),
         }
-        None
     });
 }
 

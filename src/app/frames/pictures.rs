@@ -10,7 +10,7 @@ use crate::app::state::captures::Job;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
 use crate::picture;
-use crate::render::{BoundFrame, Capture, Redraw};
+use crate::render::{BoundFrame, Capture, Readback, Redraw};
 
 /// Writes the screenshot that a key has asked for. It waits for the first picture, for the model's textures, and for the range of a mode's
 /// values.
@@ -29,7 +29,7 @@ pub(super) fn take_screenshot(
     }
     state.screenshot = false;
     match read_picture(state, engine, screen, frame) {
-        Ok(Some(capture)) => write_screenshot(state, &capture),
+        Ok(Some(readback)) => write_screenshot(state, &readback.finish_picture()),
         Ok(None) => {}
         Err(error) if error.is_shortage() => state.say(format!("no screenshot: {error}")),
         Err(error) => return Err(error),
@@ -63,7 +63,7 @@ fn read_picture(
     engine: &mut Engine,
     screen: &mut Screen,
     frame: &BoundFrame,
-) -> Result<Option<Capture>, GpuError> {
+) -> Result<Option<Readback>, GpuError> {
     // A picture of many frames is taken as it is if its next frame is drawn in parts.
     let redraw = if state.previews.is_planned() { Redraw::ToneMap } else { Redraw::IfChanged };
     let read = screen.read_picture(frame, redraw);
@@ -89,7 +89,7 @@ pub(super) fn take_shots(
             continue;
         }
         match read_picture(state, engine, screen, frame) {
-            Ok(Some(capture)) => control::write_shot(state, engine, shot, capture),
+            Ok(Some(readback)) => control::write_shot(state, engine, shot, readback),
             Ok(None) => shot.reply.error("there is no picture"),
             Err(error) if error.is_shortage() => shot.reply.error(error.to_string()),
             Err(error) => return Err(error),

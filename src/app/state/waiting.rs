@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 use super::captures::{Destination, Job};
 use crate::control::Reply;
 
+/// The answer to a command that another one has ended.
+const CANCELED: &str = "canceled";
+
 /// Looks for a result in the state of the window.
 type Find<S> = Box<dyn Fn(&S) -> Option<Result<Value, String>>>;
 
@@ -222,7 +225,13 @@ impl<S> Waiting<S> {
 
     /// Answers those who wait for a picture that is to be written.
     pub(in crate::app) fn cancel_captures(&mut self) {
-        self.refuse(Until::is_capture, "canceled");
+        self.refuse(Until::is_capture, CANCELED);
+    }
+
+    /// Answers the command with this identifier that it is canceled. Returns whether it waits.
+    pub(in crate::app) fn cancel_of(&mut self, id: &Value) -> bool {
+        let found = self.list.iter().position(|(reply, _)| reply.id() == id);
+        found.map(|index| self.list.remove(index).0.error(CANCELED)).is_some()
     }
 
     /// Answers those who wait for the end of the window.

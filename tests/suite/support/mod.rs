@@ -6,6 +6,7 @@ pub mod glb;
 pub mod hdr;
 pub mod process;
 mod renderer;
+pub mod served;
 pub mod video;
 pub mod window;
 pub mod xdnd;
