@@ -15,6 +15,7 @@ mod places;
 mod program;
 mod resources;
 mod server;
+mod shared;
 mod tools;
 mod transport;
 

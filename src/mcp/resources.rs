@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::message::{RESOURCE_NOT_FOUND, Refused};
 use super::program::{Call, Failure};
-use super::server::Shared;
+use super::shared::Shared;
 
 /// The URI of a file is this and its path.
 const SCHEME: &str = "specula://shaders/";

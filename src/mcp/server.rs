@@ -1,16 +1,16 @@
 //! Answers the client's messages. What needs the program runs on a thread of its own for each call, so that a `ping` or a cancellation is never
 //! behind a picture.
 
-use std::collections::HashMap;
 use std::io::{self, BufRead, Write};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use serde_json::{Map, Value, json};
 
 use super::message::{self, INVALID_REQUEST, Incoming, METHOD_NOT_FOUND, Refused};
 use super::places::Places;
 use super::program::{Call, Connection, Program};
+use super::shared::{Shared, lock};
 use super::transport::{Batch, Outgoing, Target, next};
 use super::{resources, tools};
 
@@ -33,13 +33,6 @@ pub struct Config {
     pub connection: Connection,
     /// The folder for files that an agent writes; without one, it writes none.
     pub out: Option<PathBuf>,
-}
-
-/// What all calls share.
-pub(super) struct Shared {
-    pub(super) program: Program,
-    pub(super) places: Places,
-    calls: Mutex<HashMap<String, Arc<Call>>>,
 }
 
 /// Serves a client until its messages end, and answers the requests that are open then.
@@ -77,10 +70,6 @@ type Answered = Result<Value, Refused>;
 
 /// Work for a thread; `None` if the client has canceled it.
 type Work = Box<dyn FnOnce(&Shared, &Arc<Call>) -> Option<Answered> + Send>;
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 impl Server {
     fn take_batch(&mut self, batch: Vec<Value>) {

@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import os
+import subprocess
 import time
 from pathlib import Path
 
@@ -152,6 +153,18 @@ async def main():
         await refused(client, "render", "--out-folder", save="a.png")
         edited = await call(client, "edit_shader", file="brdf/ndf.glsl", old="a2 = alpha * alpha;", new="a2 = alpha;")
         assert "in memory" in text_of(edited), text_of(edited)
+    # A session that somebody else has started, by its socket.
+    socket = RUNTIME / "specula.sock"
+    command = [os.environ["SPECULA"], "serve", "sphere-grid", "--env", "none", "--size", SIZE, "--socket", str(socket)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as joined:
+        assert '"listening"' in joined.stdout.readline()
+        async with Client(server("--socket", str(socket))) as client:
+            assert picture_of(await call(client, "render"))[16:24] == SHAPE
+            await call(client, "set", values={"view.ev": 2})
+        joined.stdin.write('{"id": 1, "command": "get", "path": "view.ev"}\n')
+        joined.stdin.close()
+        answers = [line for line in joined.stdout if '"id":1' in line]
+        assert len(answers) == 1 and '"result":2' in answers[0], answers
     left = [path for path in RUNTIME.rglob("*") if path.is_file() or "mcp" in path.name]
     assert not left, left
 

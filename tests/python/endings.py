@@ -48,7 +48,33 @@ def wait_for_end(what, processes):
         time.sleep(0.01)
 
 
+def joins():
+    """Another program's session is joined by its socket, and goes on after this one."""
+    socket = Path("private/s.sock").absolute()
+    socket.parent.mkdir(mode=0o700)
+    command = [os.environ["SPECULA"], "serve", "sphere-grid", "--env", "none", "--size", "64x36", "--socket", str(socket)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
+        assert '"listening"' in server.stdout.readline()
+        for _ in range(2):
+            with specula.Session(window=str(socket)) as session:
+                before = session.render()
+                assert before.shape == (36, 64, 4)
+                session["view.ev"] = session["view.ev"] + 1
+                assert (session.render() != before).any()
+                folder = session._scratch._folder
+            assert not folder.exists() and server.poll() is None
+        server.stdin.close()
+        assert server.wait(PATIENCE_S) == 0
+    try:
+        specula.Session(window=str(socket))
+    except specula.ProcessError as error:
+        assert "no window listens" in str(error), error
+    else:
+        raise AssertionError("a window that is closed was joined")
+
+
 def main():
+    joins()
     # Wrong options: what the program says.
     try:
         specula.Session("sphere-grid", options=["--tonemap", "nonsense"])

@@ -23,7 +23,6 @@ def main():
     package = REPOSITORY / "assets/python"
     config = {
         "typeCheckingMode": "strict",
-        "pythonVersion": "3.9",
         "include": [os.path.relpath(package / "specula"), "."],
         "extraPaths": [str(package)],
     }

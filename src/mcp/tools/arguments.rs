@@ -5,6 +5,9 @@ use serde_json::{Map, Value, json};
 
 use crate::mcp::program::Failure;
 
+/// Longest side of a picture, pixels.
+pub const LARGEST: u32 = 2048;
+
 /// The arguments as a type.
 ///
 /// # Errors
@@ -56,6 +59,11 @@ pub fn texts(doc: &str) -> Value {
 
 /// Width and height.
 pub fn size(doc: &str) -> Value {
-    json!({ "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": super::pictures::LARGEST }, "minItems": 2, "maxItems": 2,
+    json!({ "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": LARGEST }, "minItems": 2, "maxItems": 2,
         "description": doc })
+}
+
+/// Whether a text has another, in any case.
+pub fn has(text: &str, part: &str) -> bool {
+    text.to_lowercase().contains(&part.to_lowercase())
 }

@@ -5,6 +5,7 @@ mod arguments;
 mod pictures;
 mod scene;
 mod shaders;
+mod tool;
 mod values;
 
 use std::sync::Arc;
@@ -13,35 +14,10 @@ use serde_json::{Map, Value, json};
 
 use super::diagnostics;
 use super::message::Refused;
-use super::places::Places;
 use super::program::{Call, Failure};
-use super::server::Shared;
+use super::shared::Shared;
 use crate::message::did_you_mean;
-
-/// What a tool may do, for clients that ask their user before.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Effect {
-    /// It changes nothing.
-    Reads,
-    /// It changes the settings of the session, or writes a new file to the output folder.
-    Changes,
-    /// It writes over files.
-    Writes,
-}
-
-/// A tool.
-pub struct Tool {
-    name: &'static str,
-    title: &'static str,
-    doc: &'static str,
-    effect: Effect,
-    /// The members of the object that the tool takes, as JSON Schema, and those that must be there.
-    schema: fn() -> (Value, &'static [&'static str]),
-    run: fn(&Caller<'_>, Map<String, Value>) -> Content,
-}
-
-/// The content of an answer: text and pictures.
-type Content = Result<Vec<Value>, Failure>;
+use tool::{Caller, Effect, Tool, text};
 
 /// All tools, in the order in which a client lists them.
 static TOOLS: &[&Tool] = &[
@@ -101,30 +77,4 @@ pub(super) fn call(tool: &Tool, arguments: Map<String, Value>, shared: &Shared, 
             Some(json!({ "content": [text(said.trim())], "isError": true }))
         }
     }
-}
-
-/// A call on its way.
-struct Caller<'a> {
-    shared: &'a Shared,
-    call: &'a Arc<Call>,
-}
-
-impl Caller<'_> {
-    fn ask(&self, command: &str, fields: &Value) -> Result<Value, Failure> {
-        self.shared.program.ask(self.call, command, fields)
-    }
-
-    fn places(&self) -> &Places {
-        &self.shared.places
-    }
-}
-
-/// Text as content.
-fn text(text: impl Into<String>) -> Value {
-    json!({ "type": "text", "text": text.into() })
-}
-
-/// A message as a failure.
-fn failed(message: String) -> Failure {
-    Failure::new(message)
 }

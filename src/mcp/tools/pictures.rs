@@ -7,12 +7,9 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::arguments::{read, size, text as text_argument};
-use super::{Caller, Content, Effect, Tool, failed, text};
+use super::arguments::{LARGEST, has, read, size, text as text_argument};
+use super::tool::{Caller, Content, Effect, Tool, failed, text};
 use crate::mcp::program::Failure;
-
-/// Longest side of a picture, pixels.
-pub const LARGEST: u32 = 2048;
 
 pub static RENDER: Tool = Tool {
     name: "render",
@@ -129,11 +126,6 @@ fn modes(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
         }
     }
     Ok(vec![text(if lines.is_empty() { "No mode has this text.".to_owned() } else { lines.join("\n") })])
-}
-
-/// Whether a text has another, in any case.
-pub fn has(text: &str, part: &str) -> bool {
-    text.to_lowercase().contains(&part.to_lowercase())
 }
 
 #[derive(Deserialize)]

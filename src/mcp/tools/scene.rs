@@ -3,9 +3,8 @@
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::arguments::{flag, number, read, text as text_argument, vector};
-use super::pictures::has;
-use super::{Caller, Content, Effect, Tool, failed, text};
+use super::arguments::{flag, has, number, read, text as text_argument, vector};
+use super::tool::{Caller, Content, Effect, Tool, failed, text};
 use crate::mcp::program::Failure;
 
 pub static OPEN: Tool = Tool {

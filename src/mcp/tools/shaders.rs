@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use similar::TextDiff;
 
 use super::arguments::{flag, read, text as text_argument, whole};
-use super::{Caller, Content, Effect, Tool, failed, text};
+use super::tool::{Caller, Content, Effect, Tool, failed, text};
 use crate::mcp::diagnostics;
 use crate::mcp::places::of_tree;
 use crate::mcp::program::Failure;

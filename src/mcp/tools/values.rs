@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::arguments::{number, read, text as text_argument, texts, vector, whole};
-use super::{Caller, Content, Effect, Tool, text};
+use super::tool::{Caller, Content, Effect, Tool, text};
 
 pub static PROBE: Tool = Tool {
     name: "probe",
