@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::AppError;
 use super::engine::Engine;
+use super::error::AppError;
 use super::frames::draw::Drawing;
 use super::state::State;
 use crate::events::{Event, emit};
@@ -55,7 +55,7 @@ impl Ending {
 fn end_within(time: Duration) {
     let end = move || {
         std::thread::sleep(time);
-        crate::message::warn("a thread did not end in time, so the program ends without it");
+        crate::message::warn("a thread did not end with the session, so the program ends without it");
         let _unfinished = crate::picture::remove_unfinished();
         std::process::exit(0);
     };

@@ -14,6 +14,7 @@ mod dialog;
 mod editor;
 mod ending;
 mod engine;
+mod error;
 mod frames;
 mod gallery;
 mod input;
@@ -67,29 +68,11 @@ use start::start;
 use state::{State, window_size};
 
 pub use command::registry::{Described, described};
+pub use error::AppError;
 pub use options::{AppOptions, OtherPicture};
 pub use serve::serve;
 pub use state::last_session::session_to_restore;
 pub use state::window_size::last_size;
-
-/// Why there is no window, or why it closed early.
-#[derive(Debug, thiserror::Error)]
-pub enum AppError {
-    /// No display.
-    #[error(
-        "no display to open a window on: {0}. Without one, `specula render --watch` writes a new PNG at every save"
-    )]
-    NoDisplay(String),
-    /// A picture that the device cannot draw.
-    #[error("--size {0}x{1}: this device draws 1 to {2} pixels a side")]
-    Size(u32, u32, u32),
-    /// A device error.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// The validation layers reported messages.
-    #[error("the validation layers reported {0} messages (above)")]
-    Validation(usize),
-}
 
 /// Opens the window and runs until it is closed.
 ///

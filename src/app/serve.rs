@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
 
-use super::AppError;
 use super::ending::Ending;
 use super::engine::Engine;
+use super::error::AppError;
 use super::frames::background::Next;
 use super::frames::draw::Drawing;
 use super::frames::progress::{is_settled, moves};

@@ -27,11 +27,12 @@ use crate::app::engine::Engine;
 use crate::app::interface::{Followed, Interface, Shown};
 use crate::app::screen::{Beginning, Screen};
 use crate::app::state::State;
+use crate::app::state::adaptive::plan::Plan;
 use crate::app::state::timing::CpuTimes;
 use crate::cpu_clock::CpuClock;
 use crate::gpu::GpuError;
 use crate::recovery::Geometry;
-use crate::render::Redraw;
+use crate::render::{BoundFrame, Redraw};
 use crate::scene::built_in_pictures;
 use crate::threads::Message;
 
@@ -59,6 +60,21 @@ pub(in crate::app) struct Drawing {
     memory: MemoryClock,
     /// CPU time of the driver to present the current frame, milliseconds.
     present_ms: f64,
+}
+
+/// A frame that has been submitted.
+struct Submitted {
+    plan: Plan,
+    /// When it was begun.
+    begin: Instant,
+    /// Whether a difference is being measured.
+    measures: bool,
+    /// Whether another frame must follow.
+    changes: bool,
+    /// Whether the panels have run.
+    has_run: bool,
+    /// The time until the picture is to be searched for NaN.
+    scan: Option<Duration>,
 }
 
 impl Drawing {
@@ -194,27 +210,42 @@ impl Drawing {
         adaptive::submitted(state, screen, frame, &drawn);
         timed(state, screen, drawn.timed(screen, frame), cpu);
 
+        let changes = moving || measures || redraw == Redraw::Always;
+        let done = Submitted { plan, begin, measures, changes, has_run, scan };
+        self.after_frame(interface, state, engine, frame, &done)
+    }
+
+    /// Takes what a submitted frame has done, and draws what comes between frames. Returns the time until the next frame.
+    fn after_frame(
+        &mut self,
+        interface: Option<&mut Interface>,
+        state: &mut State,
+        engine: &mut Engine,
+        frame: Option<&BoundFrame>,
+        done: &Submitted,
+    ) -> Result<Option<Duration>, GpuError> {
+        let screen = &mut self.screen;
         answer(state, engine);
-        let reported = finished(state, engine, screen, frame, &mut self.is_first, begin)?;
+        let reported = finished(state, engine, screen, frame, &mut self.is_first, done.begin)?;
         let wait = match adaptive::draw_part(state, engine, screen)? {
             Step::Frame => Some(Duration::ZERO),
             Step::After(wait) => Some(wait),
             Step::Done => self.draw_background(interface.as_deref(), state, engine)?,
         };
-        let changes = moving || reported || measures || redraw == Redraw::Always;
-        if self.screen.has_more(frame, plan) || changes || has_unanswered(state, engine) || moves(state) {
-            if reported || measures {
+        let follows = self.screen.has_more(frame, done.plan) || reported || done.changes;
+        if follows || has_unanswered(state, engine) || moves(state) {
+            if reported || done.measures {
                 outdate(interface);
             }
             return Ok(Some(Duration::ZERO));
         }
         // The last frame before the window rests shows the panels as they are.
-        if std::mem::take(&mut state.checks.redraws) || !has_run {
+        if std::mem::take(&mut state.checks.redraws) || !done.has_run {
             outdate(interface);
             return Ok(Some(Duration::ZERO));
         }
         let delay = self.shown.delay.filter(|delay| *delay < NEVER);
-        let delay = delay.into_iter().chain(scan).min();
+        let delay = delay.into_iter().chain(done.scan).min();
         self.due = delay.map(|delay| Instant::now() + delay);
         Ok(wait.into_iter().chain(delay).min())
     }
