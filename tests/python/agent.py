@@ -112,6 +112,7 @@ async def measures(client, out):
     assert "Replaced" in text_of(await call(client, "render", mode="d", save="a/d.exr"))
     await call(client, "render", save="final.png")
     assert "equal" in text_of(await call(client, "diff", a="final.png", b="final.png"))
+    await refused(client, "open", ".toml", look=str(out / "final.png"))
     elsewhere = out.parent / "elsewhere.png"
     (out / "link.png").symlink_to(elsewhere)
     for name in ("../elsewhere.png", str(elsewhere), "link.png", "a.txt"):

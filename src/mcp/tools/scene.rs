@@ -17,7 +17,7 @@ pub static OPEN: Tool = Tool {
         let properties = json!({
             "model": text_argument("Path of a model, or the name of a built-in one"),
             "environment": text_argument("Path of an environment map, or a name"),
-            "look": text_argument("Path of a look file (.toml, or a PNG that Specula has written)"),
+            "look": text_argument("Path of a look file (.toml)"),
             "measured": text_argument("Path of a measured BRDF (MERL or UTIA)"),
         });
         (properties, &[])
@@ -85,6 +85,10 @@ struct Open {
 
 fn open(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     let Open { model, environment, look, measured } = read(arguments)?;
+    // A picture names a shader tree, too, and an agent edits no other tree than that which it was given.
+    if let Some(look) = look.as_ref().filter(|look| !look.to_lowercase().ends_with(".toml")) {
+        return Err(failed(format!("`look` is `{look}`: expected a .toml, since a picture would open its own shader tree")));
+    }
     // A look may name model and environment, which what is named here replaces.
     let asked = [("look", look), ("model", model), ("environment", environment), ("measured", measured)];
     let mut opened = Vec::new();
