@@ -16,9 +16,10 @@ const SIZE: &str = "640x360";
 /// Options of `mcp`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "An agent's program starts this command and talks to it on stdin and stdout, by the Model Context Protocol. Model and options choose the \
-    picture, as for `specula render`; the size is 640x360 without --size.\n\
-    Tools write to the files of the shader tree and to the output folder, nowhere else. Without --shaders, edits of the built-in shaders stay in memory."
+    after_help = "An agent's program starts this command and talks to it on stdin and stdout, by the Model Context Protocol. Model and \
+    options choose the picture, as for `specula render`; the size is 640x360 without --size.\n\
+    Tools write to the files of the shader tree and to the output folder, nowhere else. Without --shaders, edits of the built-in \
+    shaders stay in memory."
 )]
 pub struct Args {
     #[command(flatten)]
@@ -26,7 +27,7 @@ pub struct Args {
     /// Folder for pictures that the agent saves; without it, it saves none
     #[arg(long, value_name = "DIR")]
     out_folder: Option<PathBuf>,
-    /// Join the window that listens there, the --socket of `specula view`, instead of a picture without a window; the agent then works on what you see
+    /// Join the window that listens there, the --socket of `specula view`; the agent then works on the picture that you see
     #[arg(long, value_name = "NAME|PATH")]
     socket: Option<PathBuf>,
     #[command(flatten)]

@@ -21,13 +21,13 @@ const WITH_BATCHES: &str = "2025-03-26";
 /// Most calls at a time. Each has a thread.
 const MOST_CALLS: usize = 32;
 
-const INSTRUCTIONS: &str = "Specula renders a glTF model with a tree of GLSL shaders that you can read and edit. `render` shows you the picture, or one \
-    channel or term of the shading as a debug mode (`modes` lists them). `edit_shader` changes a file and returns the compiler's messages; the picture \
-    stays that of the last good shaders until the file compiles. `probe`, `trace` and `furnace` give numbers: values of a pixel, what each line of a \
-    shader computes there, and the energy of the BRDF. Pixels are counted from the upper left corner of a picture of the size that `render` has \
-    by default. World space is right-handed, +Y up, in meters.";
+const INSTRUCTIONS: &str = "Specula renders a glTF model with a tree of GLSL shaders that you can read and edit. `render` shows you the \
+    picture, or one channel or term of the shading as a debug mode (`modes` lists them). `edit_shader` changes a file and returns the \
+    compiler's messages; the picture stays that of the last good shaders until the file compiles. `probe`, `trace` and `furnace` give \
+    numbers: values of a pixel, what each line of a shader computes there, and the energy of the BRDF. Pixels are counted from the upper \
+    left corner of a picture of the size that `render` has by default. World space is right-handed, +Y up, in meters.";
 
-/// What the server is started with.
+/// Options of the server.
 pub struct Config {
     /// The program behind the tools.
     pub connection: Connection,

@@ -19,7 +19,8 @@ pub static RENDER: Tool = Tool {
     effect: Effect::Changes,
     schema: || {
         let properties = json!({
-            "mode": text_argument("Debug mode, such as `d` or `shading-normal` (`modes` lists them); without it, the one that is set: `final` at the start"),
+            "mode": text_argument("Debug mode, such as `d` or `shading-normal` (`modes` lists them); without it, the one that is set: \
+                `final` at the start"),
             "size": size("Width and height in pixels; without it, the size in which `probe` and `trace` count pixels"),
             "save": text_argument("File below the output folder: .png, or .exr or .npy for raw floats"),
         });
@@ -40,13 +41,13 @@ pub static MODES: Tool = Tool {
 pub static DIFF: Tool = Tool {
     name: "diff",
     title: "Compare two pictures",
-    doc: "Compares two pictures of the same size: the mean of FLIP (0 to 1, how different they look), the largest difference of a channel and its pixel, \
-        and a map of the differences.",
+    doc: "Compares two pictures of the same size: the mean of FLIP (0 to 1, how different they look), the largest difference of a channel \
+        and its pixel, and a map of the differences.",
     effect: Effect::Reads,
     schema: || {
         let picture = |which: &str| {
-            json!({ "type": ["integer", "string"], "description": format!("{which} picture: the number that `render` has \
-            told, or a file in the output folder") })
+            json!({ "type": ["integer", "string"], "description": format!("{which} picture: the number that `render` has told, or a file \
+                in the output folder") })
         };
         (json!({ "a": picture("First"), "b": picture("Second") }), &["a", "b"])
     },

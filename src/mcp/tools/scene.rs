@@ -10,8 +10,9 @@ use crate::mcp::program::Failure;
 pub static OPEN: Tool = Tool {
     name: "open",
     title: "Open a model or an environment",
-    doc: "Opens one or more files: a model (.gltf, .glb, .zip, or a built-in one such as `shader-ball`, `sphere-grid`, `metal-grid`, `clearcoat`), an environment that \
-        lights it (.hdr, .exr, `studio`, `sky`, `furnace`, `none`), a look (settings), or a measured BRDF. The shader tree stays.",
+    doc: "Opens one or more files: a model (.gltf, .glb, .zip, or a built-in one such as `shader-ball`, `sphere-grid`, `metal-grid`, \
+        `clearcoat`), an environment that lights it (.hdr, .exr, `studio`, `sky`, `furnace`, `none`), a look (settings), or a measured \
+        BRDF. The shader tree stays.",
     effect: Effect::Changes,
     schema: || {
         let properties = json!({
@@ -28,8 +29,8 @@ pub static OPEN: Tool = Tool {
 pub static SETTINGS: Tool = Tool {
     name: "settings",
     title: "List settings",
-    doc: "Lists settings with what each takes, its range, unit, meaning and present value; constants and parameters of the shaders are at the end. Name a part of the path or the \
-        meaning, such as `light` or `roughness`: there are hundreds.",
+    doc: "Lists settings with what each takes, its range, unit, meaning and present value; constants and parameters of the shaders are at \
+        the end. Name a part of the path or the meaning, such as `light` or `roughness`: there are hundreds.",
     effect: Effect::Reads,
     schema: || (json!({ "find": text_argument("Only settings whose path or meaning has this text") }), &[]),
     run: settings,
@@ -38,11 +39,12 @@ pub static SETTINGS: Tool = Tool {
 pub static SET: Tool = Tool {
     name: "set",
     title: "Change settings",
-    doc: "Changes settings, all or none, and says what each was before. Names are paths such as `view.ev`, `mode`, `material.roughness`, or constants and parameters of \
-        the shaders such as `NDF`. Colors are linear RGB.",
+    doc: "Changes settings, all or none, and says what each was before. Names are paths such as `view.ev`, `mode`, `material.roughness`, \
+        or constants and parameters of the shaders such as `NDF`. Colors are linear RGB.",
     effect: Effect::Changes,
     schema: || {
-        let values = json!({ "type": "object", "description": "Values by path, such as {\"material.enabled\": true, \"material.roughness\": 0.3, \"NDF\": \"Beckmann\"}" });
+        let values = json!({ "type": "object", "description": "Values by path, such as {\"material.enabled\": true, \
+            \"material.roughness\": 0.3, \"NDF\": \"Beckmann\"}" });
         (json!({ "values": values }), &["values"])
     },
     run: set,
@@ -51,12 +53,14 @@ pub static SET: Tool = Tool {
 pub static CAMERA: Tool = Tool {
     name: "camera",
     title: "Move the camera",
-    doc: "Moves the camera, or tells where it is. `frame`, `view`, `azimuth` and `elevation` frame the model; `eye` and `target` are points in world space, in meters, +Y up.",
+    doc: "Moves the camera, or tells where it is. `frame`, `view`, `azimuth` and `elevation` frame the model; `eye` and `target` are \
+        points in world space, in meters, +Y up.",
     effect: Effect::Changes,
     schema: || {
         let properties = json!({
             "frame": flag("Frame the whole model"),
-            "view": json!({ "type": "string", "enum": ["front", "back", "right", "left", "top", "bottom"], "description": "Frame the model from this side" }),
+            "view": json!({ "type": "string", "enum": ["front", "back", "right", "left", "top", "bottom"], "description": "Frame the model \
+                from this side" }),
             "azimuth": number("Angle around the model, degrees", -360.0, 360.0),
             "elevation": number("Angle above the horizon, degrees", -90.0, 90.0),
             "eye": vector("Position of the camera, meters"),
@@ -87,7 +91,9 @@ fn open(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     let Open { model, environment, look, measured } = read(arguments)?;
     // A picture names a shader tree, too, and an agent edits no other tree than that which it was given.
     if let Some(look) = look.as_ref().filter(|look| !look.to_lowercase().ends_with(".toml")) {
-        return Err(failed(format!("`look` is `{look}`: expected a .toml, since a picture would open its own shader tree")));
+        return Err(failed(format!(
+            "`look` is `{look}`: expected a .toml, since a picture would open its own shader tree"
+        )));
     }
     // A look may name model and environment, which what is named here replaces.
     let asked = [("look", look), ("model", model), ("environment", environment), ("measured", measured)];

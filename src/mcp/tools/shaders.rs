@@ -31,8 +31,9 @@ pub static READ_SHADER: Tool = Tool {
 pub static EDIT_SHADER: Tool = Tool {
     name: "edit_shader",
     title: "Edit a shader",
-    doc: "Changes a file of the shader tree, on disk, and compiles it. Give `old` and `new`: `old` must be in the file exactly once; or `text`, the whole file, which \
-        makes a new one as well. The answer shows what changed, or the compiler's messages with the line and a caret; the picture then stays that of the last good shaders.",
+    doc: "Changes a file of the shader tree, on disk, and compiles it. Give `old` and `new`: `old` must be in the file exactly once; or \
+        `text`, the whole file, which makes a new one as well. The answer shows what changed, or the compiler's messages with the line and \
+        a caret; the picture then stays that of the last good shaders.",
     effect: Effect::Writes,
     schema: || {
         let properties = json!({
@@ -49,8 +50,9 @@ pub static EDIT_SHADER: Tool = Tool {
 pub static CHECK: Tool = Tool {
     name: "check",
     title: "Check all shaders",
-    doc: "Compiles every file of the tree and lists errors and warnings. With `assertions`, it also draws the picture and lists each `assert()` that fails and each `print()`; with \
-        `undefined`, operations whose result GLSL leaves open as well, such as a division by zero.",
+    doc: "Compiles every file of the tree and lists errors and warnings. With `assertions`, it also draws the picture and lists each \
+        `assert()` that fails and each `print()`; with `undefined`, operations whose result GLSL leaves open as well, such as a division \
+        by zero.",
     effect: Effect::Reads,
     schema: || {
         let properties = json!({

@@ -8,7 +8,7 @@ use crate::mcp::places::Places;
 use crate::mcp::program::{Call, Failure};
 use crate::mcp::shared::Shared;
 
-/// What a tool may do, for clients that ask their user before.
+/// The effect of a tool, for clients that ask their user before.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// It changes nothing.

@@ -9,8 +9,8 @@ use super::tool::{Caller, Content, Effect, Tool, text};
 pub static PROBE: Tool = Tool {
     name: "probe",
     title: "Read a pixel",
-    doc: "Returns the raw values of a pixel in debug modes: world space, before exposure and tone map. [r, g, b, coverage], a name or a number; null where a mode has no data. Pixels are those of \
-        the picture that the program shows, whose size is in the answer.",
+    doc: "Returns the raw values of a pixel in debug modes: world space, before exposure and tone map. [r, g, b, coverage], a name or a \
+        number; null where a mode has no data. Pixels are those of the picture that the program shows, whose size is in the answer.",
     effect: Effect::Reads,
     schema: || {
         let properties = json!({
@@ -26,7 +26,8 @@ pub static PROBE: Tool = Tool {
 pub static TRACE: Tool = Tool {
     name: "trace",
     title: "Trace a pixel",
-    doc: "Runs the shaders at a pixel with a log, and shows each line of a file with the values that its statements compute there. It finds the line where a value goes wrong.",
+    doc: "Runs the shaders at a pixel with a log, and shows each line of a file with the values that its statements compute there. It \
+        finds the line where a value goes wrong.",
     effect: Effect::Reads,
     schema: || {
         let properties = json!({
@@ -43,7 +44,8 @@ pub static TRACE: Tool = Tool {
 pub static FURNACE: Tool = Tool {
     name: "furnace",
     title: "Measure the energy of the BRDF",
-    doc: "Measures the directional albedo of the BRDF under uniform white light, by roughness and angle: 1 keeps all energy, more than 1.005 creates some, which is a mistake.",
+    doc: "Measures the directional albedo of the BRDF under uniform white light, by roughness and angle: 1 keeps all energy, more than \
+        1.005 creates some, which is a mistake.",
     effect: Effect::Reads,
     schema: || {
         let properties = json!({
