@@ -15,8 +15,9 @@ PACKAGES_PLAY=(
     libvulkan1 mesa-vulkan-drivers
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
-# To test: validation layers, an X server for the window tests, an editor for the language server, and environments for Python.
-PACKAGES_TEST=(neovim python3-venv vulkan-validationlayers xauth xdotool xvfb)
+# To test: validation layers, an X server for the window tests, a browser for reports, an editor for the language server, and environments
+# for Python.
+PACKAGES_TEST=(chromium chromium-driver neovim python3-venv vulkan-validationlayers xauth xdotool xvfb)
 
 say() { printf '%s\n' "specula: $*" >&2; }
 
