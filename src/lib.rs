@@ -24,6 +24,7 @@
 //! - [`picture`], [`picture_difference`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
 //! - [`lsp`]: a language server for editors.
+//! - [`mcp`]: a server for agents.
 //! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - [`capture`]: contact sheets and animations of many pictures.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
@@ -53,6 +54,7 @@ pub mod headless;
 pub mod interface;
 pub mod learn;
 pub mod lsp;
+pub mod mcp;
 pub mod measure;
 pub mod message;
 pub mod picture;

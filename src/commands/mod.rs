@@ -16,6 +16,7 @@ mod info;
 mod learn;
 mod limits;
 mod lsp;
+mod mcp;
 mod modes;
 mod new;
 mod output;
@@ -88,6 +89,8 @@ enum Command {
     Trace(trace::Args),
     /// Serve an editor: errors, completion, hover, rename and values at a pixel (language server on stdio)
     Lsp(lsp::Args),
+    /// Serve an agent: render and see pictures, edit shaders, read values (Model Context Protocol on stdio)
+    Mcp(mcp::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
 }
@@ -153,6 +156,7 @@ fn main(start: Instant) -> u8 {
         Some(Command::Probe(args)) => probe::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Lsp(args)) => lsp::run(args),
+        Some(Command::Mcp(args)) => mcp::run(args),
         Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
     flush_output();

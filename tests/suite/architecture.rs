@@ -20,7 +20,7 @@ const LAYERS: &[&[&str]] = &[
     &["pipeline", "session"],
     &["render"],
     &["fuzz", "headless", "measure", "picture"],
-    &["capture", "learn", "lsp", "write_back"],
+    &["capture", "learn", "lsp", "mcp", "write_back"],
     &["events", "threads"],
     &["app"],
 ];
