@@ -121,9 +121,9 @@ impl Captures {
         self.running.iter().filter(|running| running.number == number).for_each(Running::cancel);
     }
 
-    /// Ends the capture of the command with this identifier. Returns whether there is one.
+    /// Ends the capture of the command with this identifier. Returns whether there is one that goes on.
     pub(in crate::app) fn cancel_of(&self, id: &Value) -> bool {
-        let found = self.running.iter().filter(|running| running.id == *id);
+        let found = self.running.iter().filter(|running| running.id == *id && !running.is_canceled());
         found.map(Running::cancel).count() > 0
     }
 
