@@ -9,6 +9,7 @@ use super::frames::draw::Drawing;
 use super::state::State;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, fault};
+use crate::process_end::end_process;
 
 /// How long closing may take. A capture ends the picture that it is drawing, which can take long on a software device.
 const CLOSING: Duration = Duration::from_secs(20);
@@ -57,7 +58,7 @@ fn end_within(time: Duration) {
         std::thread::sleep(time);
         crate::message::warn("a thread did not end with the session, so the program ends without it");
         let _unfinished = crate::picture::remove_unfinished();
-        std::process::exit(0);
+        end_process(0);
     };
     // Without this thread, closing waits as long as it takes.
     let _ = std::thread::Builder::new().name("specula-closing".to_owned()).spawn(end);

@@ -16,6 +16,7 @@ mod info;
 mod learn;
 mod limits;
 mod lsp;
+mod mcp;
 mod modes;
 mod new;
 mod output;
@@ -29,11 +30,10 @@ mod view;
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal as _};
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use specula::message::{lost_output, tell};
+use specula::message::{flush_output, lost_output, tell};
 
 pub use failure::Failure;
 pub use output::{print_diagnostics, print_json, tell_left_out};
@@ -89,19 +89,23 @@ enum Command {
     Trace(trace::Args),
     /// Serve an editor: errors, completion, hover, rename and values at a pixel (language server on stdio)
     Lsp(lsp::Args),
+    /// Serve an agent: render and see pictures, edit shaders, read values (Model Context Protocol on stdio)
+    Mcp(mcp::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
 }
 
-/// Runs the program.
-pub fn start() -> ExitCode {
+/// Runs the program. Returns its exit code.
+pub fn start() -> u8 {
     let start = Instant::now();
-    limits::check_stack().map_or_else(|failure| end(&failure), |()| main(start))
+    let code = limits::check_stack().map_or_else(|failure| end(&failure), |()| main(start));
+    flush_output();
+    code
 }
 
 /// Not inlined, since its arguments alone may need more stack than there is.
 #[inline(never)]
-fn main(start: Instant) -> ExitCode {
+fn main(start: Instant) -> u8 {
     use tracing_subscriber::EnvFilter;
     specula::gpu::return_large_blocks();
     // winit warns of every oddity of a display at every start.
@@ -126,7 +130,7 @@ fn main(start: Instant) -> ExitCode {
                     Err(lost) if !error.use_stderr() && lost.kind() != ErrorKind::BrokenPipe => {
                         end(&output_is_lost(&lost))
                     }
-                    _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+                    _ => u8::try_from(error.exit_code()).unwrap_or(2),
                 },
             };
         }
@@ -152,10 +156,12 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Probe(args)) => probe::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Lsp(args)) => lsp::run(args),
+        Some(Command::Mcp(args)) => mcp::run(args),
         Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
+    flush_output();
     let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));
-    result.map_or_else(|failure| end(&failure), |()| ExitCode::SUCCESS)
+    result.map_or_else(|failure| end(&failure), |()| 0)
 }
 
 fn output_is_lost(why: &dyn Display) -> Failure {
@@ -163,7 +169,7 @@ fn output_is_lost(why: &dyn Display) -> Failure {
 }
 
 /// Prints why the program ends.
-fn end(failure: &Failure) -> ExitCode {
+fn end(failure: &Failure) -> u8 {
     match failure {
         Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => tell(message),
         Failure::Shaders(diagnostics) => print_diagnostics(diagnostics),

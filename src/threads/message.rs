@@ -22,7 +22,7 @@ use crate::render::PathTracingKey;
 use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::write_back::{TreeFile, Written};
 
@@ -63,8 +63,10 @@ pub(crate) enum Message {
     NotFinite(u64, Box<NotFinite>),
     /// The trace of a file at the pinned pixel, for the request with this number.
     Traced(u64, Box<Traced>),
-    /// The same in an older version of the shaders.
-    TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
+    /// The same in an older version of the shaders; `None` if that cannot be traced.
+    TracedBefore(u64, Option<Box<(Arc<ShaderSet>, Trace)>>),
+    /// The values around the pinned pixel, or why there are none, for the request with this number.
+    TracedAround(u64, Box<Result<Neighborhood, String>>),
     /// A trace for another program, for the request with this number.
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.

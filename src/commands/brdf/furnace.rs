@@ -2,6 +2,7 @@
 
 use specula::measure::{Furnace, Surface};
 
+use super::furnace_page::fill;
 use super::options::{Opened, Options, SurfaceOptions, listed, short};
 use crate::commands::{Failure, print_json};
 
@@ -38,6 +39,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let broken = claims && !conserves;
+    opened.report(&args.options, "White furnace", |report| fill(report, &found, surface))?;
     drop(found);
     opened.close()?;
     if broken {

@@ -28,6 +28,9 @@ pub struct Args {
     /// Page of a sheet
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "dark")]
     pub(super) page: Page,
+    /// Write a page of HTML with the pictures of a sheet, too: to enlarge, and to compare two of them
+    #[arg(long, value_name = "FILE.html", conflicts_with = "turntable")]
+    pub(super) report: Option<PathBuf>,
     /// Size of each picture on a sheet in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
     pub(super) tile: (u32, u32),

@@ -12,6 +12,7 @@ use specula::app::{self, AppError, AppOptions, OtherPicture};
 use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
+use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, RecoveryState, SessionState};
 use specula::scene::LoadOptions;
 use specula::shader::Source;
@@ -189,7 +190,7 @@ fn open(args: Args, start: Instant, folder: Option<PathBuf>, front: Front) -> Re
     ended.map_err(|error| match error {
         AppError::Gpu(GpuError::DeviceLost(_)) if is_supervised => {
             message::tell(error);
-            end_now(LOST)
+            end_process(LOST)
         }
         AppError::Validation(_) => Failure::Input(error.to_string()),
         AppError::Size(..) => Failure::Usage(error.to_string()),
@@ -203,13 +204,5 @@ fn end_of_device(what: &str, limit: Duration) -> ! {
         "the graphics device has not finished {what} within {} s (`--timeout SECONDS`)",
         limit.as_secs()
     ));
-    end_now(HUNG)
-}
-
-/// Ends the process without destructors, which would wait for the device, and while other threads may be in the driver.
-fn end_now(code: u8) -> ! {
-    #[cfg(unix)]
-    signal_hook::low_level::exit(code.into());
-    #[cfg(not(unix))]
-    std::process::exit(code.into());
+    end_process(HUNG)
 }

@@ -13,6 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use specula::control::remove_sockets;
 use specula::message;
+use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
 
 use crate::commands::Failure;
@@ -101,7 +102,7 @@ pub fn end() {
     clean_up();
     #[cfg(unix)]
     let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
-    std::process::exit(1);
+    end_process(1);
 }
 
 /// Removes the sockets, and the folder of the session if this process is the child, before a signal ends it.

@@ -1,6 +1,7 @@
 //! Shared by the tests: one device and compiler for all of them, shader trees that can be edited, models
 //! made in code, and the program as a child process.
 
+pub mod browser;
 mod damage;
 pub mod glb;
 pub mod hdr;
