@@ -83,6 +83,10 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
                 state.recent.forget(Kind::Model, path);
             }
             state.waiting.model_failed(&message);
+            if !state.has_window && state.session.model().is_none() {
+                // No picture of a program's is one without the model that it has asked for.
+                state.fatal = Some(message.clone());
+            }
             state.say(message);
             // The load that failed has ended the one that was decoding the textures of the model on screen.
             if state.model.awaits.take().is_some_and(|number| number != loaded.number) {
