@@ -13,9 +13,6 @@ pub enum AppError {
     /// A picture that the device cannot draw.
     #[error("--size {0}x{1}: this device draws 1 to {2} pixels a side")]
     Size(u32, u32, u32),
-    /// The model of the start does not load. The message has been told.
-    #[error("{0}")]
-    Model(String),
     /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),

@@ -66,9 +66,6 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), AppErro
         if knows_names(state, engine) {
             early.drain(..).for_each(|asked| on_message(state, engine, Message::Asked(asked)));
         }
-        if let Some(message) = state.fatal.take() {
-            return Err(AppError::Model(message));
-        }
         if state.quit || state.quits_by_hand {
             return Ok(());
         }

@@ -70,6 +70,9 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
     let settled = is_settled(state, engine);
     for (reply, until) in state.waiting.take() {
         match until {
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) if lacks_model(state) => {
+                reply.error(state.model.failure.clone().unwrap_or_default());
+            }
             Until::Settled(result) if settled => reply.done(result(state)),
             Until::Compared(result) if settled && state.compare.is_drawn() => reply.done(result(state)),
             Until::Found(result) => match result(state) {
@@ -118,7 +121,7 @@ pub(in crate::app) fn has_unanswered(state: &State, engine: &Engine) -> bool {
 
 /// The pictures of the screen that can be taken now: its frame is final.
 pub(in crate::app) fn take_shots(state: &mut State, engine: &Engine) -> Vec<Shot> {
-    if !is_settled(state, engine) {
+    if !is_settled(state, engine) || lacks_model(state) {
         return Vec::new();
     }
     std::iter::from_fn(|| state.waiting.take_shot()).collect()
@@ -127,6 +130,11 @@ pub(in crate::app) fn take_shots(state: &mut State, engine: &Engine) -> Vec<Shot
 /// Whether a picture of the window can be taken now.
 pub(in crate::app) fn wants_window(state: &State, engine: &Engine) -> bool {
     is_settled(state, engine) && state.waiting.wants_window()
+}
+
+/// Whether the model of a session without a window could not be loaded. A program would take an empty picture for the model's; a user sees why.
+fn lacks_model(state: &State) -> bool {
+    !state.has_window && state.model.failure.is_some() && !state.model.loading
 }
 
 /// Whether there are no shaders, and an edit is needed before there are.

@@ -181,8 +181,6 @@ pub(super) struct State {
     /// Files that are opened and not read yet.
     pub(super) opened: Opened,
     pub(super) screenshot: bool,
-    /// Why a session without a window cannot go on.
-    pub(super) fatal: Option<String>,
     /// Whether the window closes.
     pub(super) quit: bool,
     /// Whether the user has asked for that. Then unsaved text may keep the window open.
@@ -248,7 +246,6 @@ impl State {
             listing: Listing::default(),
             opened: Opened::default(),
             screenshot: false,
-            fatal: None,
             quit: false,
             quits_by_hand: false,
             device: String::new(),

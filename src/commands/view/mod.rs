@@ -198,7 +198,6 @@ fn open(args: Args, start: Instant, folder: Option<PathBuf>, front: Front) -> Re
             end_process(LOST)
         }
         AppError::Validation(_) => Failure::Input(error.to_string()),
-        AppError::Model(_) => Failure::Printed,
         AppError::Size(..) => Failure::Usage(error.to_string()),
         AppError::NoDisplay(_) | AppError::Gpu(_) => Failure::Device(error.to_string()),
     })

@@ -421,9 +421,18 @@ fn a_wrong_start_is_told() {
     let start = |options: &[&str]| finish(Served::command(&tree, options).stdin(Stdio::null()));
     start(&["--size", "96x64", "--mode", "final", "--set", "view.evv=1"]).expect(2, &["view.evv"]);
     start(&["nothing.glb"]).expect(1, &["nothing.glb"]);
-    std::fs::write(tree.beside("bad.glb"), "glTF").unwrap();
-    // While its input goes on.
-    finish(&mut Served::command(&tree, &["bad.glb", "--size", "96x64"])).expect(1, &["bad.glb"]);
     start(&["--size", "100000x64"]).expect(2, &["--size 100000x64", "draws 1 to"]);
     start(&["--device", "abacus"]).expect(3, &["abacus"]);
+}
+
+#[test]
+fn there_is_no_picture_without_the_model_that_was_asked_for() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("bad.glb"), "glTF").unwrap();
+    let mut served = Served::start(tree, &["bad.glb"]);
+    let why = served.running.refused(json!({"command": "picture", "file": "a.npy"}));
+    assert!(why.contains("bad.glb"), "{why}");
+    served.running.done(json!({"command": "open", "model": "sphere-grid"}));
+    served.picture("a.npy", &json!({}));
+    served.quit();
 }
