@@ -4,6 +4,7 @@
 //! Each module imports only from modules above it in this list:
 //!
 //! - [`cpu_clock`]: CPU time of a thread.
+//! - [`statistics`]: how certain the difference of two times is.
 //! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`interface`]: the contract between Rust and GLSL.
@@ -64,5 +65,6 @@ pub mod session;
 pub mod settings;
 pub mod shader;
 mod state_folder;
+pub mod statistics;
 mod threads;
 pub mod write_back;
