@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, checks, compare, file, history, layout, modes, numbers, playback, program, scene, settings,
+    camera, capture, checks, compare, costs, file, history, layout, modes, numbers, playback, program, scene, settings,
     shaders, source,
 };
 use crate::app::palette::entries::{entries, entry_with};
@@ -62,6 +62,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &source::SAVE_FILE,
     &checks::CHECKS,
     &checks::SHOW_FAILURE,
+    &costs::COST,
     &source::CHOOSE_STAGE,
     &source::PINNED,
     &source::TRACE,

@@ -2,6 +2,7 @@
 
 mod code;
 mod colors;
+mod cost;
 mod edit;
 mod find;
 mod head;

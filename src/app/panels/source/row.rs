@@ -6,6 +6,7 @@ use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
 use super::colors::{ROW, colored};
+use super::cost;
 use super::find::Find;
 use super::hover;
 use super::model::{CodeLine, CodeModel, Shown};
@@ -109,6 +110,7 @@ fn show_line(
     let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity, None));
     let code_end = left + galley.size().x;
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
+    cost::show(ui, state, (path, row.line), rect, code_end);
     gutter(ui, line, sight, background, look);
     if let Some(include) = &line.include {
         include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);
