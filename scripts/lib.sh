@@ -15,8 +15,9 @@ PACKAGES_PLAY=(
     libvulkan1 mesa-vulkan-drivers
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
-# To test: validation layers, an X server for the window tests, and an editor for the language server.
-PACKAGES_TEST=(neovim vulkan-validationlayers xauth xdotool xvfb)
+# To test: validation layers, an X server for the window tests, a browser for reports, an editor for the language server, and environments
+# for Python.
+PACKAGES_TEST=(chromium chromium-driver neovim python3-venv vulkan-validationlayers xauth xdotool xvfb)
 
 say() { printf '%s\n' "specula: $*" >&2; }
 
@@ -103,6 +104,27 @@ ensure_lints() {
     rustup component add clippy rustfmt >&2 || die "rustup could not add clippy and rustfmt; see its message above"
 }
 
+# Prints the folder that caches what is costly to make between checkouts.
+cache_folder() { printf '%s\n' "${SPECULA_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/specula}"; }
+
+# Prints the interpreter of the environment in which the tests of the Python package run, and makes the environment if it is not there: one for
+# each list of packages and version of Python. pip and its registry are those of the system.
+ensure_python() {
+    local list=$ROOT/tests/python/requirements.txt folder
+    folder=$(cache_folder)/python-$(python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')-$(sha256sum "$list" | cut -c 1-16)
+    mkdir -p "$(dirname "$folder")"
+    (
+        flock 9
+        [ ! -e "$folder/ready" ] || exit 0
+        say "installing the Python packages of the tests in $folder"
+        rm -rf "$folder"
+        python3 -m venv "$folder" >&2 || die "python3 lacks its module venv; on Debian: apt-get install python3-venv"
+        "$folder/bin/pip" install --quiet --disable-pip-version-check -r "$list" >&2 || die "pip could not install tests/python/requirements.txt"
+        touch "$folder/ready"
+    ) 9>"$folder.lock" || exit 1
+    printf '%s\n' "$folder/bin/python"
+}
+
 # Prints the newest shaderc library that cargo has built in this target folder.
 built_shaderc() {
     local lib newest=
@@ -119,7 +141,7 @@ shaderc_cache() {
     local version gxx
     version=$(sed -n '/^name = "shaderc-sys"$/{n;s/^version = "\(.*\)"$/\1/p;}' "$ROOT/Cargo.lock")
     gxx=$(g++ -dumpversion 2>/dev/null | cut -d . -f 1)
-    printf '%s\n' "${SPECULA_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/specula}/shaderc-$version-$(host_triple)-g++$gxx"
+    printf '%s\n' "$(cache_folder)/shaderc-$version-$(host_triple)-g++$gxx"
 }
 
 # Sets SHADERC_CONFIG: cargo options that link the cached shaderc library instead of building it.

@@ -4,9 +4,11 @@
 //! Each module imports only from modules above it in this list:
 //!
 //! - [`cpu_clock`]: CPU time of a thread.
+//! - [`process_end`]: ends the process while its threads run.
 //! - [`statistics`]: how certain the difference of two times is.
 //! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
+//! - [`report`]: pages of HTML about a result.
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: all settings of the user.
 //! - [`shader`]: compiles files to SPIR-V. Has no device and no scene.
@@ -23,6 +25,7 @@
 //! - [`picture`], [`picture_difference`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
 //! - [`lsp`]: a language server for editors.
+//! - [`mcp`]: a server for agents.
 //! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - [`capture`]: contact sheets and animations of many pictures.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
@@ -52,14 +55,17 @@ pub mod headless;
 pub mod interface;
 pub mod learn;
 pub mod lsp;
+pub mod mcp;
 pub mod measure;
 pub mod message;
 pub mod picture;
 pub mod picture_difference;
 pub mod pipeline;
+pub mod process_end;
 pub mod recovery;
 mod regular_file;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod settings;

@@ -2,8 +2,7 @@
 
 mod commands;
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    commands::start()
+fn main() {
+    // Threads may be in the compiler or in the driver.
+    specula::process_end::end_process(commands::start())
 }

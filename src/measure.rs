@@ -1,12 +1,14 @@
 //! Measures the BRDF of the user's shaders on the device: albedo, reciprocity, the integral of D, lobes.
 
 mod curves;
+mod furnace;
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
 pub use curves::{Curves, Hemisphere, Material, prepare};
+pub use furnace::{Furnace, extremes};
 
 use crate::frame::stages::MEASURE_STAGES;
 use crate::frame::{BakeValues, PipelineRequest, TablesKey, TargetFormat};

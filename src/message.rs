@@ -104,7 +104,16 @@ static LOST_OUTPUT: OnceLock<String> = OnceLock::new();
 /// for [`lost_output`].
 pub fn print_output(text: &str) {
     let _guard = without_status();
-    if let Err(error) = writeln!(stdout().lock(), "{text}")
+    keep_loss(writeln!(stdout().lock(), "{text}"));
+}
+
+/// Writes what stdout has buffered. A failure is kept for [`lost_output`].
+pub fn flush_output() {
+    keep_loss(stdout().flush());
+}
+
+fn keep_loss(result: std::io::Result<()>) {
+    if let Err(error) = result
         && error.kind() != ErrorKind::BrokenPipe
     {
         let _ = LOST_OUTPUT.set(error.to_string());

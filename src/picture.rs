@@ -1,6 +1,7 @@
-//! Captured frames as files: PNG for the picture, EXR for the raw values behind it.
+//! Captured frames as files: PNG for the picture, EXR for the raw values behind it, and NumPy arrays of either.
 
 mod look;
+mod npy;
 mod part;
 
 use std::fs::{File, OpenOptions};
@@ -18,12 +19,53 @@ pub use part::{Halt, remove_unfinished};
 /// Linux gives up after this many symbolic links, too.
 const MAX_LINKS: usize = 40;
 
+/// The form of a picture in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// Display colors, with the settings.
+    Png,
+    /// Raw values.
+    Exr,
+    /// A NumPy array: of raw values, or of display colors.
+    Npy {
+        /// Whether the values are raw, 32-bit floats.
+        raw: bool,
+    },
+}
+
+impl Encoding {
+    /// The encoding that the extension of `path` names. An array has raw values.
+    ///
+    /// # Errors
+    /// The file extension is none of .png, .exr and .npy.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        Self::named(&ending)
+            .ok_or_else(|| format!("cannot write {}: the file must end in .png, .exr or .npy", path.display()))
+    }
+
+    /// The encoding with this file extension.
+    pub fn named(ending: &str) -> Option<Self> {
+        match ending {
+            "png" => Some(Self::Png),
+            "exr" => Some(Self::Exr),
+            "npy" => Some(Self::Npy { raw: true }),
+            _ => None,
+        }
+    }
+
+    /// Whether it holds linear light, before the tone map.
+    pub fn holds_light(self) -> bool {
+        matches!(self, Self::Exr | Self::Npy { raw: true })
+    }
+}
+
 /// Fails if no picture format has the extension of `path`.
 ///
 /// # Errors
-/// The file extension is neither .png nor .exr.
+/// As [`Encoding::of`].
 pub fn check_ending(path: &Path) -> Result<(), String> {
-    format_of(path).map(|_| ())
+    Encoding::of(path).map(|_| ())
 }
 
 /// Writes a capture to the next free [`numbered`] path, with its settings and files. Returns the path.
@@ -49,9 +91,17 @@ pub fn numbered_as(stem: &str, ending: &str) -> PathBuf {
 /// Fails before any work if no picture can be written to `path`.
 ///
 /// # Errors
-/// The file extension is neither .png nor .exr, the folder does not exist, or `path` is a folder.
+/// As [`Encoding::of`] and [`check_place`].
 pub fn check_path(path: &Path) -> Result<(), String> {
-    format_of(path)?;
+    check_ending(path)?;
+    check_place(path)
+}
+
+/// Fails if no file can be written to `path`, whatever its extension.
+///
+/// # Errors
+/// The folder does not exist, or `path` is a folder.
+pub fn check_place(path: &Path) -> Result<(), String> {
     let cannot = |why: String| Err(format!("cannot write {}: {why}", path.display()));
     if path.is_dir() {
         return cannot("it is a folder".to_owned());
@@ -61,7 +111,7 @@ pub fn check_path(path: &Path) -> Result<(), String> {
         Err(error) => return cannot(error.to_string()),
     };
     match target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        Some(folder) if !is_stream(path) && !folder.is_dir() => {
+        Some(folder) if !is_stream(path) && !is_descriptor(path) && !folder.is_dir() => {
             cannot(format!("there is no folder {}", folder.display()))
         }
         _ => Ok(()),
@@ -75,20 +125,34 @@ pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     out.with_extension(format!("{}.{ending}", slug.replace(':', "-")))
 }
 
-/// Writes a capture to a file, as [`write_image`] does: a PNG gets 8-bit color with the settings and files, an EXR the raw
+/// Writes a capture to a file, as [`write_image`] does: a PNG gets 8-bit color with the settings and files, an EXR or an array the raw
 /// values.
 ///
 /// # Errors
 /// As [`write_image`].
 pub fn write(capture: &Capture, work: &SessionState, path: &Path) -> Result<(), String> {
+    write_as(capture, work, path, Encoding::of(path)?)
+}
+
+/// [`write()`] with an encoding that the extension need not name.
+///
+/// # Errors
+/// The system cannot write it.
+pub fn write_as(capture: &Capture, work: &SessionState, path: &Path, encoding: Encoding) -> Result<(), String> {
     let cannot = |why: String| format!("cannot write {}: {why}", path.display());
-    if format_of(path)? == ImageFormat::Png {
-        let bytes = look::encode(capture, work, path.parent().unwrap_or(Path::new(""))).map_err(cannot)?;
-        return write_bytes(&bytes, path).map_err(|e| cannot(e.to_string()));
-    }
-    let floats = capture.raw.iter().flatten().copied().collect();
-    let image = ImageBuffer::from_raw(capture.width, capture.height, floats).map(DynamicImage::ImageRgba32F);
-    write_image(&image.ok_or_else(|| cannot("the picture's size does not match its pixels".to_owned()))?, path)
+    let size = (capture.width, capture.height);
+    let bytes = match encoding {
+        Encoding::Png => look::encode(capture, work, path.parent().unwrap_or(Path::new(""))).map_err(cannot)?,
+        Encoding::Npy { raw: true } => npy::of_floats(size, &capture.raw),
+        Encoding::Npy { raw: false } => npy::of_bytes(size, &capture.rgba8),
+        Encoding::Exr => {
+            let floats = capture.raw.iter().flatten().copied().collect();
+            let image = ImageBuffer::from_raw(capture.width, capture.height, floats).map(DynamicImage::ImageRgba32F);
+            let image = image.ok_or_else(|| cannot("the picture's size does not match its pixels".to_owned()))?;
+            encoded(&image, ImageFormat::OpenExr).map_err(cannot)?
+        }
+    };
+    write_bytes(&bytes, path).map_err(|e| cannot(e.to_string()))
 }
 
 /// Writes an image whole: to a temporary file beside `path`, which then takes the name, so that no reader ever sees half a
@@ -96,12 +160,26 @@ pub fn write(capture: &Capture, work: &SessionState, path: &Path) -> Result<(), 
 /// pipe or a device is written to directly.
 ///
 /// # Errors
-/// The file extension is neither .png nor .exr, the format cannot hold the image, or the system cannot write it.
+/// No picture format has the file extension, the format cannot hold the image, or the system cannot write it.
 pub fn write_image(image: &DynamicImage, path: &Path) -> Result<(), String> {
     let cannot = |why: String| format!("cannot write {}: {why}", path.display());
+    let size = (image.width(), image.height());
+    let bytes = match (Encoding::of(path)?, image) {
+        (Encoding::Png, _) => encoded(image, ImageFormat::Png).map_err(cannot)?,
+        (Encoding::Exr, _) => encoded(image, ImageFormat::OpenExr).map_err(cannot)?,
+        (Encoding::Npy { .. }, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) => {
+            let pixels: Vec<[f32; 4]> = image.to_rgba32f().pixels().map(|pixel| pixel.0).collect();
+            npy::of_floats(size, &pixels)
+        }
+        (Encoding::Npy { .. }, _) => npy::of_bytes(size, image.to_rgba8().as_raw()),
+    };
+    write_bytes(&bytes, path).map_err(|e| cannot(e.to_string()))
+}
+
+fn encoded(image: &DynamicImage, format: ImageFormat) -> Result<Vec<u8>, String> {
     let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, format_of(path)?).map_err(|e| cannot(e.to_string()))?;
-    write_bytes(bytes.get_ref(), path).map_err(|e| cannot(e.to_string()))
+    image.write_to(&mut bytes, format).map_err(|error| error.to_string())?;
+    Ok(bytes.into_inner())
 }
 
 /// Replaces the content of a file at once, through symbolic links, with the permissions that it has.
@@ -138,6 +216,9 @@ impl Replacement {
 }
 
 fn write_bytes(bytes: &[u8], path: &Path) -> io::Result<()> {
+    if is_descriptor(path) {
+        return OpenOptions::new().write(true).truncate(true).open(path)?.write_all(bytes);
+    }
     if is_stream(path) {
         let _reader = open_pipe(path)?;
         return OpenOptions::new().write(true).open(path)?.write_all(bytes);
@@ -160,6 +241,11 @@ fn open_pipe(path: &Path) -> io::Result<Option<File>> {
     Ok(None)
 }
 
+/// Whether `path` names an open file of this process by its number. Such a file need not have a name of its own, as one in memory.
+fn is_descriptor(path: &Path) -> bool {
+    ["/proc/self/fd", "/dev/fd"].iter().any(|folder| path.parent() == Some(Path::new(folder))) && !is_stream(path)
+}
+
 /// Whether `path` leads to a pipe, a device or a socket.
 fn is_stream(path: &Path) -> bool {
     path.metadata().is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
@@ -180,14 +266,5 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
 
 /// Whether a file with this name holds linear light, before the tone map.
 pub fn holds_light(path: &Path) -> bool {
-    matches!(format_of(path), Ok(ImageFormat::OpenExr))
-}
-
-fn format_of(path: &Path) -> Result<ImageFormat, String> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match ending.as_str() {
-        "png" => Ok(ImageFormat::Png),
-        "exr" => Ok(ImageFormat::OpenExr),
-        _ => Err(format!("cannot write {}: the file must end in .png or .exr", path.display())),
-    }
+    Encoding::of(path).is_ok_and(Encoding::holds_light)
 }

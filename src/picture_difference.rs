@@ -9,6 +9,7 @@ use std::path::Path;
 
 use image::{DynamicImage, Rgb32FImage, RgbImage, Rgba32FImage, RgbaImage};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
+use serde_json::{Value, json};
 
 pub use still::Still;
 
@@ -66,6 +67,15 @@ pub enum Measure {
     Flip,
     /// Root mean square of the difference over all pixels and channels, in the pictures' unit.
     Rmse,
+}
+
+/// The largest differences that pass.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Limits {
+    /// Largest [`Comparison::error`].
+    pub max: f64,
+    /// Largest [`Comparison::largest`], if that has a limit.
+    pub max_channel: Option<f64>,
 }
 
 /// The comparison of two pictures of the same size.
@@ -131,10 +141,35 @@ impl Comparison {
         })
     }
 
+    /// Whether no difference is above the limits.
+    pub fn passes(&self, limits: Limits) -> bool {
+        self.error <= limits.max && limits.max_channel.is_none_or(|most| self.largest <= most)
+    }
+
     /// The difference per pixel: FLIP in magma colors for display-encoded pictures, |a - b| for raw ones.
     pub fn map(&self) -> &DynamicImage {
         &self.map
     }
+}
+
+/// A comparison, or why there is none, as `specula diff --json` lists it.
+pub fn listed(name: &str, compared: &Result<Comparison, String>, limits: Limits) -> Value {
+    match compared {
+        Err(why) => json!({ "name": name, "passes": false, "why": why }),
+        Ok(found) => json!({ "name": name, "passes": found.passes(limits), "measure": found.measure,
+            "error": found.error, "largest": found.largest, "largest_at": found.largest_at,
+            "differing": found.differing, "pixels": found.pixels }),
+    }
+}
+
+/// All of `specula diff --json`: the [`listed`] pictures, and the limits.
+pub fn listed_all(pictures: Vec<Value>, limits: Limits) -> Value {
+    let passes = pictures.iter().all(|picture| picture["passes"] == true);
+    let mut all = json!({ "pictures": pictures, "max": limits.max, "passes": passes });
+    if let Some(most) = limits.max_channel {
+        all["max_channel"] = most.into();
+    }
+    all
 }
 
 /// b - a. 0 if both are equal or both NaN; infinite if the difference is not finite.

@@ -4,6 +4,7 @@ mod merge;
 mod text_form;
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::picture::replace_file;
@@ -106,6 +107,39 @@ pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Wr
     Ok((text, Written(vec![(file, [bytes, new])])))
 }
 
+/// Writes the whole text of a file, which need not exist, nor its folder in the tree.
+///
+/// # Errors
+/// A message: a link leads out of the tree, the text is too long, or the file cannot be read or written. It then stays as it is.
+pub fn write_whole(file: &TreeFile, text: &str) -> Result<Written, String> {
+    let TreeFile { root, path } = file;
+    let file = root.join(path.as_str());
+    let cannot = |why: String| format!("cannot write {}: {why}", file.display());
+    // The part of the path that exists must lie in the tree, as what does not exist yet would then.
+    let there = file.ancestors().find(|part| part.symlink_metadata().is_ok()).unwrap_or(root);
+    let is_inside = there.canonicalize().and_then(|there| Ok(there.starts_with(root.canonicalize()?)));
+    if !is_inside.unwrap_or(false) {
+        return Err(cannot(SourceError::Outside.to_string()));
+    }
+    if text.len() as u64 > regular_file::LONGEST_TEXT {
+        return Err(cannot(format!("{} bytes; at most {} are read", text.len(), regular_file::LONGEST_TEXT)));
+    }
+    let before = match regular_file::read(&file, regular_file::LONGEST_TEXT) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            let folder = file.parent().unwrap_or(root);
+            std::fs::create_dir_all(folder).map_err(|error| cannot(error.to_string()))?;
+            Vec::new()
+        }
+        Err(error) => return Err(format!("cannot read {}: {error}", file.display())),
+    };
+    let new = text.as_bytes().to_vec();
+    if new != before || !file.exists() {
+        replace(&file, &new)?;
+    }
+    Ok(Written(vec![(file, [before, new])]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,6 +171,21 @@ mod tests {
         std::fs::write(&file, "\u{feff}one\r\ntwo\r\n").unwrap();
         let (text, _) = write_text(&of_tree, "one\r\ntwo\r\n", "one\r\nmore\ntwo\r\n").unwrap();
         assert_eq!((text.as_str(), read().as_str()), ("one\r\nmore\r\ntwo\r\n", "\u{feff}one\r\nmore\r\ntwo\r\n"));
+    }
+
+    #[test]
+    fn a_whole_text_replaces_a_file_or_makes_one() {
+        let tree = tempfile::tempdir().unwrap();
+        let file = |path: &str| TreeFile { root: tree.path().to_owned(), path: path.into() };
+        let read = |path: &str| std::fs::read_to_string(tree.path().join(path)).unwrap();
+        write_whole(&file("lib/new.glsl"), "one").unwrap();
+        assert_eq!(read("lib/new.glsl"), "one");
+        let written = write_whole(&file("lib/new.glsl"), "two").unwrap();
+        assert_eq!(read("lib/new.glsl"), "two");
+        written.take_back(false).unwrap();
+        assert_eq!(read("lib/new.glsl"), "one");
+        write_whole(&file("empty.glsl"), "").unwrap();
+        assert_eq!(read("empty.glsl"), "");
     }
 
     #[test]
@@ -173,6 +222,15 @@ mod tests {
         };
         let error = write(tree.path(), &[edit]).unwrap_err();
         assert!(error.contains("a link that leads out of the shader tree"), "{error}");
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink(folder.path(), tree.path().join("out")).unwrap();
+        std::os::unix::fs::symlink(folder.path().join("nothing"), tree.path().join("dangling.glsl")).unwrap();
+        for path in ["a.glsl", "out/new.glsl", "out/deep/new.glsl", "dangling.glsl"] {
+            let file = TreeFile { root: tree.path().to_owned(), path: path.into() };
+            let error = write_whole(&file, "x").unwrap_err();
+            assert!(error.contains("a link that leads out of the shader tree"), "{path}: {error}");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         assert_eq!(std::fs::read(outside.path()).unwrap(), b"");
     }
 }

@@ -1,6 +1,8 @@
-"""Writes a wheel with the program and its share folder: python3 wheel.py ROOT NAME VERSION SUMMARY PLATFORM README OUT_FOLDER.
+"""Writes a wheel with the program, its share folder and its Python package:
+python3 wheel.py ROOT NAME VERSION SUMMARY PLATFORM README PACKAGE OUT_FOLDER.
 
-ROOT holds bin/ and share/. pip puts them into bin and share of a virtual environment, or of ~/.local. The same files give the same wheel.
+ROOT holds bin/ and share/. pip puts them into bin and share of a virtual environment, or of ~/.local, and the package where it is imported
+from. The same files give the same wheel.
 """
 
 import base64
@@ -18,33 +20,43 @@ def entry(name: str, mode: int) -> zipfile.ZipInfo:
     return info
 
 
-def main() -> None:
-    root, name, version, summary, platform, readme, out = sys.argv[1:]
-    tag = f"py3-none-{platform}"
-    info = f"{name}-{version}.dist-info"
-    data = f"{name}-{version}.data"
-    metadata = (
-        f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\nSummary: {summary}\nLicense: MIT OR Apache-2.0\n"
-        "Requires-Python: >=3.7\nDescription-Content-Type: text/markdown\n\n" + Path(readme).read_text(encoding="utf-8")
-    )
-    members = [(f"{info}/METADATA", 0o644, metadata.encode())]
-    members.append((f"{info}/WHEEL", 0o644, f"Wheel-Version: 1.0\nGenerator: specula\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()))
-    for path in sorted(Path(root).rglob("*")):
+def members(root: Path, package: Path, data: str) -> "list[tuple[str, int, bytes]]":
+    """The files of the wheel but its own records: name, permissions, content."""
+    found = []
+    for path in sorted(root.rglob("*")):
         inner = path.relative_to(root)
         if not path.is_file():
             continue
         if inner.parts[0] == "bin":
-            members.append((f"{data}/scripts/{inner.relative_to('bin')}", 0o755, path.read_bytes()))
+            found.append((f"{data}/scripts/{inner.relative_to('bin')}", 0o755, path.read_bytes()))
         else:
-            members.append((f"{data}/data/{inner}", 0o644, path.read_bytes()))
+            found.append((f"{data}/data/{inner}", 0o644, path.read_bytes()))
+    for path in sorted(package.rglob("*")):
+        inner = path.relative_to(package.parent)
+        if path.is_file() and "__pycache__" not in inner.parts:
+            found.append((str(inner), 0o644, path.read_bytes()))
+    return found
+
+
+def main() -> None:
+    root, name, version, summary, platform, readme, package, out = sys.argv[1:]
+    tag = f"py3-none-{platform}"
+    info = f"{name}-{version}.dist-info"
+    metadata = (
+        f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\nSummary: {summary}\nLicense: MIT OR Apache-2.0\n"
+        "Requires-Python: >=3.8\nRequires-Dist: numpy\nDescription-Content-Type: text/markdown\n\n" + Path(readme).read_text(encoding="utf-8")
+    )
+    wheel_text = f"Wheel-Version: 1.0\nGenerator: specula\nRoot-Is-Purelib: false\nTag: {tag}\n"
+    content = members(Path(root), Path(package), f"{name}-{version}.data")
+    content += [(f"{info}/METADATA", 0o644, metadata.encode()), (f"{info}/WHEEL", 0o644, wheel_text.encode())]
     record = ""
     Path(out).mkdir(parents=True, exist_ok=True)
     file = Path(out) / f"{name}-{version}-{tag}.whl"
     with zipfile.ZipFile(file, "w", compresslevel=9) as wheel:
-        for member, mode, content in members:
-            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
-            record += f"{member},sha256={digest},{len(content)}\n"
-            wheel.writestr(entry(member, mode), content)
+        for member, mode, data in content:
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            record += f"{member},sha256={digest},{len(data)}\n"
+            wheel.writestr(entry(member, mode), data)
         wheel.writestr(entry(f"{info}/RECORD", 0o644), record + f"{info}/RECORD,,\n")
     print(file)
 

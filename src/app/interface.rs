@@ -4,11 +4,12 @@ mod freshness;
 mod waiting;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui_winit::accesskit_winit;
 use winit::event::WindowEvent;
-use winit::event_loop::ActiveEventLoop;
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
 use super::command::spec::Command;
@@ -23,14 +24,16 @@ use super::state::workspace::{PanelRequest, Sight};
 use super::widgets;
 use crate::frame::Limits;
 use crate::gpu::Gpu;
+use crate::recovery::Geometry;
 use crate::render::PixelAt;
 use crate::scene::CameraController;
 use crate::settings::Settings;
-use crate::threads::MessageSender;
+use crate::threads::Message;
 use freshness::Freshness;
 
 /// The user interface of the window.
 pub(super) struct Interface {
+    window: Arc<Window>,
     egui: egui::Context,
     pub(super) panels: Panels,
     input: egui_winit::State,
@@ -41,8 +44,6 @@ pub(super) struct Interface {
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     freshness: Freshness<Followed>,
-    /// The output of the panels when they last ran.
-    pub(super) shown: Shown,
 }
 
 /// Values that panels show at once although no event tells of them: settings that move by themselves, and what the device has read.
@@ -56,8 +57,7 @@ pub(super) struct Followed {
     pub(super) waits: Option<Waits>,
 }
 
-/// The output of the panels in a frame.
-#[derive(Default)]
+/// The output of the panels in a frame. The default is that of a session without a window.
 pub(super) struct Shown {
     pub(super) primitives: Vec<egui::ClippedPrimitive>,
     pub(super) pixels_per_point: f32,
@@ -75,14 +75,32 @@ pub(super) struct Shown {
     pub(super) ms: f64,
 }
 
+impl Default for Shown {
+    fn default() -> Self {
+        Self {
+            primitives: Vec::new(),
+            pixels_per_point: 1.0,
+            textures: egui::TexturesDelta::default(),
+            picture: None,
+            commands: Vec::new(),
+            sight: Sight::default(),
+            is_held: false,
+            wants_pictures: false,
+            delay: None,
+            ms: 0.0,
+        }
+    }
+}
+
 impl Interface {
-    pub(super) fn new(gpu: &Gpu, window: &Window) -> Self {
+    pub(super) fn new(gpu: &Gpu, window: &Arc<Window>) -> Self {
         let egui = egui::Context::default();
         widgets::theme::apply(&egui);
         let scale = Some(window.scale_factor() as f32);
         let largest = Some(gpu.max_image_size() as usize);
-        let input = egui_winit::State::new(egui.clone(), egui::ViewportId::ROOT, window, scale, None, largest);
+        let input = egui_winit::State::new(egui.clone(), egui::ViewportId::ROOT, &**window, scale, None, largest);
         Self {
+            window: window.clone(),
             egui,
             panels: Panels::restored(),
             input,
@@ -91,13 +109,12 @@ impl Interface {
             mouse: Mouse::default(),
             camera: CameraController::default(),
             freshness: Freshness::new(),
-            shown: Shown::default(),
         }
     }
 
     /// Registers the window with screen readers. The accessibility tree is built once one connects.
-    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, sender: &MessageSender) {
-        self.input.init_accesskit(event_loop, window, sender.proxy());
+    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, proxy: EventLoopProxy<Message>) {
+        self.input.init_accesskit(event_loop, &self.window, proxy);
     }
 
     pub(super) fn on_accessibility(&mut self, event: accesskit_winit::WindowEvent) {
@@ -109,11 +126,11 @@ impl Interface {
         }
     }
 
-    pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {
+    pub(super) fn on_window_event(&mut self, event: &WindowEvent) -> egui_winit::EventResponse {
         if *event != WindowEvent::RedrawRequested {
             self.outdate();
         }
-        self.input.on_window_event(window, event)
+        self.input.on_window_event(&self.window, event)
     }
 
     /// Whether an event belongs to the user interface. egui has `consumed` every event over the tiles, which are one panel to it,
@@ -152,9 +169,19 @@ impl Interface {
         self.freshness.is_fresh(followed, Instant::now())
     }
 
+    /// The size of the window, pixels.
+    pub(super) fn size(&self) -> (u32, u32) {
+        self.window.inner_size().into()
+    }
+
+    /// The size and the place of the window.
+    pub(super) fn geometry(&self) -> Geometry {
+        Geometry { size: self.size(), at: self.window.outer_position().ok().map(Into::into) }
+    }
+
     /// Runs the panels over the state.
-    pub(super) fn run(&mut self, window: &Window, state: &State, readings: Readings<'_>, followed: Followed) {
-        let input = self.input.take_egui_input(window);
+    pub(super) fn run(&mut self, state: &State, readings: Readings<'_>, followed: Followed) -> Shown {
+        let input = self.input.take_egui_input(&self.window);
         let begin = Instant::now();
         let (context, mut commands) = (Context::new(state, readings), Commands::new(&state.session.settings));
         let (mut picture, panels) = (None, &mut self.panels);
@@ -162,12 +189,12 @@ impl Interface {
         let pixels_per_point = output.pixels_per_point;
         let primitives = self.egui.tessellate(output.shapes, pixels_per_point);
         let ms = begin.elapsed().as_secs_f64() * 1e3;
-        self.input.handle_platform_output(window, output.platform_output);
+        self.input.handle_platform_output(&self.window, output.platform_output);
         let (commands, sight) = commands.finish(&state.session.settings);
         self.free = picture.map_or(self.free, |area: PictureArea| area.free);
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
         self.freshness.ran(followed, begin, delay);
-        self.shown = Shown {
+        Shown {
             primitives,
             pixels_per_point,
             textures: output.textures_delta,
@@ -178,6 +205,6 @@ impl Interface {
             wants_pictures: std::mem::take(&mut self.panels.open_gallery.wants_pictures),
             delay,
             ms,
-        };
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The window, which runs beside an editor.
+//! The window, which runs beside an editor, and the same session without one for programs (`serve.rs`).
 //!
 //! `state` is what the window knows, `engine` makes frames and starts work, `interface` runs the panels, `screen` draws requests. Functions over
 //! them, in `actions`, `frames` and `messages`, carry out what commands and threads ask for. Only this file owns all of them.
@@ -12,7 +12,9 @@ mod context;
 mod control;
 mod dialog;
 mod editor;
+mod ending;
 mod engine;
+mod error;
 mod frames;
 mod gallery;
 mod input;
@@ -27,6 +29,7 @@ mod palette;
 mod panels;
 mod readings;
 mod screen;
+mod serve;
 mod setting_text;
 mod source_line;
 mod start;
@@ -41,18 +44,18 @@ use crossbeam_channel::Receiver;
 use winit::application::ApplicationHandler;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowAttributes, WindowId};
 
 use crate::control::Asked;
 use crate::events::{Event, emit};
-use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts, fault};
-use crate::pipeline::DiskPipelines;
+use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
 use closing::Closing;
+use ending::Ending;
 use engine::Engine;
 use frames::background::Next;
 use frames::draw::Drawing;
@@ -65,28 +68,11 @@ use start::start;
 use state::{State, window_size};
 
 pub use command::registry::{Described, described};
+pub use error::AppError;
 pub use options::{AppOptions, OtherPicture};
+pub use serve::serve;
 pub use state::last_session::session_to_restore;
 pub use state::window_size::last_size;
-
-/// Why there is no window, or why it closed early.
-#[derive(Debug, thiserror::Error)]
-pub enum AppError {
-    /// No display.
-    #[error(
-        "no display to open a window on: {0}. Without one, `specula render --watch` writes a new PNG at every save"
-    )]
-    NoDisplay(String),
-    /// A device error.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// The validation layers reported messages.
-    #[error("the validation layers reported {0} messages (above)")]
-    Validation(usize),
-}
-
-/// How long closing may take. A capture ends the picture that it is drawing, which can take long on a software device.
-const CLOSING: Duration = Duration::from_secs(20);
 
 /// Opens the window and runs until it is closed.
 ///
@@ -96,13 +82,14 @@ pub fn run(mut options: AppOptions) -> Result<(), AppError> {
     // Its end writes the last events, so it outlives the window.
     let control = std::mem::take(&mut options.control);
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
-    let sender = MessageSender::new(event_loop.create_proxy());
+    let proxy = event_loop.create_proxy();
+    let sender = MessageSender::Window(proxy.clone());
     if let Some(socket) = control.socket() {
         emit(control.clients(), &Event::Listening { socket: &socket.display().to_string() });
     }
     let early = Early::begin(&options, control.clients(), &sender);
     let asked = control.asked();
-    let mut app = App { sender, asked, options: Some((options, early)), open: None, result: Ok(()) };
+    let mut app = App { proxy, sender, asked, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
 }
@@ -128,6 +115,8 @@ fn no_display(error: winit::error::EventLoopError) -> AppError {
 }
 
 struct App {
+    /// For screen readers.
+    proxy: EventLoopProxy<Message>,
     sender: MessageSender,
     /// Commands from outside.
     asked: Receiver<Asked>,
@@ -141,6 +130,7 @@ struct Open {
     state: State,
     engine: Engine,
     drawing: Drawing,
+    interface: Interface,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
     /// The window's title.
@@ -164,28 +154,22 @@ impl App {
         let window = event_loop.create_window(named(attributes)).map_err(|e| AppError::NoDisplay(e.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.display_handle().map_err(|e| AppError::NoDisplay(e.to_string()))?;
-        let gpu = Gpu::new(&GpuOptions {
-            device: options.device.clone(),
-            validation: options.validation,
-            display: Some(display.as_raw()),
-            // After a loss, the stored pipelines are suspected, too.
-            pipelines: (!options.recorder.is_safe_mode()).then_some(&DiskPipelines as &dyn PipelineStore),
-        })?;
+        let gpu = Gpu::new(&options.gpu(Some(display.as_raw())))?;
         let layouts = SetLayouts::new(&gpu)?;
-        let screen = Screen::new(&gpu, &layouts, &window)?;
+        let screen = Screen::of_window(&gpu, &layouts, &window)?;
         let mut interface = Interface::new(&gpu, &window);
-        interface.init_accessibility(event_loop, &window, &self.sender);
+        interface.init_accessibility(event_loop, self.proxy.clone());
         window.set_visible(true);
-        let (state, engine) = start(&gpu, &layouts, options, early, &self.sender)?;
-        let (drawing, title, dropped) = (Drawing::new(screen, interface), String::new(), Vec::new());
+        let (state, engine) = start(&gpu, &layouts, options, early, (&self.sender, true))?;
+        let (drawing, title, dropped) = (Drawing::new(screen), String::new(), Vec::new());
         let closing = Closing::default();
-        Ok(Open { state, engine, drawing, gpu, window, title, dropped, closing })
+        Ok(Open { state, engine, drawing, interface, gpu, window, title, dropped, closing })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
     fn go_on(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        let next = open.drawing.go_on(&mut open.state, &mut open.engine);
+        let next = open.drawing.go_on(Some(&mut open.interface), &mut open.state, &mut open.engine);
         let record = open.engine.recorder.rest();
         match next {
             Ok(Next::Frame) => open.window.request_redraw(),
@@ -196,32 +180,18 @@ impl App {
     }
 
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
-        if let Some(mut open) = self.open.take() {
+        if let Some(open) = self.open.take() {
+            let Open { state, engine, drawing, interface, gpu, window, .. } = open;
+            let ending = Ending { state, engine, drawing, gpu };
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
-                open.state.waiting.end_all();
-                open.engine.recorder.finish();
-                // Destroying a lost device could wait forever for it to become idle.
-                std::mem::forget(open);
+                ending.lost();
+                std::mem::forget((interface, window));
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { mut state, engine, drawing, gpu, window, .. } = open;
-            remember_session(&state);
+            remember_session(&ending.state);
             window_size::remember(window.inner_size().into());
-            engine.recorder.close();
-            end_within(fault::value("closing-limit-ms").map_or(CLOSING, Duration::from_millis));
-            assert!(!fault::strikes("closing-panic"), "the injected fault closing-panic");
-            let (frames, [ui_ms, cpu_ms]) = state.timing.summary();
-            emit(&state.events, &Event::Closed { frames, ui_ms, cpu_ms });
-            drop(drawing);
-            drop(engine);
-            state.waiting.closed();
-            drop(window);
-            let messages = gpu.validation_messages().len();
-            self.result = match result {
-                Ok(()) if messages > 0 => Err(AppError::Validation(messages)),
-                other => other,
-            };
+            self.result = ending.end(result, || drop((interface, window)));
         } else if let Err(error) = result {
             self.result = Err(error);
         }
@@ -232,19 +202,6 @@ impl App {
 /// Waits for events; at most this long if there is something to do then.
 fn within(wait: Option<Duration>) -> ControlFlow {
     wait.map_or(ControlFlow::Wait, |wait| ControlFlow::WaitUntil(Instant::now() + wait.min(Duration::from_secs(3600))))
-}
-
-/// Ends the process, unless it ends before. Closing waits for threads that use the device, and these for files, which may be on a file system
-/// that does not answer.
-fn end_within(time: Duration) {
-    let end = move || {
-        std::thread::sleep(time);
-        crate::message::warn("a thread did not end with the window, so the program ends without it");
-        let _unfinished = crate::picture::remove_unfinished();
-        std::process::exit(0);
-    };
-    // Without this thread, closing waits as long as it takes.
-    let _ = std::thread::Builder::new().name("specula-closing".to_owned()).spawn(end);
 }
 
 impl ApplicationHandler<Message> for App {
@@ -268,10 +225,10 @@ impl ApplicationHandler<Message> for App {
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         let Some(open) = self.open.as_mut().filter(|open| !open.dropped.is_empty()) else { return };
-        let adds = open.drawing.interface.mouse.modifiers.shift_key();
+        let adds = open.interface.mouse.modifiers.shift_key();
         let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped), adds);
         dropped.into_iter().for_each(|command| command::execute(&mut open.state, &mut open.engine, command));
-        open.drawing.interface.outdate();
+        open.interface.outdate();
         open.window.request_redraw();
     }
 
@@ -280,20 +237,20 @@ impl ApplicationHandler<Message> for App {
         match message {
             // A frame would wait for the thumbnail that the device may be drawing.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => return self.go_on(event_loop),
-            Message::Accessibility(event) => open.drawing.interface.on_accessibility(event.window_event),
-            Message::Pictures(pictures) => open.drawing.interface.panels.open_gallery.take(pictures),
+            Message::Accessibility(event) => open.interface.on_accessibility(event.window_event),
+            Message::Pictures(pictures) => open.interface.panels.open_gallery.take(pictures),
             message => on_message(&mut open.state, &mut open.engine, message),
         }
-        open.drawing.interface.outdate();
+        open.interface.outdate();
         open.window.request_redraw();
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let Some(event) = open.drawing.interface.wait(event) else { return open.window.request_redraw() };
+        let Some(event) = open.interface.wait(event) else { return open.window.request_redraw() };
         let is_frame = event == WindowEvent::RedrawRequested;
         self.handle(event_loop, event);
-        while is_frame && let Some(event) = self.open.as_mut().and_then(|open| open.drawing.interface.next_waiting()) {
+        while is_frame && let Some(event) = self.open.as_mut().and_then(|open| open.interface.next_waiting()) {
             self.handle(event_loop, event);
         }
     }
@@ -302,7 +259,7 @@ impl ApplicationHandler<Message> for App {
 impl App {
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let response = open.drawing.interface.on_window_event(&open.window, &event);
+        let response = open.interface.on_window_event(&event);
         // egui requests a repaint in response to every redraw, so the window would never be idle.
         if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
@@ -324,7 +281,7 @@ impl App {
                     open.window.set_title(&title);
                     open.title = title;
                 }
-                let drawn = open.drawing.draw(&open.window, &mut open.state, &mut open.engine);
+                let drawn = open.drawing.draw(Some(&mut open.interface), &mut open.state, &mut open.engine);
                 match drawn {
                     Ok(Some(Duration::ZERO)) => {
                         open.window.request_redraw();
@@ -338,17 +295,17 @@ impl App {
                 }
             }
             event => {
-                let taken = open.drawing.interface.is_taken(&event, response.consumed);
-                let parts = (&mut open.drawing.interface, &open.drawing.screen);
+                let taken = open.interface.is_taken(&event, response.consumed);
+                let parts = (&mut open.interface, &open.drawing.screen);
                 if input::on_window_event(&mut open.state, &mut open.engine, &event, parts, taken) {
                     open.window.request_redraw();
                 }
             }
         }
         if std::mem::take(&mut open.state.quits_by_hand) {
-            let unsaved = open.drawing.interface.panels.unsaved();
+            let unsaved = open.interface.panels.unsaved();
             open.state.quit |= open.closing.may_close(&mut open.state, unsaved);
-            open.drawing.interface.outdate();
+            open.interface.outdate();
             open.window.request_redraw();
         }
         if open.state.quit {

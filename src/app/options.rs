@@ -1,10 +1,14 @@
-//! How to open the window, and the work that begins before it is open.
+//! How to open the window or a session without one, and the work that begins before it is open.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use winit::raw_window_handle::RawDisplayHandle;
+
 use crate::control::{Clients, Control};
+use crate::gpu::{GpuOptions, PipelineStore};
+use crate::pipeline::DiskPipelines;
 use crate::recovery::{Recorder, SessionState};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
@@ -29,7 +33,7 @@ pub struct AppOptions {
     pub follows_lights: bool,
     /// Whether a model that has an environment is lit by it: the user has not chosen one.
     pub follows_environment: bool,
-    /// Size of the window in pixels.
+    /// Size of the window, or of the picture without one, in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
     pub at: Option<(i32, i32)>,
@@ -47,6 +51,19 @@ pub struct AppOptions {
     pub control: Control,
     /// Start of the program, for the events' times.
     pub start: Instant,
+}
+
+impl AppOptions {
+    /// The device to open. `display`: that of the window.
+    pub(super) fn gpu(&self, display: Option<RawDisplayHandle>) -> GpuOptions {
+        GpuOptions {
+            device: self.device.clone(),
+            validation: self.validation,
+            display,
+            // After a loss, the stored pipelines are suspected, too.
+            pipelines: (!self.recorder.is_safe_mode()).then_some(&DiskPipelines as &dyn PipelineStore),
+        }
+    }
 }
 
 /// The other picture of a comparison.

@@ -1,5 +1,5 @@
-//! The window on the device: its swapchain, the views that draw pictures, and what is drawn in and between frames. It draws requests of
-//! plain values (`request`, `between`) and gives their results. It knows neither state nor engine nor panels.
+//! The window on the device: its swapchain, the views that draw pictures, and what is drawn in and between frames. A session without a window
+//! has an image in place of the swapchain (`target.rs`), and all else alike. The screen draws requests of plain values (`request`, `between`) and gives their results. It knows neither state nor engine nor panels.
 
 mod background;
 mod between;
@@ -24,6 +24,7 @@ mod reference_view;
 mod refine;
 mod request;
 mod sets;
+mod target;
 mod texture;
 mod thumbnail;
 mod ui;
@@ -32,11 +33,10 @@ mod window_copy;
 use std::sync::Arc;
 
 use glam::Vec2;
-use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use super::state::grid::PictureRect;
-use crate::gpu::{Buffer, Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer};
+use crate::gpu::{Buffer, Frames, Gpu, GpuError, SetLayouts, Swapchain, UiRenderer};
 use crate::render::tools::Outline;
 use crate::render::{BoundFrame, PixelAt, View};
 use crate::scene::CameraView;
@@ -59,10 +59,11 @@ use reference_view::ReferenceView;
 use request::FRAMES_IN_FLIGHT;
 pub(super) use request::{FrameRequest, OutlineRequest, TextureDraw};
 pub(super) use sets::RestingPicture;
+use target::Target;
 use texture::ShownTexture;
 use window_copy::WindowCopy;
 
-/// The window on the device. Fields drop in order, so renderers go before the swapchain and the surface.
+/// The window on the device. Fields drop in order, so renderers go before the target.
 pub(super) struct Screen {
     ui: UiRenderer,
     pub(super) between: Between,
@@ -74,12 +75,9 @@ pub(super) struct Screen {
     frames: Frames,
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    swapchain: Option<Swapchain>,
-    surface: Arc<Surface>,
+    target: Target,
     /// Textures of egui to upload, and those to free because no later frame uses them.
     textures: egui::TexturesDelta,
-    /// Whether the swapchain no longer fits the window.
-    is_stale: bool,
     /// The last frame for which targets could be allocated. It is drawn again while memory is short.
     last: Option<BoundFrame>,
     /// The out-of-memory error of the current frame.
@@ -107,24 +105,37 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, window: &Arc<Window>) -> Result<Self, GpuError> {
-        let handles = window.display_handle().and_then(|d| Ok((d.as_raw(), window.window_handle()?.as_raw())));
-        let (display, handle) = handles.map_err(|e| GpuError::NoDevice(format!("the window has no handle: {e}")))?;
-        let surface = Surface::new(gpu, display, handle)?;
+    /// The screen of a window.
+    pub(super) fn of_window(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, window: &Window) -> Result<Self, GpuError> {
+        Self::new(gpu, layouts, |_| Target::window(gpu, window))
+    }
+
+    /// The screen of a session without a window, whose picture has this size.
+    pub(super) fn unseen(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, size: (u32, u32)) -> Result<Self, GpuError> {
+        let mut screen = Self::new(gpu, layouts, |view| Target::image(view, size))?;
+        screen.whole = PictureRect { at: (0, 0), size };
+        Ok(screen)
+    }
+
+    fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        target: impl FnOnce(&View) -> Result<Target, GpuError>,
+    ) -> Result<Self, GpuError> {
+        // One more slot, for parts of the picture.
+        let view = View::new(gpu, layouts, FRAMES_IN_FLIGHT + 1)?;
+        let target = target(&view)?;
         Ok(Self {
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             between: Between::new(gpu, layouts)?,
-            // One more slot, for parts of the picture.
-            view: View::new(gpu, layouts, FRAMES_IN_FLIGHT + 1)?,
+            view,
             parts: Parts::new(gpu)?,
             preview: None,
             frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
             gpu: gpu.clone(),
             layouts: layouts.clone(),
-            swapchain: None,
-            surface,
+            target,
             textures: egui::TexturesDelta::default(),
-            is_stale: true,
             last: None,
             shortage: None,
             loops: LoopChecks::default(),
@@ -143,12 +154,12 @@ impl Screen {
     }
 
     pub(super) fn resized(&mut self) {
-        self.is_stale = true;
+        self.target.outdate();
     }
 
-    /// The size of the window's images, once there are any.
+    /// The size of the images that frames are drawn to, once there are any.
     pub(super) fn extent(&self) -> Option<(u32, u32)> {
-        self.swapchain.as_ref().map(Swapchain::extent)
+        self.target.extent()
     }
 
     /// The camera of the last frame.
@@ -166,14 +177,9 @@ impl Screen {
         &self.frames
     }
 
-    /// Recreates the swapchain if it does not fit a window of this size. Returns whether there is a swapchain.
+    /// Recreates the swapchain if it does not fit a window of this size. Returns whether there are images to draw to.
     pub(super) fn resize(&mut self, size: (u32, u32)) -> Result<bool, GpuError> {
-        if self.is_stale || self.swapchain.is_none() {
-            let (old, is_fast) = (self.swapchain.take(), self.gpu.info().kind != "cpu");
-            self.swapchain = Swapchain::new(&self.surface, size, FRAMES_IN_FLIGHT, is_fast, old)?;
-            self.is_stale = false;
-        }
-        Ok(self.swapchain.is_some())
+        self.target.fit(&self.gpu, size)
     }
 
     /// Whether a picture is drawn beside the newest one for a comparison.

@@ -1,11 +1,13 @@
 //! Starts the window's work: its stores as the last window left them, the threads, and the first load.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::actions::compare::compare_at_start;
 use super::actions::files::begin_loading;
 use super::actions::sessions::report_loss;
 use super::actions::watch::watch_tree;
+use super::engine::capture_view::CaptureView;
 use super::engine::compared::Compared;
 use super::engine::generations::Generations;
 use super::engine::last_complete::target;
@@ -23,7 +25,7 @@ use crate::render::Resources;
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{MessageSender, Threads};
 
-/// Starts the threads, and the first load.
+/// Starts the threads, and the first load. A session that does not have a window neither knows nor changes what windows remember.
 ///
 /// # Errors
 /// No memory on the device.
@@ -32,17 +34,19 @@ pub(super) fn start(
     layouts: &Arc<SetLayouts>,
     options: AppOptions,
     early: Early,
-    sender: &MessageSender,
+    (sender, has_window): (&MessageSender, bool),
 ) -> Result<(State, Engine), GpuError> {
     let (source, recorder) = (options.source, options.recorder);
+    let location = source.location().map(Path::to_owned);
     let mut state = State {
+        has_window,
         model: ModelStatus { path: options.model.clone(), ..Default::default() },
         events: early.events,
         start: options.start,
-        recent: Recent::restored(),
-        last_sessions: LastSessions::restored(source.location()),
-        hint: Hint::restored(),
-        learning: Learning::restored(),
+        recent: if has_window { Recent::restored() } else { Recent::default() },
+        last_sessions: has_window.then(|| LastSessions::restored(location.as_deref())).unwrap_or_default(),
+        hint: if has_window { Hint::restored() } else { Hint::default() },
+        learning: if has_window { Learning::restored() } else { Learning::default() },
         follows_lights: options.follows_lights,
         follows_environment: options.follows_environment,
         load_options: options.load_options,
@@ -59,7 +63,7 @@ pub(super) fn start(
     let snapshot = Snapshot {
         settings: session.shared_settings(),
         scene: None,
-        target: target(gpu, &session.settings),
+        target: target(gpu, &session.settings, !has_window),
         suns: session.revisions.suns_of(&session.settings),
     };
     let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, sender);
@@ -75,9 +79,12 @@ pub(super) fn start(
         shown: None,
         generations: Generations::default(),
         compiler: options.compiler,
+        capture_view: if has_window { CaptureView::default() } else { CaptureView::kept() },
     };
     watch_tree(&mut state, &mut engine, &source);
-    engine.find_exercise(&source);
+    if has_window {
+        engine.find_exercise(&source);
+    }
     engine.threads.loader.upload(early.reading);
     begin_loading(&mut state, options.model);
     report_loss(&mut state, &engine);

@@ -31,6 +31,8 @@ pub struct OffscreenCapture {
     count: u32,
     /// Whether captures are for files of linear light, whose pixels are plain averages of the samples.
     is_linear: bool,
+    /// Whether captures have raw values.
+    has_raw: bool,
     /// Whether to end before the next frame.
     canceled: Arc<AtomicBool>,
 }
@@ -59,9 +61,25 @@ impl OffscreenCapture {
         clock: Clock,
         canceled: &Arc<AtomicBool>,
     ) -> Result<Self, GpuError> {
-        let own = OffscreenView::new(gpu, resources.layouts())?;
+        Self::with_view(None, gpu, session, resources, (clock, canceled))
+    }
+
+    /// [`Self::new`] with the view of an earlier capture, whose targets may fit.
+    pub(crate) fn with_view(
+        view: Option<OffscreenView>,
+        gpu: &Arc<Gpu>,
+        session: Session,
+        resources: Resources,
+        (clock, canceled): (Clock, &Arc<AtomicBool>),
+    ) -> Result<Self, GpuError> {
+        let own = view.map_or_else(|| OffscreenView::new(gpu, resources.layouts()), Ok)?;
         let (gpu, canceled) = (gpu.clone(), canceled.clone());
-        Ok(Self { gpu, session, resources, own, clock, count: 1, is_linear: false, canceled })
+        Ok(Self { gpu, session, resources, own, clock, count: 1, is_linear: false, has_raw: true, canceled })
+    }
+
+    /// The view, for the next capture.
+    pub(crate) fn into_view(self) -> OffscreenView {
+        self.own
     }
 
     /// Sets the number of frames that each capture takes.
@@ -79,6 +97,17 @@ impl OffscreenCapture {
     /// Sets whether captures are for files of linear light (EXR).
     pub fn set_linear(&mut self, is_linear: bool) {
         self.is_linear = is_linear;
+    }
+
+    /// Captures the display colors alone.
+    ///
+    /// # Errors
+    /// As [`Renderer::capture`].
+    pub(crate) fn capture_display(&mut self, size: (u32, u32)) -> Result<Capture, HeadlessError> {
+        self.has_raw = false;
+        let capture = self.capture(size);
+        self.has_raw = true;
+        capture
     }
 
     /// The value of a pixel in each of `modes`, with one sample per pixel. `size` is that of the frame.
@@ -232,7 +261,8 @@ impl OffscreenCapture {
             // An automatic range uses the values that have just been drawn.
             readback = self.draw(frame, Redraw::ToneMap, View::read_back)?;
         }
-        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+        let readback = readback.ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))?;
+        Ok(if self.has_raw { readback.finish() } else { readback.finish_picture() })
     }
 
     fn draw<T>(

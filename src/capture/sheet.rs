@@ -9,6 +9,8 @@ use super::cells::Cell;
 use super::label::Labels;
 use super::{CaptureError, Renderer, Tell, image_of, tell, write};
 use crate::frame::{Display, legend_limits, short};
+use crate::picture;
+use crate::report::{Report, Tile};
 use crate::settings::ViewRange;
 
 /// Pixels between the pictures, and around them.
@@ -82,15 +84,38 @@ impl SheetPlan {
     /// # Errors
     /// No pictures, a sheet that is too large, a picture that cannot be drawn, a file that cannot be written.
     pub fn write(&self, renderer: &mut dyn Renderer, path: &Path, tell: Tell<'_>) -> Result<(), CaptureError> {
-        let sheet = self.draw(renderer, tell)?;
+        let sheet = self.draw(renderer, &mut |_| (), tell)?;
         write(sheet, path)
     }
 
-    /// Draws the sheet.
+    /// The same, and a page of HTML with the pictures of the sheet.
     ///
     /// # Errors
     /// As [`SheetPlan::write`].
-    pub fn draw(&self, renderer: &mut dyn Renderer, tell: Tell<'_>) -> Result<RgbaImage, CaptureError> {
+    pub fn write_with_page(
+        &self,
+        renderer: &mut dyn Renderer,
+        (path, page): (&Path, &Path),
+        tell: Tell<'_>,
+    ) -> Result<(), CaptureError> {
+        let mut tiles = Vec::new();
+        let sheet = self.draw(renderer, &mut |tile| tiles.push(tile), tell)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut report = Report::new(&name);
+        report.note("A click enlarges a picture. A click with Shift marks one, and the next click compares both.");
+        report.gallery(&tiles, self.columns).map_err(CaptureError::Write)?;
+        write(sheet, path)?;
+        let cannot = |error| CaptureError::Write(format!("cannot write {}: {error}", page.display()));
+        picture::replace_file(page, report.html().as_bytes()).map_err(cannot)
+    }
+
+    /// Draws the sheet. `taken` gets each picture.
+    fn draw(
+        &self,
+        renderer: &mut dyn Renderer,
+        taken: &mut dyn FnMut(Tile),
+        tell: Tell<'_>,
+    ) -> Result<RgbaImage, CaptureError> {
         if self.cells.is_empty() {
             return Err(CaptureError::Usage("none of these modes has data in this model".to_owned()));
         }
@@ -100,12 +125,17 @@ impl SheetPlan {
             return Err(CaptureError::Usage(message));
         }
         let before = renderer.settings().clone();
-        let drawn = self.draw_with(renderer, tell);
+        let drawn = self.draw_with(renderer, taken, tell);
         *renderer.settings() = before;
         drawn
     }
 
-    fn draw_with(&self, renderer: &mut dyn Renderer, progress: Tell<'_>) -> Result<RgbaImage, CaptureError> {
+    fn draw_with(
+        &self,
+        renderer: &mut dyn Renderer,
+        taken: &mut dyn FnMut(Tile),
+        progress: Tell<'_>,
+    ) -> Result<RgbaImage, CaptureError> {
         let labels = Labels::new().map_err(CaptureError::Write)?;
         let (width, height) = self.extent();
         let mut sheet = RgbaImage::from_pixel(width as u32, height as u32, self.page.paper());
@@ -136,6 +166,7 @@ impl SheetPlan {
             if left > 40.0 && !note.is_empty() {
                 labels.write(&mut sheet, (x + name as u32 + 8, at.1), (TEXT, left), quiet, &note);
             }
+            taken(Tile { name: cell.name.clone(), note, image: picture });
         }
         tell(progress, self.cells.len(), self.cells.len())?;
         Ok(sheet)

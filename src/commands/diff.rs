@@ -5,14 +5,13 @@ mod report;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
 use specula::picture;
 use specula::picture_difference::report::ReportPair;
-use specula::picture_difference::{Comparison, Measure};
+use specula::picture_difference::{Comparison, Limits, Measure, listed, listed_all};
 
 use super::progress::Progress;
 use super::{Failure, print_json};
-use report::{Limits, Opened, reported, write_report};
+use report::{Opened, options, reported, write_report};
 
 /// Options of `diff`.
 #[derive(clap::Args)]
@@ -68,9 +67,7 @@ impl Pair {
     }
 
     fn passes(&self, limits: Limits) -> bool {
-        self.compared
-            .as_ref()
-            .is_ok_and(|found| found.error <= limits.max && limits.max_channel.is_none_or(|most| found.largest <= most))
+        self.compared.as_ref().is_ok_and(|found| found.passes(limits))
     }
 }
 
@@ -116,13 +113,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         write_report(report, [&args.a, &args.b], limits, all)?;
     }
     if args.json {
-        let pictures: Vec<Value> = pairs.iter().map(|pair| as_json(pair, limits)).collect();
-        let passes = pairs.iter().all(|pair| pair.passes(limits));
-        let mut all = json!({ "pictures": pictures, "max": args.max, "passes": passes });
-        if let Some(most) = args.max_channel {
-            all["max_channel"] = most.into();
-        }
-        print_json(&all);
+        let pictures = pairs.iter().map(|pair| listed(&pair.name, &pair.compared, limits)).collect();
+        print_json(&listed_all(pictures, limits));
     } else {
         print_all(&pairs);
     }
@@ -130,7 +122,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
         _ if args.json || pairs.len() == 1 => Err(Failure::Printed),
-        _ => Err(Failure::Input(format!("{failed} of {} pictures fail at {limits}", pairs.len()))),
+        _ => Err(Failure::Input(format!("{failed} of {} pictures fail at {}", pairs.len(), options(limits)))),
     }
 }
 
@@ -238,14 +230,4 @@ fn print(pair: &Pair) {
 /// An error with four digits after the point.
 fn number(error: f64) -> String {
     if error < 0.00005 { "< 0.0001".to_owned() } else { format!("{error:.4}") }
-}
-
-fn as_json(pair: &Pair, limits: Limits) -> Value {
-    let passes = pair.passes(limits);
-    match &pair.compared {
-        Err(why) => json!({ "name": pair.name, "passes": passes, "why": why }),
-        Ok(found) => json!({ "name": pair.name, "passes": passes, "measure": found.measure, "error": found.error,
-            "largest": found.largest, "largest_at": found.largest_at, "differing": found.differing,
-            "pixels": found.pixels }),
-    }
 }

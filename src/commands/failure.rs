@@ -1,7 +1,5 @@
 //! Why a command ends early, and the exit code.
 
-use std::process::ExitCode;
-
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
 use specula::render::UploadError;
@@ -26,13 +24,13 @@ pub enum Failure {
 
 impl Failure {
     /// The exit code of the program.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    pub fn exit_code(&self) -> u8 {
+        match self {
             Self::Input(_) | Self::Shaders(_) | Self::Printed => 1,
             Self::Usage(_) => 2,
             Self::Device(_) => 3,
             Self::Window(code) => *code,
-        })
+        }
     }
 }
 

@@ -29,8 +29,8 @@ const MEANING: usize = 60;
 /// Options of `help`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A command, as `render` or `brdf plot`; `set`, for the list of all settings; `commands`, for what a window takes on stdin and on
-    /// its socket; `man`, or `man render`, for a man page; or `completions bash` (elvish, fish, powershell, zsh) for a shell's script
+    /// A command, as `render` or `brdf plot`; `set`, for the list of all settings; `commands`, for what a window or `specula serve` takes on
+    /// stdin and on a socket; `man`, or `man render`, for a man page; or `completions bash` (elvish, fish, powershell, zsh) for a shell's script
     topic: Vec<String>,
     /// For `set`: also list the settings of the shader tree in this folder [default: ./shaders if it is one]
     #[arg(long, value_name = "DIR|FILE")]
@@ -137,13 +137,14 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
 
 fn print_commands() {
     out!(
-        "Commands to a window: one JSON object a line, on stdin (`specula view --events json`) or on a local socket (--socket NAME)."
+        "Commands to a session: one JSON object a line, on stdin (`specula serve`, `specula view --events json`) or on a local socket (--socket NAME)."
     );
     out!(
         "Each is answered by a line: {{\"event\": \"done\", \"id\", \"command\", \"result\"}} or \"error\" with a \"message\". `id` is whatever you send."
     );
     out!("A field with a ? may be left out.\n");
-    for Described { command, takes, doc } in described() {
+    for Described { command, takes, doc, needs_window } in described() {
+        let doc = if needs_window { format!("{doc}. Only with a window") } else { doc.to_owned() };
         let fields = if takes.is_empty() { String::new() } else { format!(", {takes}") };
         out!("{{\"command\": \"{command}\"{fields}}}\n    {doc}");
     }

@@ -16,23 +16,24 @@ mod info;
 mod learn;
 mod limits;
 mod lsp;
+mod mcp;
 mod modes;
 mod new;
 mod output;
 mod probe;
 mod progress;
 mod render;
+mod serve;
 mod signals;
 mod trace;
 mod view;
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal as _};
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use specula::message::{lost_output, tell};
+use specula::message::{flush_output, lost_output, tell};
 
 pub use failure::Failure;
 pub use output::{print_diagnostics, print_json, tell_left_out};
@@ -62,8 +63,10 @@ struct Cli {
 enum Command {
     /// Open the window (the default)
     View(view::Args),
-    /// Render a picture to a PNG or EXR file, without a window
+    /// Render a picture to a PNG, EXR or NumPy file, without a window
     Render(render::Args),
+    /// Serve a program: commands on stdin, events on stdout, pictures as files; without a window
+    Serve(serve::Args),
     /// List the debug modes, constants and parameters of the shader tree
     Modes(modes::Args),
     /// Compile every shader, and build the pipelines of every mode and choice; or draw a model and check its assertions and operations; for CI
@@ -86,19 +89,23 @@ enum Command {
     Trace(trace::Args),
     /// Serve an editor: errors, completion, hover, rename and values at a pixel (language server on stdio)
     Lsp(lsp::Args),
+    /// Serve an agent: render and see pictures, edit shaders, read values (Model Context Protocol on stdio)
+    Mcp(mcp::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
 }
 
-/// Runs the program.
-pub fn start() -> ExitCode {
+/// Runs the program. Returns its exit code.
+pub fn start() -> u8 {
     let start = Instant::now();
-    limits::check_stack().map_or_else(|failure| end(&failure), |()| main(start))
+    let code = limits::check_stack().map_or_else(|failure| end(&failure), |()| main(start));
+    flush_output();
+    code
 }
 
 /// Not inlined, since its arguments alone may need more stack than there is.
 #[inline(never)]
-fn main(start: Instant) -> ExitCode {
+fn main(start: Instant) -> u8 {
     use tracing_subscriber::EnvFilter;
     specula::gpu::return_large_blocks();
     // winit warns of every oddity of a display at every start.
@@ -123,7 +130,7 @@ fn main(start: Instant) -> ExitCode {
                     Err(lost) if !error.use_stderr() && lost.kind() != ErrorKind::BrokenPipe => {
                         end(&output_is_lost(&lost))
                     }
-                    _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+                    _ => u8::try_from(error.exit_code()).unwrap_or(2),
                 },
             };
         }
@@ -137,6 +144,7 @@ fn main(start: Instant) -> ExitCode {
             .and_then(|()| view::run(cli.view, start)),
         Some(Command::View(args)) => view::run(args, start),
         Some(Command::Render(args)) => render::run(args, start),
+        Some(Command::Serve(args)) => serve::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Info(args)) => info::run(args),
@@ -148,10 +156,12 @@ fn main(start: Instant) -> ExitCode {
         Some(Command::Probe(args)) => probe::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Lsp(args)) => lsp::run(args),
+        Some(Command::Mcp(args)) => mcp::run(args),
         Some(Command::Help(args)) => help::run(&args, Cli::command()),
     };
+    flush_output();
     let result = result.and_then(|()| lost_output().map_or(Ok(()), |lost| Err(output_is_lost(&lost))));
-    result.map_or_else(|failure| end(&failure), |()| ExitCode::SUCCESS)
+    result.map_or_else(|failure| end(&failure), |()| 0)
 }
 
 fn output_is_lost(why: &dyn Display) -> Failure {
@@ -159,7 +169,7 @@ fn output_is_lost(why: &dyn Display) -> Failure {
 }
 
 /// Prints why the program ends.
-fn end(failure: &Failure) -> ExitCode {
+fn end(failure: &Failure) -> u8 {
     match failure {
         Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => tell(message),
         Failure::Shaders(diagnostics) => print_diagnostics(diagnostics),

@@ -14,6 +14,7 @@ pub fn clean_up_on_end() {
         if let Some(signal) = signal {
             let _halt = specula::picture::remove_unfinished();
             super::view::supervisor::clean_up();
+            specula::mcp::remove_temporary();
             // The process is gone after this.
             let _ = emulate_default_handler(signal);
         }

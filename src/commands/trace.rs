@@ -55,6 +55,9 @@ pub struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Add `around` to the JSON: the values of the statements of --file at the 8x8 pixels around the pixel
+    #[arg(long, requires = "json", requires = "file")]
+    around: bool,
     #[command(flatten)]
     frames: Frames,
     #[command(flatten)]
@@ -80,13 +83,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let files = args.file.iter().map(String::as_str).chain(args.assert.iter().map(Assertion::file));
     let files: Vec<&str> = files.collect();
     let stage = args.stage.as_deref();
-    let trace = headless.trace(&TraceRequest {
-        at: args.at,
-        mode: &mode,
-        stage,
-        invocation: args.invocation,
-        files: &files,
-    })?;
+    let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
+    let trace = headless.trace(&request)?;
+    let around = if args.around { Some(headless.trace_around(&request)?) } else { None };
     drop(progress);
     let fragment = chosen(&trace, args.fragment)?;
     let failed: Vec<String> =
@@ -94,6 +93,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     if args.json {
         let mut value = trace.json(fragment);
         (value["pixel"], value["mode"]) = (json!([x, y]), json!(slug));
+        if let Some(around) = around {
+            value["around"] = around.json();
+        }
         if !args.assert.is_empty() {
             value["failed"] = json!(failed);
         }

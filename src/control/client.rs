@@ -10,6 +10,9 @@ const MOST_UNREAD: usize = 16 << 20;
 /// Commands of a client that may be unanswered. The next one is read only once one of them has been answered.
 const MOST_OPEN: usize = 64;
 
+/// Time between two questions whether to wait any longer.
+const ASK_AGAIN: Duration = Duration::from_millis(100);
+
 /// Ends the connection to a client.
 pub type HangUp = Box<dyn Fn() + Send + Sync>;
 
@@ -95,6 +98,17 @@ impl Client {
         let mut queue = self.0.lock();
         queue.open = queue.open.saturating_sub(1);
         self.0.changed.notify_all();
+    }
+
+    /// Waits until all commands are answered, the client no longer reads, or `gives_up` says so, which is asked a few times a second.
+    pub fn wait_for_answers(&self, gives_up: impl Fn() -> bool) {
+        let mut queue = self.0.lock();
+        while queue.open > 0 && !queue.is_closed {
+            queue = self.0.changed.wait_timeout(queue, ASK_AGAIN).unwrap_or_else(PoisonError::into_inner).0;
+            if gives_up() {
+                return;
+            }
+        }
     }
 
     /// Waits until all lines are written, at most until `deadline`.

@@ -51,12 +51,18 @@ impl Control {
     }
 
     /// Reads commands on a thread until `input` ends; the end of the input ends nothing else. Answers go to `client`. `then` runs
-    /// at the end.
-    pub fn read(&self, input: impl Read + Send + 'static, client: Client, then: impl FnOnce() + Send + 'static) {
+    /// at the end, and may return a last line.
+    pub fn read(
+        &self,
+        input: impl Read + Send + 'static,
+        client: Client,
+        then: impl FnOnce(&Client) -> Option<String> + Send + 'static,
+    ) {
         let sender = self.sender.clone();
         let work = move || {
             reader::read(input, &client, &sender);
-            then();
+            let last = then(&client);
+            last.iter().for_each(|line| reader::read(line.as_bytes(), &client, &sender));
         };
         if let Err(error) = std::thread::Builder::new().name("specula-stdin".to_owned()).spawn(work) {
             warn(format_args!("no command from standard input is carried out: {error}"));

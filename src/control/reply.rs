@@ -40,6 +40,11 @@ impl Reply {
         Self { to: To::Window(Box::new(take)), id: Value::Null, command: String::new() }
     }
 
+    /// The identifier in the line of the command; null without one.
+    pub(crate) fn id(&self) -> &Value {
+        &self.id
+    }
+
     /// Answers that the command is done. `result` is its result, or null.
     pub(crate) fn done(mut self, result: Value) {
         self.answer(Ok(result), Value::Null);

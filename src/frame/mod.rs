@@ -7,17 +7,17 @@ mod baked;
 mod date;
 mod display;
 mod formats;
+mod inputs;
 mod keys;
 mod material_variant;
 mod mode_sets;
+mod pass_blocks;
 mod pipeline_key;
 mod pipelines;
 mod scene;
 mod shared_mode;
 pub mod stages;
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(crate) use baked::BakeStage;
@@ -26,10 +26,14 @@ pub use date::Date;
 pub use display::{Display, Limits, legend_limits, short};
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
+pub(crate) use inputs::BEYOND;
+pub use inputs::{Clock, FrameInputs, MeasuredKey, Revisions};
 pub use keys::{Keys, key_names};
 pub use material_variant::MaterialVariant;
 pub(crate) use material_variant::QUADS;
 pub use mode_sets::mode_sets;
+pub(crate) use pass_blocks::PassBlocks;
+use pass_blocks::pass_blocks;
 pub(crate) use pipeline_key::PipelineKey;
 pub use pipelines::PipelineRequest;
 pub(crate) use pipelines::draws_by_index;
@@ -42,105 +46,13 @@ use glam::Mat4;
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
 use crate::scene::environment::MODEL;
-use crate::scene::{
-    Bounds, CameraView, LightGrid, Model, Sun, has_exact_sun, lights, separates_suns, view_of, view_of_light,
-};
+use crate::scene::{Bounds, CameraView, LightGrid, Model, Sun, lights, separates_suns, view_of, view_of_light};
 use crate::settings::Settings;
-use crate::shader::graph::{Input, RenderPhase};
+use crate::shader::graph::RenderPhase;
 use crate::shader::{Mode, ShaderSet, values};
 
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
-
-/// Everything that a frame depends on.
-#[derive(Clone, Copy)]
-pub struct FrameInputs<'a> {
-    /// The user's settings. A mode that the tree lacks falls back to the tree's first mode. A value that does not fit its
-    /// shader parameter falls back to the parameter's default.
-    pub settings: &'a Settings,
-    /// One generation of shaders.
-    pub shaders: &'a Arc<ShaderSet>,
-    /// The model as the settings show it, in its pose; `None` draws the background alone.
-    pub scene: Option<&'a Scene>,
-    /// Revisions of the files of `settings.environment.name` and `settings.measured`.
-    pub revisions: Revisions,
-    /// The time, for animated shaders, and the input.
-    pub clock: Clock,
-    /// Width and height of the picture, pixels.
-    pub size: (u32, u32),
-    /// Format of the HDR target.
-    pub target: TargetFormat,
-}
-
-/// [`Clock::cursor_px`] while the mouse is not over the picture.
-pub(crate) const BEYOND: [f32; 2] = [-1.0; 2];
-
-/// The time of a frame, and the state of mouse and keys.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
-    /// Seconds since the start.
-    pub time_s: f32,
-    /// Seconds since the frame before.
-    pub delta_s: f32,
-    /// Frames before this one.
-    pub frame_index: u32,
-    /// The mouse over the picture: `interface::Frame::mouse_px`.
-    pub mouse_px: [f32; 4],
-    /// Where the mouse is: `interface::Frame::cursor_px`.
-    pub cursor_px: [f32; 2],
-    /// The buttons that are down: `interface::Frame::mouse_buttons`.
-    pub mouse_buttons: u32,
-    /// The date and the time of the day.
-    pub date: Date,
-    /// The keys.
-    pub keys: Keys,
-}
-
-impl Default for Clock {
-    fn default() -> Self {
-        Self {
-            time_s: 0.0,
-            delta_s: 0.0,
-            frame_index: 0,
-            mouse_px: [0.0; 4],
-            cursor_px: BEYOND,
-            mouse_buttons: 0,
-            date: Date::default(),
-            keys: Keys::default(),
-        }
-    }
-}
-
-/// Counts the changes of watched files, so that the same name is loaded again after a change. Also holds what is known only after
-/// a bake.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Revisions {
-    /// Changes of the environment map.
-    pub environment: u64,
-    /// Changes of the measured BRDF.
-    pub measured: u64,
-    /// Suns of the environment that was baked last. Until a map is baked it counts as having none, so that frames without suns
-    /// contain no code for them; `Resources` binds no frame to an environment with more suns.
-    pub suns: u32,
-}
-
-impl Revisions {
-    /// The suns of the environment that lights a frame with these settings, as far as known. While the map of the settings is
-    /// being baked, this is the previous environment.
-    pub(crate) fn suns_of(self, settings: &Settings) -> u32 {
-        let environment = &settings.environment;
-        let exact = separates_suns(environment) && has_exact_sun(&environment.name);
-        if environment.is_lit() { self.suns.max(exact.into()) } else { 0 }
-    }
-}
-
-/// Identifies a measured BRDF.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MeasuredKey {
-    /// MERL or UTIA file.
-    pub path: PathBuf,
-    revision: u64,
-}
 
 /// The part of a frame that depends on neither camera, time nor size. Frames that differ only by these share it.
 struct Needs {
@@ -433,51 +345,4 @@ impl FrameState {
         }
         frame
     }
-}
-
-/// The uniform blocks of declared passes, by the place of the pass in [`PipelineRequest::passes`] and the binding.
-pub(crate) type PassBlocks = BTreeMap<(usize, u32), Vec<u8>>;
-
-fn pass_blocks(
-    settings: &Settings,
-    shaders: &ShaderSet,
-    pipelines: &PipelineRequest,
-    size: (u32, u32),
-    clock: Clock,
-) -> PassBlocks {
-    let mut blocks = PassBlocks::new();
-    for (index, pass) in pipelines.passes.iter().enumerate() {
-        for (binding, input) in &pass.inputs {
-            let block = match input {
-                Input::Parameters(bytes, members) => {
-                    values::block(&settings.shader, &shaders.parameters, members, *bytes)
-                }
-                Input::Pass(bytes, members) => properties(pass.desc.size.pixels(size), clock, *bytes, members),
-                _ => continue,
-            };
-            blocks.insert((index, *binding), block);
-        }
-    }
-    blocks
-}
-
-/// The content of a pass's block `Pass`.
-fn properties((width, height): (u32, u32), clock: Clock, bytes: u32, members: &[(u32, String)]) -> Vec<u8> {
-    let mut block = vec![0; bytes as usize];
-    for (offset, name) in members {
-        let value = match name.as_str() {
-            "size_px" => [width as f32, height as f32].map(f32::to_le_bytes).concat(),
-            "mouse_px" => clock.mouse_px.map(f32::to_le_bytes).concat(),
-            "date" => clock.date.parts().map(f32::to_le_bytes).concat(),
-            "time_s" => clock.time_s.to_le_bytes().to_vec(),
-            "delta_s" => clock.delta_s.to_le_bytes().to_vec(),
-            "frame_index" => clock.frame_index.to_le_bytes().to_vec(),
-            _ => continue,
-        };
-        let at = *offset as usize;
-        if let Some(place) = block.get_mut(at..at + value.len()) {
-            place.copy_from_slice(&value);
-        }
-    }
-    block
 }

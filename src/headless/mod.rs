@@ -7,6 +7,7 @@ mod error;
 mod hints;
 mod inspect;
 mod near_pixel;
+mod neighborhood;
 mod not_finite;
 mod not_finite_pictures;
 mod offscreen_view;

@@ -13,7 +13,7 @@ use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
 use crate::pipeline::{PipelineSet, Reloader};
 use crate::render::{BoundFrame, Redraw, Resources};
 use crate::settings::Settings;
-use crate::shader::trace::{LoggingStage, Target, Trace, TraceableStage, TracedStage, log};
+use crate::shader::trace::{Invocations, LoggingStage, Target, Trace, TraceableStage, TracedStage, log};
 use crate::shader::{Compiler, Mode, PixelValue, ShaderSet, Source, StageKind};
 
 /// Stages that are kept: two of the newest version of the shaders, and of the one before.
@@ -24,6 +24,7 @@ const MOST_FILES: usize = 4;
 const MOST_CONSTANTS: usize = 16;
 
 /// A pixel of a frame, which is drawn with one sample.
+#[derive(Clone, Copy)]
 pub struct TracedPixel<'a> {
     /// The frame.
     pub whole: &'a Arc<FrameState>,
@@ -127,6 +128,11 @@ impl<'a> TracePlan<'a> {
         let stage = stage_plan::plan(&all, &stage, pixel.at, pixel.invocation)?;
         let state = near.state_of(stage.extent, pixel.mode, pixel.clock, &pixel.whole.shaders);
         Ok(Self { pixel, near, stage, state })
+    }
+
+    /// Whether the stage draws a pixel without the rest of the picture.
+    pub(super) fn is_of_pixel(&self) -> bool {
+        matches!(self.stage.of, Invocations::Pixel(..)) && !self.stage.is_whole
     }
 
     /// The path of the stage.

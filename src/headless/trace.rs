@@ -4,7 +4,7 @@ use super::pixel_tracer::{PixelTracer, TracePlan, TraceTools, TracedPixel};
 use super::{Headless, HeadlessError};
 use crate::frame::Clock;
 use crate::shader::Mode;
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Neighborhood, Trace};
 
 /// The question of a trace.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,30 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`]; the picture has no such stage, the stage has no such file, or it does not run for the pixel.
     pub fn trace(&mut self, request: &TraceRequest<'_>) -> Result<Trace, HeadlessError> {
-        let TraceRequest { at, mode, stage, invocation, files } = *request;
+        self.with_pixel(request, |pixel, tracer, tools| {
+            let plan = TracePlan::new(pixel, request.files)?;
+            let shown = tracer.value(&plan, tools)?;
+            tracer.trace(&plan, tools, request.files, &shown)
+        })
+    }
+
+    /// The values of the statements of the request's first file at a square of pixels around the pixel.
+    ///
+    /// # Errors
+    /// As [`Headless::trace`]; the request names no file, or the stage is one that needs the whole picture.
+    pub fn trace_around(&mut self, request: &TraceRequest<'_>) -> Result<Neighborhood, HeadlessError> {
+        let none = || HeadlessError::Settings("the pixels around one are traced for one file".to_owned());
+        let file = *request.files.first().ok_or_else(none)?;
+        self.with_pixel(request, |pixel, tracer, tools| tracer.neighborhood(pixel, tools, file))
+    }
+
+    /// Calls `run` with the pixel of a request and what draws it.
+    fn with_pixel<T>(
+        &mut self,
+        request: &TraceRequest<'_>,
+        run: impl FnOnce(&TracedPixel<'_>, &mut PixelTracer, &mut TraceTools<'_>) -> Result<T, HeadlessError>,
+    ) -> Result<T, HeadlessError> {
+        let TraceRequest { at, mode, stage, invocation, .. } = *request;
         self.finish_or_fail()?;
         self.provide()?;
         let is_animated = self.is_animated()?;
@@ -53,10 +76,7 @@ impl Headless {
             stage,
             invocation,
         };
-        let plan = TracePlan::new(&pixel, files)?;
         let mut tracer = PixelTracer::new(&self.gpu, &self.layouts)?;
-        let mut tools = TraceTools::new(&mut self.resources, &self.reloader);
-        let shown = tracer.value(&plan, &mut tools)?;
-        tracer.trace(&plan, &mut tools, files, &shown)
+        run(&pixel, &mut tracer, &mut TraceTools::new(&mut self.resources, &self.reloader))
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
-use crossbeam_channel::Receiver;
+use crossbeam_channel::{Receiver, Sender};
 use winit::event_loop::EventLoopProxy;
 
 use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, WorkerMessage};
@@ -22,7 +22,7 @@ use crate::render::PathTracingKey;
 use crate::render::tools::Tools;
 use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::statistics::Difference;
 use crate::write_back::{TreeFile, Written};
@@ -56,14 +56,18 @@ pub(crate) enum Message {
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
     TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
+    /// A text that a program has sent was written to a file of the tree, or the reason why not, by the number of the request.
+    TextWritten(u64, TreeFile, Result<Written, String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
     NotFinite(u64, Box<NotFinite>),
     /// The trace of a file at the pinned pixel, for the request with this number.
     Traced(u64, Box<Traced>),
-    /// The same in an older version of the shaders.
-    TracedBefore(u64, Box<(Arc<ShaderSet>, Trace)>),
+    /// The same in an older version of the shaders; `None` if that cannot be traced.
+    TracedBefore(u64, Option<Box<(Arc<ShaderSet>, Trace)>>),
+    /// The values around the pinned pixel, or why there are none, for the request with this number.
+    TracedAround(u64, Box<Result<Neighborhood, String>>),
     /// A trace for another program, for the request with this number.
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.
@@ -146,22 +150,20 @@ pub(crate) enum TaskKind {
     External,
 }
 
-/// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
+/// Sends messages to the window, or to the loop of a session without one, and wakes it. After its end, messages are dropped.
 #[derive(Clone)]
-pub(crate) struct MessageSender(EventLoopProxy<Message>);
+pub(crate) enum MessageSender {
+    Window(EventLoopProxy<Message>),
+    Loop(Sender<Message>),
+}
 
 impl MessageSender {
-    pub(crate) fn new(proxy: EventLoopProxy<Message>) -> Self {
-        Self(proxy)
-    }
-
     pub(crate) fn send(&self, message: Message) {
-        let _ = self.0.send_event(message);
-    }
-
-    /// A handle with which AccessKit sends messages to the window.
-    pub(crate) fn proxy(&self) -> EventLoopProxy<Message> {
-        self.0.clone()
+        // Fails only after the end.
+        match self {
+            Self::Window(proxy) => drop(proxy.send_event(message)),
+            Self::Loop(sender) => drop(sender.send(message)),
+        }
     }
 
     /// Sends the commands from outside, on a thread that lasts as long as the process.

@@ -12,7 +12,7 @@ use crate::headless::{HeadlessError, PixelTracer, TracePlan, TraceTools, TracedP
 use crate::pipeline::PipelineSet;
 use crate::render::{BoundFrame, Resources, View};
 use crate::session::Session;
-use crate::shader::trace::Trace;
+use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Compiler, ShaderSet, Source};
 
 /// Copies of what the picture is drawn with, the pixel, and the file whose statements are traced.
@@ -42,6 +42,8 @@ pub(crate) struct OlderVersion {
 enum Asked {
     /// A trace, and an older version of the shaders to compare with.
     Trace(Box<TraceRequest>, Option<OlderVersion>),
+    /// The pixels around one.
+    Around(Box<TraceRequest>),
     /// The panel is closed: the memory is free for other things.
     Release,
 }
@@ -72,6 +74,12 @@ impl Tracer {
         self.ask(Asked::Trace(Box::new(request), before))
     }
 
+    /// Traces a file at the pixels around one, and drops the previous request. Returns the number of the request.
+    pub(crate) fn trace_around(&mut self, request: TraceRequest) -> u64 {
+        self.is_used = true;
+        self.ask(Asked::Around(Box::new(request)))
+    }
+
     /// Ends what is under way, and releases the memory.
     pub(crate) fn release(&mut self) {
         if std::mem::take(&mut self.is_used) {
@@ -84,6 +92,12 @@ impl Tracer {
             let (gpu, done, mut tracer) = (self.gpu.clone(), self.done, None);
             move |sender: &MessageSender, turn: &Turn<'_>, asked| match asked {
                 Asked::Release => tracer = None,
+                Asked::Around(mut request) => {
+                    let around = around(&gpu, &mut tracer, &mut request, turn).map_err(|error| error.to_string());
+                    if !turn.is_superseded() {
+                        sender.send(Message::TracedAround(turn.number, Box::new(around)));
+                    }
+                }
                 Asked::Trace(mut request, before) => {
                     let start = Instant::now();
                     let number = turn.number;
@@ -96,9 +110,10 @@ impl Tracer {
                     sender.send(done(number, Box::new(Traced { ms, ..result })));
                     let Some(before) = before.filter(|_| is_good) else { return };
                     let result = trace(&gpu, &mut tracer, &mut request, Some(&before), turn);
-                    // Without it, the newer trace stands alone: the older version may lack the file, or its light is gone.
-                    if let (Ok(trace), false) = (result.trace, turn.is_superseded()) {
-                        sender.send(Message::TracedBefore(number, Box::new((before.shaders, trace))));
+                    if !turn.is_superseded() {
+                        // Without it, the newer trace stands alone: the older version may lack the file, or its light is gone.
+                        let found = result.trace.ok().map(|trace| Box::new((before.shaders, trace)));
+                        sender.send(Message::TracedBefore(number, found));
                     }
                 }
             }
@@ -119,6 +134,17 @@ fn trace(
     traced
 }
 
+/// Traces a file at the pixels around one, in the newest version of the shaders.
+fn around(
+    gpu: &Arc<Gpu>,
+    tracer: &mut Option<PixelTracer>,
+    request: &mut TraceRequest,
+    turn: &Turn<'_>,
+) -> Result<Neighborhood, HeadlessError> {
+    let file = request.file.clone().unwrap_or_default();
+    with_pixel(gpu, tracer, request, None, turn, |pixel, tracer, tools| tracer.neighborhood(pixel, tools, &file))
+}
+
 /// Writes what is known before the trace to `traced`.
 fn run(
     gpu: &Arc<Gpu>,
@@ -128,10 +154,35 @@ fn run(
     turn: &Turn<'_>,
     traced: &mut Traced,
 ) -> Result<Trace, HeadlessError> {
+    let file = request.file.clone();
+    let end_if_superseded = || if turn.is_superseded() { Err(HeadlessError::Canceled) } else { Ok(()) };
+    with_pixel(gpu, tracer, request, older, turn, |pixel, tracer, tools| {
+        let plan = TracePlan::new(pixel, file.as_deref().as_slice())?;
+        let place = &mut traced.place;
+        (place.stage, place.stages) = (plan.stage().to_owned(), plan.stages());
+        place.files = tracer.files(&plan, tools)?;
+        let file = file.unwrap_or_else(|| place.stage.clone());
+        place.file.clone_from(&file);
+        end_if_superseded()?;
+        let shown = tracer.value(&plan, tools)?;
+        end_if_superseded()?;
+        tracer.trace(&plan, tools, &[&file], &shown)
+    })
+}
+
+/// Calls `run` with the pixel of a request and what draws it, in the newest version of the shaders or in an older one.
+fn with_pixel<T>(
+    gpu: &Arc<Gpu>,
+    tracer: &mut Option<PixelTracer>,
+    request: &mut TraceRequest,
+    older: Option<&OlderVersion>,
+    turn: &Turn<'_>,
+    run: impl FnOnce(&TracedPixel<'_>, &mut PixelTracer, &mut TraceTools<'_>) -> Result<T, HeadlessError>,
+) -> Result<T, HeadlessError> {
     let lacks = |what: &str| HeadlessError::Settings(what.to_owned());
     request.session.settings.view.msaa = 1;
     let target = View::target_format(gpu, 1, true).map_err(HeadlessError::Settings)?;
-    let TraceRequest { session, resources, compiler, source, clock, size, at, stage, file } = request;
+    let TraceRequest { session, resources, compiler, source, clock, size, at, stage, .. } = request;
     let newest = resources.pipelines().cloned().ok_or_else(|| lacks("there are no shaders yet"))?;
     let set = older.map_or(&newest, |older| &older.set);
     let shaders = older.map_or(&newest.shaders, |older| &older.shaders);
@@ -159,16 +210,5 @@ fn run(
         stage: stage.as_deref(),
         invocation: None,
     };
-    let plan = TracePlan::new(&pixel, file.as_deref().as_slice())?;
-    let mut tools = TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() };
-    let end_if_superseded = || if turn.is_superseded() { Err(HeadlessError::Canceled) } else { Ok(()) };
-    let place = &mut traced.place;
-    (place.stage, place.stages) = (plan.stage().to_owned(), plan.stages());
-    place.files = tracer.files(&plan, &tools)?;
-    let file = file.clone().unwrap_or_else(|| place.stage.clone());
-    place.file.clone_from(&file);
-    end_if_superseded()?;
-    let shown = tracer.value(&plan, &mut tools)?;
-    end_if_superseded()?;
-    tracer.trace(&plan, &mut tools, &[&file], &shown)
+    run(&pixel, tracer, &mut TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() })
 }

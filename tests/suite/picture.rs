@@ -7,3 +7,4 @@ mod golden;
 mod inspector;
 mod motion;
 mod parts;
+mod report;

@@ -109,7 +109,9 @@ pub(in crate::app) fn on_tree_found(
     watch_tree(state, engine, &source);
     engine.threads.worker.open_tree(source);
     engine.threads.worker.reloaded(edits);
-    engine.find_exercise(&state.source);
+    if state.has_window {
+        engine.find_exercise(&state.source);
+    }
 }
 
 /// Opens a file or folder in the user's editor.

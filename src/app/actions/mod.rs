@@ -11,5 +11,6 @@ pub(super) mod inspect;
 pub(super) mod restored;
 pub(super) mod select;
 pub(super) mod sessions;
+pub(super) mod texts;
 pub(super) mod trace;
 pub(super) mod watch;

@@ -42,6 +42,7 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     };
     if state.traces.asked() == Some(&subject) {
         state.traces.resume();
+        ask_around(state, engine);
         return None;
     }
     let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
@@ -52,9 +53,19 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     let before = if state.traces.lacks_before(&subject) { version_before(state, engine) } else { None };
     let place = (subject.stage.clone(), subject.file.as_ref());
     let request = request_of(state, engine, &subject.picture, subject.at, place);
+    let with_before = before.is_some();
     let number = engine.threads.tracer.trace(request, before);
-    state.traces.ask(subject, number);
+    state.traces.ask(subject, number, with_before);
     None
+}
+
+/// Asks for the values around the pixel, once the mouse rests on one of its values.
+fn ask_around(state: &mut State, engine: &mut Engine) {
+    let Some(newest) = state.traces.lacks_around().filter(|_| state.workspace.sight.around) else { return };
+    let place = (Some(newest.stage.clone()), Some(&newest.file));
+    let request = request_of(state, engine, &newest.of.picture, newest.of.at, place);
+    let number = engine.threads.tracer.trace_around(request);
+    state.traces.around.ask(&newest, number);
 }
 
 /// The request to trace a pixel of a picture.

@@ -35,11 +35,19 @@ pub(in crate::app) struct About {
     pub(in crate::app) required: &'static [&'static str],
     /// Description of the command and of its result.
     pub(in crate::app) doc: &'static str,
+    /// Whether it is about the window, so that a session without one refuses it.
+    pub(in crate::app) needs_window: bool,
     /// Whether the palette and the keys offer the command now.
     pub(in crate::app) is_enabled: fn(&State) -> bool,
 }
 
 impl About {
+    /// Why a session without a window refuses the command; `None` if it does not.
+    pub(in crate::app) fn refusal(&self, state: &State) -> Option<String> {
+        let refuses = self.needs_window && !state.has_window;
+        refuses.then(|| format!("`{}` is about the window, and this session has none", self.id))
+    }
+
     /// Names of the shortcuts, as lists of keys show them.
     pub(in crate::app) fn key_names(&self) -> String {
         match self.keys {

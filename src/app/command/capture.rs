@@ -1,19 +1,21 @@
 //! Commands that write pictures and animations, and read pixels.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use serde::Deserialize;
 use serde_json::Value;
 use winit::keyboard::NamedKey;
 
 use super::about::Group;
+use super::fields;
 use super::shortcut::Shortcut;
 use super::spec::{Outcome, Spec, Until};
 use crate::app::engine::Engine;
 use crate::app::state::State;
-use crate::app::state::captures::Job;
+use crate::app::state::captures::{Destination, Job};
 use crate::capture::{Turn, Turntable, check_animation, modes_of};
-use crate::picture;
+use crate::picture::{self, Encoding};
 
 /// Size of a picture of a sheet, pixels.
 const TILE: [u32; 2] = [320, 180];
@@ -36,15 +38,36 @@ pub(in crate::app) struct Capture {
 
 pub(in crate::app) static CAPTURE: Spec<Capture> = Spec::new("capture", capture).takes(
     r#""file"?: "a.png" | "a.exr", "size"?: [w,h], "mode"?: "d", "frames"?: n, "ui"?: true"#,
-    "Writes the picture as it is on screen, or drawn anew at a size or in a mode; EXR holds raw floats; with ui the whole window. Result: file, width, height",
+    "Writes the picture as it is on screen, or drawn anew at a size or in a mode; EXR holds raw floats; with ui the whole window. Result: file, width, height, ms",
 );
 
-pub(in crate::app) static SCREENSHOT: Spec<()> =
-    Spec::plain("screenshot", |state, _, ()| state.screenshot = true).label("Screenshot", "capture PNG").shortcuts(
+pub(in crate::app) static SCREENSHOT: Spec<()> = Spec::plain("screenshot", |state, _, ()| state.screenshot = true)
+    .label("Screenshot", "capture PNG")
+    .shortcuts(
         Group::Picture,
         &[Shortcut::named(NamedKey::F12).everywhere()],
         "save a screenshot as specula-1.png and so on",
-    );
+    )
+    .of_window();
+
+/// Fields of `picture`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct Picture {
+    file: PathBuf,
+    format: Option<String>,
+    raw: bool,
+    size: Option<[u32; 2]>,
+    mode: Option<String>,
+}
+
+pub(in crate::app) static PICTURE: Spec<Picture> = Spec::new("picture", render)
+    .takes(
+        r#""file": "a.npy" | "a.png" | "a.exr", "format"?: "npy", "raw"?: true, "size"?: [w,h], "mode"?: "d""#,
+        "Writes the final picture as `specula render` does, at its size and in its mode or in others. A NumPy array (height, width, 4) holds the \
+         bytes of the PNG or, with raw, the floats of the EXR; format is for a file whose name does not end so. Result: file, width, height, ms",
+    )
+    .required(&["file"]);
 
 /// Fields of `probe`.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -120,38 +143,84 @@ pub(in crate::app) static TIMELINE: Spec<Timeline> = Spec::new("timeline", |_, _
     )
     .required(&["file"]);
 
-pub(in crate::app) static CANCEL: Spec<()> = Spec::fallible("cancel", |state, _, ()| {
-    state.cancel_captures();
-    Ok(Until::CapturesEnded)
+/// Ends a command by the identifier in its line; all captures without one.
+pub(in crate::app) static CANCEL: Spec<Option<Value>> = Spec::new("cancel", |state, _, of: Option<Value>| match of {
+    None => {
+        state.cancel_captures();
+        Ok(Until::CapturesEnded)
+    }
+    Some(id) if state.waiting.cancel_of(&id) || state.captures.cancel_of(&id) => Ok(Until::DONE),
+    Some(id) => Err(format!("no command with the id {id} can be canceled: it has ended, or it ends soon")),
 })
-.line("Ends the captures, sheets, animations and probes that are under way; each answers with an error");
+.parsed(
+    r#""of"?: id"#,
+    "Ends the command with this id, which answers with the error `canceled`; without a field, all captures, sheets, animations and probes",
+    |about, mut fields| {
+        let of = fields::take(&mut fields, "of");
+        fields::end(about, of, fields)
+    },
+);
 
 /// Ends the capture with a number.
 pub(in crate::app) static CANCEL_ONE: Spec<u64> =
     Spec::act("cancel-one", |state, _, number| state.captures.cancel_one(number));
 
-fn capture(_: &mut State, _: &mut Engine, Capture { file, size, mode, frames, ui }: Capture) -> Outcome {
+fn render(state: &mut State, _: &mut Engine, Picture { file, format, raw, size, mode }: Picture) -> Outcome {
+    let encoding = match format {
+        None => Encoding::of(&file)?,
+        Some(name) => {
+            Encoding::named(&name).ok_or_else(|| format!("`format` is `{name}`; it can be npy, png or exr"))?
+        }
+    };
+    picture::check_place(&file)?;
+    let encoding = match encoding {
+        Encoding::Npy { .. } => Encoding::Npy { raw },
+        Encoding::Png if raw => return Err("a PNG holds no raw values: write .npy or .exr".to_owned()),
+        encoding => encoding,
+    };
+    if let Some(mode) = mode.as_ref().filter(|_| is_compiled(state)) {
+        modes_of(&state.session, std::slice::from_ref(mode))?;
+    }
+    let to = Destination { file: Some(file), encoding: Some(encoding), since: Instant::now() };
+    let size = size.map(<(u32, u32)>::from).filter(|size| state.shown().is_none_or(|shown| shown.size != *size));
+    let mode = mode.filter(|mode| *mode != state.session.settings.mode);
+    Ok(match (size, mode) {
+        (None, None) => Until::Rendered(to),
+        (size, mode) => Until::Picture(Job::Picture { to, size, mode, frames: 1 }),
+    })
+}
+
+/// Whether the names of all modes are known.
+fn is_compiled(state: &State) -> bool {
+    state.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete())
+}
+
+fn capture(state: &mut State, _: &mut Engine, Capture { file, size, mode, frames, ui }: Capture) -> Outcome {
     if let Some(file) = &file {
         picture::check_path(file)?;
     }
-    let is_exr = file.as_deref().is_some_and(picture::holds_light);
+    let is_light = file.as_deref().is_some_and(picture::holds_light);
     if ui {
-        let wrong = size.is_some() || mode.is_some() || frames.is_some() || is_exr;
+        if !state.has_window {
+            return Err("`ui` is about the window, and this session has none".to_owned());
+        }
+        let wrong = size.is_some() || mode.is_some() || frames.is_some() || is_light;
         return match wrong {
             true => Err("a capture with `ui` has the window's size and mode, and is a PNG".to_owned()),
             false => Ok(Until::Window(file)),
         };
     }
-    if size.is_none() && mode.is_none() && frames.is_none() && !is_exr {
-        return Ok(Until::Screen(file));
+    let to = Destination::named(file);
+    if size.is_none() && mode.is_none() && frames.is_none() && !is_light {
+        return Ok(Until::Screen(to));
     }
-    Ok(Until::Picture(Job::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
+    Ok(Until::Picture(Job::Picture { to, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
 }
 
 fn probe(state: &mut State, _: &mut Engine, Probe { at, modes }: Probe) -> Outcome {
     let names = modes.unwrap_or_default();
     // The names are looked up again when the picture is there.
-    if state.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete()) {
+    if is_compiled(state) {
         modes_of(&state.session, &names)?;
     }
     Ok(Until::Picture(Job::Probe { at: at.into(), names }))

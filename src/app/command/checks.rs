@@ -20,7 +20,8 @@ pub(in crate::app) static SHOW_FAILURE: Spec<()> = Spec::fallible("show-failure"
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
     Ok(Until::DONE)
 })
-.label("First failed check", "assertion undefined operation line");
+.label("First failed check", "assertion undefined operation line")
+.of_window();
 
 fn checks(state: &mut State, _: &mut Engine, (): ()) -> Outcome {
     state.checks.expect();

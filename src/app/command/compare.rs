@@ -71,7 +71,8 @@ pub(in crate::app) static TOGGLE_COMPARE: Spec<()> = Spec::fallible("toggle-comp
 /// Shows or hides the map of the differences.
 pub(in crate::app) static TOGGLE_DIFFERENCE: Spec<()> =
     Spec::plain("toggle-difference", |state, _, ()| state.compare.shows_map ^= true)
-        .enabled(|state| state.compare.is_on());
+        .enabled(|state| state.compare.is_on())
+        .of_window();
 
 /// Begins, changes or ends a comparison.
 fn compare(state: &mut State, engine: &mut Engine, asked: CompareFields) -> Outcome {

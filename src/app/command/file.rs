@@ -56,34 +56,39 @@ pub(in crate::app) static REMOVE_MODEL: Spec<usize> = Spec::new("remove-model", 
 
 pub(in crate::app) static SHOW_GALLERY: Spec<()> =
     Spec::plain("gallery", |state, _, ()| state.workspace.request(PanelRequest::ShowGallery))
-        .label("Open the gallery", "built-in models environments pictures browse");
+        .label("Open the gallery", "built-in models environments pictures browse")
+        .of_window();
 
 pub(in crate::app) static RESTORE_SESSION: Spec<()> =
     Spec::plain("restore-session", |state, engine, ()| restore_session(state, engine))
-        .label("Restore the last session", "continue");
+        .label("Restore the last session", "continue")
+        .of_window();
 
 /// Whether later windows go on with the last session by themselves.
 pub(in crate::app) static RESTORE_ALWAYS: Spec<bool> =
-    Spec::act("restore-always", |state, _, always| state.last_sessions.set_always(always));
+    Spec::act("restore-always", |state, _, always| state.last_sessions.set_always(always)).of_window();
 
 /// Offers the last session no longer.
 pub(in crate::app) static REFUSE_SESSION: Spec<()> =
-    Spec::plain("refuse-session", |state, _, ()| state.offers_session = false);
+    Spec::plain("refuse-session", |state, _, ()| state.offers_session = false).of_window();
 
 /// Opens what the user chooses in the file dialog.
 pub(in crate::app) static CHOOSE: Spec<Dialog> = Spec::new("choose", choose)
     .arguments(|_| Dialog::File)
     .label("Open a file", "model environment shader measured BRDF")
-    .shortcuts(Group::Program, &[Shortcut::key('o').ctrl()], "open a model, an environment or a shader");
+    .shortcuts(Group::Program, &[Shortcut::key('o').ctrl()], "open a model, an environment or a shader")
+    .of_window();
 
 /// Shows a model that the user chooses beside those on screen.
 pub(in crate::app) static CHOOSE_BESIDE: Spec<()> =
     Spec::fallible("choose-beside", |state, engine, ()| choose(state, engine, Dialog::Beside))
-        .label("Add a model beside this one", "open several second compare side by side");
+        .label("Add a model beside this one", "open several second compare side by side")
+        .of_window();
 
 pub(in crate::app) static CHOOSE_TREE: Spec<()> =
     Spec::fallible("choose-tree", |state, engine, ()| choose(state, engine, Dialog::Tree))
-        .label("Open a shader tree", "folder");
+        .label("Open a shader tree", "folder")
+        .of_window();
 
 /// Writes the built-in shaders to a folder, or to one that the user chooses, and opens them.
 pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> =
@@ -93,7 +98,8 @@ pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> =
             engine.threads.wait(move || Some(Message::NewTree(dialog::write_tree(folder))));
             Ok(Until::DONE)
         }
-    });
+    })
+    .of_window();
 
 /// Reads a folder for the command palette, on a thread.
 pub(in crate::app) static LIST_FOLDER: Spec<PathBuf> = Spec::act("list-folder", |state, engine, folder: PathBuf| {
@@ -102,16 +108,18 @@ pub(in crate::app) static LIST_FOLDER: Spec<PathBuf> = Spec::act("list-folder", 
         let files = file_kind::list(&folder);
         Some(Message::Listed(folder, files))
     });
-});
+})
+.of_window();
 
 /// Opens the command palette with the files of the working directory.
 pub(in crate::app) static OPEN_PATH: Spec<()> =
     Spec::plain("open-path", |state, _, ()| state.workspace.request(PanelRequest::ChooseFile(None)))
-        .label("Open a path", "file folder browse type");
+        .label("Open a path", "file folder browse type")
+        .of_window();
 
 /// Opens a file or folder in the user's editor.
-pub(in crate::app) static EDIT: Spec<Place> =
-    Spec::new("edit", |_, engine, place: Place| edit(engine, &place).map(|()| Until::DONE));
+pub(in crate::app) static OPEN_EDITOR: Spec<Place> =
+    Spec::new("open-editor", |_, engine, place: Place| edit(engine, &place).map(|()| Until::DONE)).of_window();
 
 /// The commands for files and folders that were dropped together. The first model is opened, and the others stand beside it; all do if the drop
 /// `adds`. While pictures are compared, another picture takes part.

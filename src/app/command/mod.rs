@@ -13,6 +13,7 @@ mod fields;
 pub(super) mod file;
 mod history;
 pub(super) mod layout;
+mod measure;
 pub(super) mod modes;
 mod numbers;
 pub(super) mod playback;
@@ -24,6 +25,7 @@ pub(super) mod shaders;
 mod shortcut;
 pub(super) mod source;
 pub(super) mod spec;
+mod texts;
 
 use winit::event::KeyEvent;
 use winit::keyboard::ModifiersState;
@@ -52,12 +54,15 @@ pub(super) fn execute(state: &mut State, engine: &mut Engine, command: Command) 
 /// Carries out a command from outside, and answers it when it is done.
 pub(super) fn on_asked(state: &mut State, engine: &mut Engine, Asked { command, fields, reply }: Asked) {
     let known = REGISTRY.iter().find(|known| known.about().id == command);
+    if let Some(refusal) = known.and_then(|known| known.about().refusal(state)) {
+        return reply.error(refusal);
+    }
     let parsed = known.and_then(|known| known.parse(fields)).unwrap_or_else(|| {
         let hint = did_you_mean(&command, described().map(|known| known.command));
         Err(format!("there is no command `{command}`.{hint} `commands` lists them all"))
     });
     let outcome: Outcome = parsed.and_then(|command| command.run(state, engine));
-    answer_when(state, reply, outcome);
+    answer_when(state, engine, reply, outcome);
     watch_files(state, engine);
 }
 

@@ -78,7 +78,8 @@ pub(in crate::app) static GRID: Spec<GridModes> = Spec::new("grid", show_grid)
         r#""modes": ["final", "d", "f"]"#,
         "Shows up to nine modes side by side; the selected mode becomes one of them. An empty list shows it alone. Result: modes",
     )
-    .required(&["modes"]);
+    .required(&["modes"])
+    .of_window();
 
 pub(in crate::app) static MODES: Spec<()> =
     Spec::fallible("modes", |state, _, ()| Ok(Until::Now(json!(shaders(state)?.modes))))

@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, checks, compare, costs, file, history, layout, modes, numbers, playback, program, scene, settings,
-    shaders, source,
+    camera, capture, checks, compare, costs, file, history, layout, measure, modes, numbers, playback, program, scene,
+    settings, shaders, source, texts,
 };
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -24,6 +24,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &modes::BACK,
     &camera::CAMERA,
     &capture::CAPTURE,
+    &capture::PICTURE,
     &capture::PROBE,
     &file::SHOW_GALLERY,
     &file::RESTORE_SESSION,
@@ -36,13 +37,16 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &file::REMOVE_MODEL,
     &file::CHOOSE_TREE,
     &file::NEW_TREE,
-    &file::EDIT,
+    &file::OPEN_EDITOR,
     &camera::FRAME,
     &camera::VIEW_FROM,
     &camera::KEEP_CAMERA,
     &camera::RECALL_CAMERA,
     &camera::LOOK_THROUGH,
     &shaders::RELOAD,
+    &texts::EDIT,
+    &texts::FILE,
+    &texts::FILES,
     &file::OPEN,
     &compare::COMPARE,
     &compare::TOGGLE_COMPARE,
@@ -60,6 +64,9 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &source::SOURCE,
     &source::SHOW_FILE,
     &source::SAVE_FILE,
+    &measure::CHECK,
+    &measure::FURNACE,
+    &measure::DIFF,
     &checks::CHECKS,
     &checks::SHOW_FAILURE,
     &costs::COST,
@@ -122,12 +129,14 @@ pub struct Described {
     pub takes: &'static str,
     /// Description of the command and its result.
     pub doc: &'static str,
+    /// Whether it is about the window, so that a session without one refuses it.
+    pub needs_window: bool,
 }
 
 /// The commands that a line of the socket or of stdin can name.
 pub fn described() -> impl Iterator<Item = Described> {
     let described = |about: &'static super::about::About| {
-        Some(Described { command: about.id, takes: about.takes?, doc: about.doc })
+        Some(Described { command: about.id, takes: about.takes?, doc: about.doc, needs_window: about.needs_window })
     };
     REGISTRY.iter().filter_map(move |command| described(command.about()))
 }
@@ -153,6 +162,7 @@ struct Run {
 
 static RUN: Spec<Run> = Spec::new("run", |state, engine, Run { entry, value }| {
     let command = entry_with(&entries(state, REGISTRY), &entry, value)?;
+    command.about.refusal(state).map_or(Ok(()), Err)?;
     if let Err(message) = command.run(state, engine) {
         state.say(message);
     }

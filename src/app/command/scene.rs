@@ -37,7 +37,8 @@ pub(in crate::app) static CLICK: Spec<[u32; 2]> = Spec::act("click", |state, _, 
 pub(in crate::app) static INSPECT_PIXEL: Spec<[u32; 2]> = Spec::act("inspect-pixel", |state, _, at| {
     (state.inspection.pin, state.inspection.page) = (Some(at), Page::Values);
     state.workspace.request_in_sight(PanelRequest::Open(Panel::INSPECTOR));
-});
+})
+.of_window();
 
 /// Forgets the pixel that the inspector reads.
 pub(in crate::app) static UNPIN: Spec<()> = Spec::plain("unpin", |state, _, ()| state.inspection.unpin());
@@ -74,7 +75,8 @@ pub(in crate::app) static SPIN_LIGHTS: Spec<()> = Spec::plain("spin-lights", |st
     let lights = &mut state.session.settings.lights;
     lights.spin = if lights.spin == 0.0 { 30.0 } else { LightSettings::default().spin };
 })
-.shortcuts(Group::Picture, &[Shortcut::key('l')], "start or stop the orbiting lights");
+.shortcuts(Group::Picture, &[Shortcut::key('l')], "start or stop the orbiting lights")
+.of_window();
 
 fn click(state: &mut State, at: [u32; 2]) {
     inspect(state, at);

@@ -31,7 +31,8 @@ pub(in crate::app) static RELOAD: Spec<()> = Spec::fallible("reload", |state, en
 /// Whether the driver is asked about its code.
 pub(in crate::app) static ASK_DRIVER: Spec<bool> = Spec::act("ask-driver", |state, _, asks| {
     (state.shader.asks_driver, state.shader.told) = (asks, None);
-});
+})
+.of_window();
 
 /// A use of the command `versions`.
 #[derive(Clone, Copy, Debug)]
@@ -75,17 +76,20 @@ pub(in crate::app) static VERSIONS: Spec<VersionsRequest> = Spec::new("versions"
 pub(in crate::app) static ASK_VERSION: Spec<u64> = Spec::act("ask-version", |state, _, number| {
     state.workspace.request_in_sight(PanelRequest::Open(Panel::TIMELINE));
     state.workspace.request(PanelRequest::AskVersion(number));
-});
+})
+.of_window();
 
 pub(in crate::app) static ASK_EXPRESSION: Spec<()> = Spec::plain("ask-expression", |state, _, ()| {
     state.workspace.request_in_sight(PanelRequest::Open(Panel::EXPRESSION));
     state.workspace.request(PanelRequest::FocusExpression);
 })
-.label("Watch an expression of the shaders…", "variable value debug line");
+.label("Watch an expression of the shaders…", "variable value debug line")
+.of_window();
 
 pub(in crate::app) static ASK_DEFAULTS: Spec<()> =
     Spec::plain("ask-defaults", |state, _, ()| state.workspace.request(PanelRequest::AskDefaults))
-        .label("Write the values of parameters to GLSL…", "save defaults annotation");
+        .label("Write the values of parameters to GLSL…", "save defaults annotation")
+        .of_window();
 
 /// Fields of `write-defaults`.
 #[derive(Clone, Debug, Default, Deserialize)]

@@ -35,7 +35,8 @@ pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).tak
     "Opens the panel Source at a file of the tree, pins a pixel, and traces what the file's statements do there, in a stage of the picture; \
      a fragment is counted from 0, the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `stages` of the picture, `files` of the stage, `calls`, and \
      `changed`: values that the last edit has changed",
-);
+)
+.of_window();
 
 /// A text that was typed into a file of the tree.
 #[derive(Clone, Debug)]
@@ -51,14 +52,15 @@ pub(in crate::app) static SAVE_FILE: Spec<Typed> =
     Spec::act("save-file", |state, engine, Typed { file, base, text }| save_typed(state, engine, file, base, text));
 
 /// Shows a file in the panel Source.
-pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file| {
+pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |state, _, file: TreePath| {
     // Another stage may have the file.
     if state.traces.newest().is_some_and(|newest| !newest.files.iter().any(|of| *of == *file.as_str())) {
         state.traces.stage = None;
     }
     state.traces.file = Some(file);
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
-});
+})
+.of_window();
 
 /// Chooses the stage whose statements the panel Source shows, with its own file.
 pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage", |state, _, stage| {

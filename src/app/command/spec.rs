@@ -58,6 +58,7 @@ impl<A: Clone + Debug> Spec<A> {
             takes: None,
             required: &[],
             doc: "",
+            needs_window: false,
             is_enabled: |_| true,
         };
         Self { about, arguments: None, parse: None, run }
@@ -78,6 +79,12 @@ impl<A: Clone + Debug> Spec<A> {
     /// Names the shortcuts in lists of keys.
     pub(super) const fn keys(mut self, keys: &'static str) -> Self {
         self.about.keys = keys;
+        self
+    }
+
+    /// A session without a window refuses the command.
+    pub(super) const fn of_window(mut self) -> Self {
+        self.about.needs_window = true;
         self
     }
 

@@ -6,19 +6,40 @@ use super::captures::begin_capture;
 use crate::app::engine::Engine;
 use crate::app::frames::progress::is_settled;
 use crate::app::state::State;
-use crate::app::state::waiting::{self, Shot};
+use crate::app::state::waiting::{self, Shot, Work};
 use crate::control::Reply;
 use crate::shader::Diagnostic;
-use crate::threads::Message;
+use crate::threads::{Message, TaskKind};
 
 type Until = waiting::Until<State>;
 
 /// Answers a command from outside once it is done.
-pub(in crate::app) fn answer_when(state: &mut State, reply: Reply, outcome: Result<Until, String>) {
+pub(in crate::app) fn answer_when(
+    state: &mut State,
+    engine: &mut Engine,
+    reply: Reply,
+    outcome: Result<Until, String>,
+) {
     match outcome {
         Ok(Until::Now(result)) => reply.done(result),
+        Ok(Until::Work(work)) => do_work(engine, reply, work),
         Ok(until) => state.waiting.push(reply, until),
         Err(message) => reply.error(message),
+    }
+}
+
+/// Has a thread do the work of a command, and answer.
+fn do_work(engine: &mut Engine, reply: Reply, Work { uses_device, run }: Work) {
+    let answer = move || match run() {
+        Ok(result) => reply.done(result),
+        Err(message) => reply.error(message),
+    };
+    match uses_device {
+        true => engine.threads.use_device(TaskKind::External, |_| answer()),
+        false => engine.threads.wait(|| {
+            answer();
+            None
+        }),
     }
 }
 
@@ -68,7 +89,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                 true => state.waiting.push(reply, Until::SHOWN),
                 false => reply.error(format!("{} was not loaded", path.display())),
             },
-            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Window(_)
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_)
                 if never_shows(state, engine) =>
             {
                 without_picture(state, reply);

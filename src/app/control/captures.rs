@@ -17,7 +17,6 @@ use crate::capture::{
 };
 use crate::control::Reply;
 use crate::headless::HeadlessError;
-use crate::picture;
 use crate::recovery::SessionState;
 use crate::render::Texel;
 use crate::shader::{Compiler, Source};
@@ -37,17 +36,17 @@ impl Job {
     ) -> Result<Value, CaptureError> {
         let wrong = |message: String| CaptureError::Usage(message);
         match self {
-            Self::Picture { file, size: own, mode, frames } => {
+            Self::Picture { to, size: own, mode, frames } => {
                 if let Some(mode) = mode {
                     modes_of(offscreen.session(), std::slice::from_ref(&mode)).map_err(wrong)?;
                     offscreen.settings().mode = mode;
                 }
                 offscreen.set_count(frames)?;
-                offscreen.set_linear(file.as_deref().is_some_and(picture::holds_light));
-                let capture = offscreen.capture(own.unwrap_or(size))?;
+                let (is_linear, size) = (to.holds_light(), own.unwrap_or(size));
+                offscreen.set_linear(is_linear);
+                let capture = if is_linear { offscreen.capture(size) } else { offscreen.capture_display(size) }?;
                 let shown = SessionState { settings: offscreen.session().shared_settings(), ..work };
-                let file = write_capture(&capture, &shown, file.as_deref()).map_err(CaptureError::Write)?;
-                Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
+                write_capture(&capture, &shown, &to).map_err(CaptureError::Write)
             }
             Self::Probe { at, names } => {
                 let (x, y) = at;
@@ -92,7 +91,7 @@ impl Job {
 
 /// Draws on the thread of captures.
 pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, reply: Reply, job: Job) {
-    let (number, canceled) = match state.captures.begin(job.title()) {
+    let (number, canceled) = match state.captures.begin(job.title(), reply.id()) {
         Ok(begun) => begun,
         Err(message) => return reply.error(message),
     };
@@ -104,7 +103,7 @@ pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, repl
     let (gpu, session, resources, clock) =
         (engine.gpu.clone(), state.session.clone(), engine.resources.clone(), state.picture.clock);
     let (compiler, source, work) = (engine.compiler.clone(), state.source.clone(), state.session_state());
-    let cancels = canceled.clone();
+    let (cancels, view) = (canceled.clone(), engine.capture_view.clone());
     engine.threads.capture(number, &cancels, move |sender| {
         let mut last: Option<Instant> = None;
         let mut tell = |done: u64, of: u64| {
@@ -116,10 +115,12 @@ pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, repl
             !canceled.load(Ordering::Relaxed)
         };
         let result = match tell(0, 0) {
-            true => OffscreenCapture::new(&gpu, session, resources, clock, &canceled)
+            true => OffscreenCapture::with_view(view.take(), &gpu, session, resources, (clock, &canceled))
                 .map_err(|error| CaptureError::Render(error.into()))
                 .and_then(|mut offscreen| {
-                    job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell)
+                    let result = job.draw(&mut offscreen, size, (&versions, (&compiler, &source), work), &mut tell);
+                    view.keep(offscreen.into_view());
+                    result
                 }),
             false => Err(CaptureError::Canceled),
         };

@@ -7,5 +7,6 @@ mod files;
 mod text;
 
 pub(super) use answers::{answer, answer_found, answer_when, has_unanswered, take_shots, tell_when, wants_window};
+pub(super) use captures::begin_capture;
 pub(super) use files::{write_shot, write_window_shot};
 pub(super) use text::{path_text, short};

@@ -33,7 +33,9 @@ impl LastComplete {
     }
 }
 
-/// Half floats with the samples of the settings, or 1 if the device does not support them.
-pub(in crate::app) fn target(gpu: &Gpu, settings: &Settings) -> TargetFormat {
-    View::target_format(gpu, settings.view.msaa, false).unwrap_or(TargetFormat::half(1))
+/// Half floats with the samples of the settings, or 1 if the device does not support them. With `full`, floats as those of a picture that a
+/// command renders: a session without a window writes its pictures to files.
+pub(in crate::app) fn target(gpu: &Gpu, settings: &Settings, full: bool) -> TargetFormat {
+    let single = if full { TargetFormat::full(1) } else { TargetFormat::half(1) };
+    View::target_format(gpu, settings.view.msaa, full).unwrap_or(single)
 }

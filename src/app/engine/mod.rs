@@ -1,6 +1,7 @@
 //! Makes frames and starts work. Holds the device, its resources, the threads and the compiler. It knows neither the screen nor panels, and
 //! nothing of what the user has chosen.
 
+pub(super) mod capture_view;
 pub(super) mod compared;
 pub(super) mod generations;
 pub(super) mod last_complete;
@@ -17,6 +18,7 @@ use crate::render::Resources;
 use crate::render::tools::Tools;
 use crate::shader::{Compiler, Source};
 use crate::threads::{Message, Threads};
+use capture_view::CaptureView;
 use compared::{Compared, TreePicture};
 use generations::Generations;
 use last_complete::LastComplete;
@@ -40,6 +42,7 @@ pub(super) struct Engine {
     /// The pipelines and last pictures of the versions.
     pub(super) generations: Generations,
     pub(super) compiler: Arc<Compiler>,
+    pub(super) capture_view: CaptureView,
 }
 
 impl Engine {

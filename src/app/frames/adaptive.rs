@@ -45,7 +45,7 @@ pub(super) fn plan(
     let is_drag = is_held && state.edits.draft.is_some();
     let has_new = before.is_none_or(|before| before.state.size != frame.state.size)
         || before.is_some_and(|before| !before.is_drawn_alike(frame) && !is_drag);
-    let is_alone = !state.compare.is_on() && !screen.has_reference() && !state.grid.is_on();
+    let is_alone = state.has_window && !state.compare.is_on() && !screen.has_reference() && !state.grid.is_on();
     let accumulates = frame.state.pipelines.accumulates;
     let is_single = frame.stands_alone() && !(accumulates && frame.is_animated());
     if !state.previews.may_preview(state.session.settings.view.adaptive) || !is_alone || !is_single {

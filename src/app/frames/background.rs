@@ -15,6 +15,7 @@ use crate::app::actions::inspect::{begin_values, values_complete};
 use crate::app::actions::trace::update_trace;
 use crate::app::control::answer_found;
 use crate::app::engine::Engine;
+use crate::app::interface::Interface;
 use crate::app::panels::timeline::THUMBNAIL;
 use crate::app::screen::{BetweenRequest, Build, Inspected, InspectorRequest, POLL, RestingPicture};
 use crate::app::state::State;
@@ -39,7 +40,12 @@ pub(in crate::app) enum Next {
 
 impl Drawing {
     /// Draws more between two frames, once the device has run the last submission, or reports that a frame is due.
-    pub(in crate::app) fn go_on(&mut self, state: &mut State, engine: &mut Engine) -> Result<Next, GpuError> {
+    pub(in crate::app) fn go_on(
+        &mut self,
+        interface: Option<&mut Interface>,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<Next, GpuError> {
         let now = Instant::now();
         let left = |due: Option<Instant>| due.map(|due| due.saturating_duration_since(now));
         let is_finished = self.screen.between.is_finished();
@@ -54,10 +60,10 @@ impl Drawing {
             wait = match draw_part(state, engine, &mut self.screen)? {
                 Step::Frame => return Ok(Next::Frame),
                 Step::After(wait) => Some(wait),
-                Step::Done => self.draw_background(state, engine)?,
+                Step::Done => self.draw_background(interface.as_deref(), state, engine)?,
             };
             if std::mem::take(&mut state.checks.redraws) {
-                self.interface.outdate();
+                interface.into_iter().for_each(Interface::outdate);
                 return Ok(Next::Frame);
             }
         }
@@ -76,6 +82,7 @@ impl Drawing {
     /// A device error other than out of memory.
     pub(super) fn draw_background(
         &mut self,
+        interface: Option<&Interface>,
         state: &mut State,
         engine: &mut Engine,
     ) -> Result<Option<Duration>, GpuError> {
@@ -86,6 +93,7 @@ impl Drawing {
         let costs = update_costs(state, engine, is_safe_mode);
         answer_found(state);
         let preview = prepare_next(state, engine, &mut self.screen)?;
+        self.screen.pointer = interface.map(|shown| &shown.mouse).filter(|mouse| mouse.over).map(|mouse| mouse.at);
         let drawn = self.draw_between(state, engine, is_safe_mode)?;
         Ok(trace.into_iter().chain(checks).chain(guests).chain(costs).chain(preview).chain(drawn).min())
     }
@@ -102,8 +110,7 @@ impl Drawing {
         }
         let is_unseen = take_background(state, engine, screen) || screen.between.is_unseen();
         screen.between.set_unseen(is_unseen);
-        screen.pointer = self.interface.mouse.over.then_some(self.interface.mouse.at);
-        let pixels_per_point = self.interface.pixels_per_point();
+        let pixels_per_point = self.shown.pixels_per_point;
 
         let version = if screen.between.versions.is_free(state.workspace.sight.timeline) && !awaits_edit(state, engine)
         {

@@ -1,10 +1,8 @@
 //! Draws the window: runs the panels over the state, has the screen draw the frame that the state describes, and tells the state what came
-//! of it.
+//! of it. In a session without a window there are no panels, and all else is alike.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-use winit::window::Window;
 
 use super::adaptive::{self, Step};
 use super::grid::{arrange, prepare_grid};
@@ -26,13 +24,15 @@ use crate::app::actions::watch::watch_files;
 use crate::app::command::execute;
 use crate::app::control::{answer, has_unanswered, wants_window};
 use crate::app::engine::Engine;
-use crate::app::interface::{Followed, Interface};
+use crate::app::interface::{Followed, Interface, Shown};
 use crate::app::screen::{Beginning, Screen};
 use crate::app::state::State;
+use crate::app::state::adaptive::plan::Plan;
 use crate::app::state::timing::CpuTimes;
 use crate::cpu_clock::CpuClock;
 use crate::gpu::GpuError;
-use crate::render::Redraw;
+use crate::recovery::Geometry;
+use crate::render::{BoundFrame, Redraw};
 use crate::scene::built_in_pictures;
 use crate::threads::Message;
 
@@ -45,10 +45,12 @@ const HIDDEN: Duration = Duration::from_millis(100);
 /// egui needs no repaint if its repaint delay is at least this.
 const NEVER: Duration = Duration::from_secs(3600);
 
-/// The parts of a window that draw, and the times between its frames.
+/// The parts of a window that draw, and the times between its frames. Its functions take the user interface; there is none in a session
+/// without a window.
 pub(in crate::app) struct Drawing {
     pub(in crate::app) screen: Screen,
-    pub(in crate::app) interface: Interface,
+    /// The output of the panels when they last ran.
+    pub(super) shown: Shown,
     /// Whether other windows cover this one.
     pub(in crate::app) is_covered: bool,
     pub(super) last_frame: Instant,
@@ -60,11 +62,26 @@ pub(in crate::app) struct Drawing {
     present_ms: f64,
 }
 
+/// A frame that has been submitted.
+struct Submitted {
+    plan: Plan,
+    /// When it was begun.
+    begin: Instant,
+    /// Whether a difference is being measured.
+    measures: bool,
+    /// Whether another frame must follow.
+    changes: bool,
+    /// Whether the panels have run.
+    has_run: bool,
+    /// The time until the picture is to be searched for NaN.
+    scan: Option<Duration>,
+}
+
 impl Drawing {
-    pub(in crate::app) fn new(screen: Screen, interface: Interface) -> Self {
+    pub(in crate::app) fn new(screen: Screen) -> Self {
         Self {
             screen,
-            interface,
+            shown: Shown::default(),
             is_covered: false,
             last_frame: Instant::now(),
             due: None,
@@ -78,13 +95,13 @@ impl Drawing {
     /// stays, the window reports it, and the next frame tries again.
     pub(in crate::app) fn draw(
         &mut self,
-        window: &Window,
+        mut interface: Option<&mut Interface>,
         state: &mut State,
         engine: &mut Engine,
     ) -> Result<Option<Duration>, GpuError> {
         self.present_ms = 0.0;
         let clock = CpuClock::start();
-        let drawn = self.draw_frame(window, state, engine);
+        let drawn = self.draw_frame(interface.as_deref_mut(), state, engine);
         clock.into_iter().for_each(|clock| state.timing.used(clock.ms() - self.present_ms));
         let drawn = self.screen.survive(drawn)?;
         if drawn.is_none() {
@@ -94,7 +111,7 @@ impl Drawing {
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
         let is_told = set_shortage(state, engine, shortage.as_ref());
         if is_told {
-            self.interface.outdate();
+            outdate(interface);
         }
         let wait = if is_told { Some(Duration::ZERO) } else { wait };
         Ok(match wait {
@@ -115,25 +132,26 @@ impl Drawing {
     /// Draws a frame. Without memory for the targets of a new frame it draws the last one; any other lack of memory is an error.
     fn draw_frame(
         &mut self,
-        window: &Window,
+        mut interface: Option<&mut Interface>,
         state: &mut State,
         engine: &mut Engine,
     ) -> Result<Option<Duration>, GpuError> {
-        if !self.screen.resize(window.inner_size().into())? {
+        let size = interface.as_ref().map(|interface| interface.size()).or(self.screen.extent());
+        if !self.screen.resize(size.unwrap_or_default())? {
             state.waiting.fail("the window is minimized, so nothing is drawn");
             return Ok(None);
         }
 
         // The user interface, which determines the rectangle of the picture.
         let begin = Instant::now();
-        let has_run = self.run_interface(window, state, engine)?;
-        let textures = std::mem::take(&mut self.interface.shown.textures);
-        let shown = &self.interface.shown;
+        let has_run = self.run_interface(interface.as_deref_mut(), state, engine)?;
+        let textures = std::mem::take(&mut self.shown.textures);
+        let shown = &self.shown;
         let cells = arrange(state, &mut self.screen, shown.picture, shown.pixels_per_point);
         self.screen.take_textures(textures)?;
 
         // The picture.
-        let moving = self.advance(state);
+        let moving = self.advance(interface.as_deref_mut(), state);
         watch_files(state, engine);
         let screen = &mut self.screen;
         if state.playback.take_restart() {
@@ -147,8 +165,9 @@ impl Drawing {
             screen.prepare_reference(reference(state, engine, live))?;
         }
         prepare_grid(state, engine, screen, &cells)?;
-        let plan = adaptive::plan(state, engine, screen, (frame, before.as_ref()), self.interface.shown.is_held)?;
-        screen.view.samples_range = state.workspace.shows_histogram && self.interface.panels.visible;
+        let plan = adaptive::plan(state, engine, screen, (frame, before.as_ref()), self.shown.is_held)?;
+        let are_visible = interface.as_ref().is_some_and(|interface| interface.panels.visible);
+        screen.view.samples_range = state.workspace.shows_histogram && are_visible;
         screen.place_probe();
         screen.view.probe_passes = toy_pixel(state, screen.mouse_pixel());
         let scan = plan_scan(state, engine, &mut screen.view);
@@ -170,7 +189,7 @@ impl Drawing {
         };
         let record_begin = Instant::now();
         let copies_window = wants_window(state, engine) && !screen.copies_window();
-        let shown = &self.interface.shown;
+        let shown = &self.shown;
         let drawn = adaptive::Drawing::of(screen, frame, plan);
         let request = frame_request(state, engine, (frame, plan), shown, copies_window);
         let redraw = request.redraw;
@@ -181,7 +200,8 @@ impl Drawing {
         if copies_window {
             state.waiting.window_copied(recorded.copy_error);
         }
-        let attempt = record(state, engine, window);
+        let unseen = || Geometry { size: screen.extent().unwrap_or_default(), at: None };
+        let attempt = record(state, engine, || interface.as_ref().map_or_else(unseen, |shown| shown.geometry()));
         let cpu = CpuTimes {
             ui_ms: if has_run { shown.ms } else { 0.0 },
             record_ms: record_begin.elapsed().as_secs_f64() * 1e3,
@@ -190,39 +210,66 @@ impl Drawing {
         adaptive::submitted(state, screen, frame, &drawn);
         timed(state, screen, drawn.timed(screen, frame), cpu);
 
+        let changes = moving || measures || redraw == Redraw::Always;
+        let done = Submitted { plan, begin, measures, changes, has_run, scan };
+        self.after_frame(interface, state, engine, frame, &done)
+    }
+
+    /// Takes what a submitted frame has done, and draws what comes between frames. Returns the time until the next frame.
+    fn after_frame(
+        &mut self,
+        interface: Option<&mut Interface>,
+        state: &mut State,
+        engine: &mut Engine,
+        frame: Option<&BoundFrame>,
+        done: &Submitted,
+    ) -> Result<Option<Duration>, GpuError> {
+        let screen = &mut self.screen;
         answer(state, engine);
-        let reported = finished(state, engine, screen, frame, &mut self.is_first, begin)?;
+        let reported = finished(state, engine, screen, frame, &mut self.is_first, done.begin)?;
         let wait = match adaptive::draw_part(state, engine, screen)? {
             Step::Frame => Some(Duration::ZERO),
             Step::After(wait) => Some(wait),
-            Step::Done => self.draw_background(state, engine)?,
+            Step::Done => self.draw_background(interface.as_deref(), state, engine)?,
         };
-        let changes = moving || reported || measures || redraw == Redraw::Always;
-        if self.screen.has_more(frame, plan) || changes || has_unanswered(state, engine) || moves(state) {
-            if reported || measures {
-                self.interface.outdate();
+        let follows = self.screen.has_more(frame, done.plan) || reported || done.changes;
+        if follows || has_unanswered(state, engine) || moves(state) {
+            if reported || done.measures {
+                outdate(interface);
             }
             return Ok(Some(Duration::ZERO));
         }
-        if std::mem::take(&mut state.checks.redraws) {
-            self.interface.outdate();
+        // The last frame before the window rests shows the panels as they are.
+        if std::mem::take(&mut state.checks.redraws) || !done.has_run {
+            outdate(interface);
             return Ok(Some(Duration::ZERO));
         }
-        if !has_run {
-            // The last frame before the window rests shows the panels as they are.
-            self.interface.outdate();
-            return Ok(Some(Duration::ZERO));
-        }
-        let delay = self.interface.shown.delay.filter(|delay| *delay < NEVER);
-        let delay = delay.into_iter().chain(scan).min();
+        let delay = self.shown.delay.filter(|delay| *delay < NEVER);
+        let delay = delay.into_iter().chain(done.scan).min();
         self.due = delay.map(|delay| Instant::now() + delay);
         Ok(wait.into_iter().chain(delay).min())
     }
 
     /// Takes the results of finished frames, runs the panels, and carries out what they ask for. Returns whether they have run: if nothing
-    /// has happened that they show, the frame shows them as they are.
-    fn run_interface(&mut self, window: &Window, state: &mut State, engine: &mut Engine) -> Result<bool, GpuError> {
-        let Self { screen, interface, memory, .. } = self;
+    /// has happened that they show, the frame shows them as they are. Where there are none, they count as run.
+    fn run_interface(
+        &mut self,
+        interface: Option<&mut Interface>,
+        state: &mut State,
+        engine: &mut Engine,
+    ) -> Result<bool, GpuError> {
+        let Some(interface) = interface else {
+            let screen = &mut self.screen;
+            screen.read_finished();
+            take_background(state, engine, screen);
+            take_scan(state, screen);
+            take_results(state, engine, screen);
+            take_times(state, screen, engine.gpu_is_fast());
+            drop(state.workspace.take_requests());
+            state.history.record(&state.session.shared_settings(), false);
+            return Ok(true);
+        };
+        let Self { screen, memory, .. } = self;
         screen.pointer = interface.mouse.over.then_some(interface.mouse.at);
         screen.read_finished();
         if take_background(state, engine, screen) || screen.between.is_unseen() {
@@ -256,8 +303,8 @@ impl Drawing {
         update_offer(state);
         selected_instances(state);
         interface.carry_out(&state.workspace.take_requests());
-        interface.run(window, state, readings(state, engine, screen, memory), followed);
-        let shown = &mut interface.shown;
+        self.shown = interface.run(state, readings(state, engine, screen, memory), followed);
+        let shown = &mut self.shown;
         if shown.wants_pictures {
             engine.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
         }
@@ -269,13 +316,19 @@ impl Drawing {
         Ok(true)
     }
 
-    /// Moves a flying camera and orbiting lights. Returns whether the camera moved.
-    fn advance(&mut self, state: &mut State) -> bool {
+    /// Moves a flying camera and orbiting lights, while somebody sees them. Returns whether the camera moved.
+    fn advance(&mut self, interface: Option<&mut Interface>, state: &mut State) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
+        let Some(interface) = interface else { return false };
         // Limit the step, so that lights do not jump after a pause.
         state.turn_lights(seconds.min(0.5));
         let Some((view, model)) = self.screen.camera_view().zip(state.session.placed_model()) else { return false };
-        self.interface.camera.step(&mut state.session.settings.camera, &view, &model.bounds, seconds)
+        interface.camera.step(&mut state.session.settings.camera, &view, &model.bounds, seconds)
     }
+}
+
+/// Has the panels run with the next frame.
+fn outdate(interface: Option<&mut Interface>) {
+    interface.into_iter().for_each(Interface::outdate);
 }

@@ -55,7 +55,7 @@ fn frame_of_settings(
         true => state.playback.stay(),
         false => state.playback.next(is_animated, state.reads_keys()),
     };
-    let target = target(&engine.gpu, &state.session.settings);
+    let target = target(&engine.gpu, &state.session.settings, !state.has_window);
     let Some(frame_state) = state.session.frame_state(clock, size, target) else { return Ok(None) };
     follow_settings(state, engine, &frame_state);
     (state.picture.clock, state.picture.is_complete, state.picture.shows_settings) = (clock, false, false);
@@ -97,8 +97,8 @@ pub(in crate::app) fn frame_of_mode(
     last: Option<LastComplete>,
 ) -> Result<Option<LastComplete>, GpuError> {
     let selected = std::mem::replace(&mut state.session.settings.mode, mode.to_owned());
-    let frame_state =
-        state.session.frame_state(state.picture.clock, size, target(&engine.gpu, &state.session.settings));
+    let target = target(&engine.gpu, &state.session.settings, !state.has_window);
+    let frame_state = state.session.frame_state(state.picture.clock, size, target);
     let settings = state.session.shared_settings();
     state.session.settings.mode = selected;
     let Some(frame_state) = frame_state else { return Ok(last) };

@@ -6,10 +6,11 @@ use crate::app::control;
 use crate::app::engine::Engine;
 use crate::app::screen::Screen;
 use crate::app::state::State;
+use crate::app::state::captures::Job;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
 use crate::picture;
-use crate::render::{BoundFrame, Capture, Redraw};
+use crate::render::{BoundFrame, Capture, Readback, Redraw};
 
 /// Writes the screenshot that a key has asked for. It waits for the first picture, for the model's textures, and for the range of a mode's
 /// values.
@@ -28,7 +29,7 @@ pub(super) fn take_screenshot(
     }
     state.screenshot = false;
     match read_picture(state, engine, screen, frame) {
-        Ok(Some(capture)) => write_screenshot(state, &capture),
+        Ok(Some(readback)) => write_screenshot(state, &readback.finish_picture()),
         Ok(None) => {}
         Err(error) if error.is_shortage() => state.say(format!("no screenshot: {error}")),
         Err(error) => return Err(error),
@@ -48,12 +49,21 @@ fn write_screenshot(state: &mut State, capture: &Capture) {
     }
 }
 
+/// Whether the picture on screen is the one that a command renders, bit by bit: in full floats, alone, without earlier frames, and for a
+/// file of linear light with plain averages of the samples.
+fn is_rendered(state: &State, screen: &Screen, frame: &BoundFrame, is_linear: bool) -> bool {
+    let request = &frame.state.pipelines;
+    let is_alone = !state.has_window && !state.compare.is_on() && !screen.has_reference();
+    let is_single = frame.stands_alone() && !request.accumulates && !frame.state.display.is_measured();
+    is_alone && is_single && (!is_linear || request.target.samples == 1)
+}
+
 fn read_picture(
     state: &mut State,
     engine: &mut Engine,
     screen: &mut Screen,
     frame: &BoundFrame,
-) -> Result<Option<Capture>, GpuError> {
+) -> Result<Option<Readback>, GpuError> {
     // A picture of many frames is taken as it is if its next frame is drawn in parts.
     let redraw = if state.previews.is_planned() { Redraw::ToneMap } else { Redraw::IfChanged };
     let read = screen.read_picture(frame, redraw);
@@ -61,7 +71,8 @@ fn read_picture(
     read
 }
 
-/// Takes the requested captures of what is on screen. A lack of memory fails only them.
+/// Takes the requested captures of what is on screen. A lack of memory fails only them. A picture that a command would render otherwise is
+/// drawn on the thread of captures.
 pub(super) fn take_shots(
     state: &mut State,
     engine: &mut Engine,
@@ -72,8 +83,13 @@ pub(super) fn take_shots(
         return Ok(());
     }
     for shot in control::take_shots(state, engine) {
+        if shot.is_rendered && !is_rendered(state, screen, frame, shot.to.holds_light()) {
+            let job = Job::Picture { to: shot.to, size: None, mode: None, frames: 1 };
+            control::begin_capture(state, engine, shot.reply, job);
+            continue;
+        }
         match read_picture(state, engine, screen, frame) {
-            Ok(Some(capture)) => control::write_shot(state, engine, shot, capture),
+            Ok(Some(readback)) => control::write_shot(state, engine, shot, readback),
             Ok(None) => shot.reply.error("there is no picture"),
             Err(error) if error.is_shortage() => shot.reply.error(error.to_string()),
             Err(error) => return Err(error),

@@ -8,12 +8,12 @@ use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::render::BoundFrame;
 
-/// Whether the next picture differs: the lights orbit, a shader, a pass or the model moves while the time runs, or a key has just
-/// been pressed.
+/// Whether the next picture differs: the lights of a window orbit, a shader, a pass or the model moves while the time runs, or a key has
+/// just been pressed.
 pub(in crate::app) fn moves(state: &State) -> bool {
     let runs =
         if state.is_animated() { state.playback.runs() && !state.picture.rests() } else { state.playback.ends_press() };
-    state.session.settings.lights.spin != 0.0 || runs
+    (state.has_window && state.session.settings.lights.spin != 0.0) || runs
 }
 
 /// Whether an edit is being compiled, or has not been drawn. Whatever else there is to draw waits for it.

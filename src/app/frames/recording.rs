@@ -2,18 +2,15 @@
 
 use std::sync::Arc;
 
-use winit::window::Window;
-
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::frame::FrameState;
 use crate::recovery::Geometry;
 
-/// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns the
-/// attempt's number, unless the frame is the fallback.
-pub(in crate::app) fn record(state: &State, engine: &Engine, window: &Window) -> Option<u64> {
+/// Records what the next frame shows, for the process that replaces this one if the frame loses the device. `geometry`: of the window.
+/// Returns the attempt's number, unless the frame is the fallback.
+pub(in crate::app) fn record(state: &State, engine: &Engine, geometry: impl FnOnce() -> Geometry) -> Option<u64> {
     let work = state.session_state();
-    let geometry = || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
     let attempt = engine.recorder.begin(&work, geometry);
     let shown = engine.shown.as_ref().filter(|_| !state.model.loading)?;
     (Arc::ptr_eq(&shown.settings, &work.settings) || shown.settings == work.settings).then_some(attempt)

@@ -25,7 +25,8 @@ pub(super) fn frame_request<'a>(
 ) -> FrameRequest<'a> {
     FrameRequest {
         frame,
-        redraw: if plan == Plan::Kept { Redraw::ToneMap } else { redraw(state, engine, frame) },
+        // Paths that nobody sees are traced where they are written.
+        redraw: if plan == Plan::Kept || !state.has_window { Redraw::ToneMap } else { redraw(state, engine, frame) },
         plan,
         outline: outline(state, engine, frame, interface.pixels_per_point),
         texture: texture(state, engine),

@@ -117,7 +117,7 @@ pub(super) fn finished(
     is_first: &mut bool,
     begin: Instant,
 ) -> Result<bool, GpuError> {
-    if std::mem::take(is_first) {
+    if std::mem::take(is_first) && state.has_window {
         // SYNC: once, so that the time includes the device's work.
         screen.finish()?;
         emit(&state.events, &Event::Window { ms: state.start.elapsed().as_secs_f64() * 1e3 });

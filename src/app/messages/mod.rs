@@ -17,6 +17,7 @@ use crate::app::actions::files::on_tree_found;
 use crate::app::actions::guests::on_guest_traced;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
+use crate::app::actions::texts::on_text_written;
 use crate::app::actions::trace::on_traced;
 use crate::app::actions::watch::watch_files;
 use crate::app::command::file::{OPEN, Open, chosen};
@@ -73,8 +74,10 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::FunctionsTimed(number, result) => on_functions_timed(state, number, result),
         Message::VersionTimed(number, result) => on_version_timed(state, number, result),
         Message::GuestTraced(number, traced) => on_guest_traced(state, number, *traced),
-        Message::TracedBefore(number, before) => state.traces.take_before(number, *before),
+        Message::TracedBefore(number, before) => state.traces.take_before(number, before.map(|before| *before)),
+        Message::TracedAround(number, around) => state.traces.around.take(number, *around),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
+        Message::TextWritten(number, file, written) => on_text_written(state, engine, number, (&file, written)),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),

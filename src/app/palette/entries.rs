@@ -50,6 +50,9 @@ pub(in crate::app) fn entries(state: &State, registry: &[&'static dyn Registered
         let shown = state.session.mode().map(|mode| mode.slug.as_str());
         entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode, shown)));
     }
+    let is_refused =
+        |entry: &Entry| matches!(&entry.action, Action::Run(command) if command.about.refusal(state).is_some());
+    entries.retain(|entry| !is_refused(entry));
     entries
 }
 

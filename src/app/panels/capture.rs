@@ -213,7 +213,7 @@ fn progress(ui: &mut Ui, captures: &Captures, folder: &str, commands: &mut Vec<C
         });
     }
     if captures.iter().count() > 1 && button(ui, "Cancel all", "Stop all captures in progress") {
-        commands.push(CANCEL.with(()));
+        commands.push(CANCEL.with(None));
     }
 }
 

@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
-use crate::app::command::shaders::{DRAFT, WRITE_EDITS};
+use crate::app::command::shaders::DRAFT;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
+use crate::app::panels::draft::show_draft;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::source_line::{SourceLine, stop, watch};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
-use crate::app::state::shaders::edits::NO_FOLDER;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
@@ -262,23 +262,12 @@ fn numbers(ui: &mut Ui, state: &State, shown: &mut SourceLine, commands: &mut Ve
         }
     }
     let Some(draft) = draft else { return };
-    ui.horizontal(|ui| {
-        if !is_own && let Some(edit) = draft.edits.first() {
-            ui.label(RichText::new(format!("{}:{}", edit.path, edit.line)).small().color(ACCENT));
+    let cancels = ui.horizontal(|ui| show_draft(ui, state, draft, !is_own, commands)).inner;
+    if cancels {
+        for (literal, value) in &mut shown.numbers {
+            *value = literal.value;
         }
-        let write = ui.add_enabled(state.has_folder(), Button::new("Write"));
-        let changes: Vec<String> = draft.edits.iter().map(|edit| format!("{} -> {}", edit.old(), edit.new)).collect();
-        let hint = format!("Write to the file: {}", changes.join(", "));
-        if write.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
-            commands.push(WRITE_EDITS.with(draft.edits.clone()));
-        }
-        if ui.button("Cancel").on_hover_text("Go back to the numbers in the file").clicked() {
-            commands.push(DRAFT.with(Vec::new()));
-            for (literal, value) in &mut shown.numbers {
-                *value = literal.value;
-            }
-        }
-    });
+    }
 }
 
 /// Lines to begin with: those with errors, and those of the last edit.

@@ -8,6 +8,7 @@ mod beside;
 mod camera;
 mod capture;
 mod clock;
+mod draft;
 mod environment;
 pub(super) mod expression;
 mod inspector;

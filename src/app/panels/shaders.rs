@@ -8,7 +8,7 @@ mod stages;
 
 use egui::{Align, Layout, RichText, Ui};
 
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::shaders::RELOAD;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
@@ -135,7 +135,7 @@ fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
     };
     let label = ui.add(elided(text.color(ACCENT)).sense(egui::Sense::click()));
     if label.clicked() {
-        commands.push(EDIT.with(Place { file: folder.clone(), line: None, column: None }));
+        commands.push(OPEN_EDITOR.with(Place { file: folder.clone(), line: None, column: None }));
     }
     let hint = format!("{}\nSave a file here and the picture updates. Click to open it in the editor", status.tree);
     label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);

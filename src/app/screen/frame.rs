@@ -5,16 +5,17 @@ use super::between_request::{BetweenRequest, Collected, Drawn};
 use super::loops::Ended;
 use super::outline::draw_outline;
 use super::request::{FrameRequest, Recorded};
+use super::target::{NextTarget, TargetImage};
 use super::window_copy::WindowCopy;
 use crate::app::state::adaptive::plan::Plan;
 use crate::cpu_clock::CpuClock;
-use crate::gpu::{Acquired, Encoder, GpuError, NextImage, Swapchain, Use};
+use crate::gpu::{Encoder, GpuError, Use};
 use crate::render::{BoundFrame, Output, Resources, View};
 
-/// A frame that is being recorded. Its slot was free, and the window has an image for it.
+/// A frame that is being recorded. Its slot was free, and there is an image for it.
 pub(in crate::app) struct Begun {
     encoder: Encoder,
-    acquired: Acquired,
+    target: TargetImage,
 }
 
 /// The beginning of a frame.
@@ -31,14 +32,13 @@ impl Screen {
     pub(in crate::app) fn begin(&mut self) -> Result<Beginning, GpuError> {
         let encoder = self.frames.begin()?;
         self.check_loops();
-        let next = self.swapchain.as_mut().map_or(Ok(NextImage::Outdated), Swapchain::acquire)?;
-        let NextImage::Acquired(acquired) = next else {
-            self.frames.submit(encoder, Default::default())?;
-            let is_outdated = matches!(next, NextImage::Outdated);
-            self.is_stale |= is_outdated;
-            return Ok(if is_outdated { Beginning::Outdated } else { Beginning::Hidden });
+        let beginning = match self.target.acquire()? {
+            NextTarget::Image(target) => return Ok(Beginning::Begun(Begun { encoder, target })),
+            NextTarget::Outdated => Beginning::Outdated,
+            NextTarget::Hidden => Beginning::Hidden,
         };
-        Ok(Beginning::Begun(Begun { encoder, acquired }))
+        self.frames.submit(encoder, Default::default())?;
+        Ok(beginning)
     }
 
     /// Records a frame. An out-of-memory error in the outline, the texture or the grid drops that part; any other error ends the frame.
@@ -47,9 +47,9 @@ impl Screen {
         begun: &mut Begun,
         request: &FrameRequest<'_>,
     ) -> Result<Recorded, GpuError> {
-        let Begun { encoder, acquired } = begun;
-        let (slot, image) = (self.frames.current(), &acquired.image);
-        let output = Output { image, before: Use::Acquired, at: self.rect.at };
+        let Begun { encoder, target } = begun;
+        let (slot, image) = (self.frames.current(), &target.image);
+        let output = Output { image, before: target.before, at: self.rect.at };
         let (view, outline) = (&mut self.view, request.outline.as_ref());
         let outlined = match request.frame {
             Some(_) if request.plan == Plan::Preview => self.draw_preview(encoder, slot, outline, &output)?,
@@ -77,7 +77,9 @@ impl Screen {
         let (pixels_per_point, primitives) = (request.pixels_per_point, request.primitives);
         encoder.pass("ui", |encoder| self.draw_ui(encoder, image, pixels_per_point, primitives))?;
         let copy = request.copies_window.then(|| WindowCopy::record(&self.gpu, encoder, slot, image));
-        encoder.transition(image, Use::Color, Use::Present);
+        if target.is_presented() {
+            encoder.transition(image, Use::Color, Use::Present);
+        }
         let (copy, copy_error) = copy.map_or((None, None), |copy| match copy {
             Ok(copy) => (Some(copy), None),
             Err(error) => (None, Some(error)),
@@ -94,14 +96,13 @@ impl Screen {
         frame: Option<&BoundFrame>,
         attempt: Option<u64>,
     ) -> Result<f64, GpuError> {
-        let Begun { encoder, acquired } = begun;
+        let Begun { encoder, target } = begun;
         let slot = self.frames.current();
-        self.frames.submit(encoder, acquired.submission)?;
+        self.frames.submit(encoder, target.submission())?;
         let has_others = self.reference.is_some() || !self.cells.0.is_empty();
         self.loops.add(slot, frame.map(|frame| frame.state.clone()), attempt, has_others);
-        let Some(swapchain) = &mut self.swapchain else { return Ok(0.0) };
         let clock = CpuClock::start();
-        self.is_stale |= !swapchain.present(&acquired)?;
+        self.target.present(&target)?;
         Ok(clock.map_or(0.0, CpuClock::ms))
     }
 
@@ -113,7 +114,8 @@ impl Screen {
 
     /// Whether another frame must follow at once: for the swapchain, for loops, for something that could not be drawn yet, for a picture
     /// that improves or is animated, or for a result in flight.
-    /// Whether the picture improves is the caller's to decide if it is drawn in parts (`plan`), and a preview awaits nothing of it.
+    /// Whether the picture improves is the caller's to decide if it is drawn in parts (`plan`), and a preview awaits nothing of it. A picture
+    /// that nobody sees improves where it is written.
     pub(in crate::app) fn has_more(&mut self, frame: Option<&BoundFrame>, plan: Plan) -> bool {
         let frame = frame.filter(|_| plan != Plan::Preview);
         // Both change with every frame.
@@ -122,13 +124,14 @@ impl Screen {
         let reference = moving.map(|reference| (&reference.view, &reference.frame));
         let cells = self.cells.0.iter().filter_map(|cell| Some((&cell.view, &cell.shown.as_ref()?.frame)));
         let mut views = frame.map(|frame| (&self.view, frame)).into_iter().chain(reference).chain(cells);
+        let improves_by_itself = plan == Plan::Whole && self.target.is_window();
         let is_unfinished = |(view, frame): (&View, &BoundFrame)| {
-            let gets_better = plan == Plan::Whole && view.improves(frame);
+            let gets_better = improves_by_itself && view.improves(frame);
             gets_better || view.is_moving(frame) || view.awaits_range_sample()
         };
         redraws
             || awaits_loops
-            || self.is_stale
+            || self.target.is_outdated()
             || (plan != Plan::Preview && self.awaits_pixel())
             || self.window_copy.is_some()
             || self.error_map.awaits_copies()

@@ -2,7 +2,7 @@
 
 use super::Screen;
 use crate::gpu::{GpuError, Use};
-use crate::render::{BoundFrame, Capture, Output, Redraw};
+use crate::render::{BoundFrame, Output, Readback, Redraw};
 
 impl Screen {
     /// Whether the range of a frame's values is not known yet, so that a copy would not be final.
@@ -10,12 +10,13 @@ impl Screen {
         self.view.lacks_limits(frame)
     }
 
-    /// Draws the picture as it is on screen, without panels, and reads it back; `redraw` tells how much of it anew. After a lack of memory, the next frame draws it again.
+    /// Draws the picture as it is on screen, without panels, and copies it; `redraw` tells how much of it anew. The copy has finished. After a
+    /// lack of memory, the next frame draws it again.
     pub(in crate::app) fn read_picture(
         &mut self,
         frame: &BoundFrame,
         redraw: Redraw,
-    ) -> Result<Option<Capture>, GpuError> {
+    ) -> Result<Option<Readback>, GpuError> {
         let read = self.copy_picture(frame, redraw);
         if read.as_ref().is_err_and(GpuError::is_shortage) {
             self.view.forget();
@@ -24,7 +25,7 @@ impl Screen {
         read
     }
 
-    fn copy_picture(&mut self, frame: &BoundFrame, redraw: Redraw) -> Result<Option<Capture>, GpuError> {
+    fn copy_picture(&mut self, frame: &BoundFrame, redraw: Redraw) -> Result<Option<Readback>, GpuError> {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
         self.check_loops();
@@ -36,6 +37,6 @@ impl Screen {
         self.frames.submit(encoder, Default::default())?;
         // SYNC: the CPU reads the picture.
         self.frames.wait()?;
-        Ok(readback.map(|readback| readback.finish()))
+        Ok(readback)
     }
 }

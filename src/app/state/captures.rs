@@ -3,16 +3,43 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use serde_json::Value;
 
 use crate::capture::Turn;
+use crate::picture::{Encoding, holds_light};
 
 /// Most captures that are drawn or wait. Each keeps the images of its picture on the device.
 const MOST: usize = 64;
 
+/// Where a picture goes, and in which form.
+#[derive(Clone, Debug)]
+pub(in crate::app) struct Destination {
+    /// `None` is the first free `specula-N.png`.
+    pub(in crate::app) file: Option<PathBuf>,
+    /// `None` is the encoding that the file's extension names.
+    pub(in crate::app) encoding: Option<Encoding>,
+    /// When it was asked for.
+    pub(in crate::app) since: Instant,
+}
+
+impl Destination {
+    /// A file whose extension names its encoding.
+    pub(in crate::app) fn named(file: Option<PathBuf>) -> Self {
+        Self { file, encoding: None, since: Instant::now() }
+    }
+
+    /// Whether the file holds linear light.
+    pub(in crate::app) fn holds_light(&self) -> bool {
+        self.encoding.map_or_else(|| self.file.as_deref().is_some_and(holds_light), Encoding::holds_light)
+    }
+}
+
 /// Job of the background render thread.
 #[derive(Clone, Debug)]
 pub(in crate::app) enum Job {
-    Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
+    Picture { to: Destination, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
     Probe { at: (u32, u32), names: Vec<String> },
     Sheet { file: PathBuf, names: Vec<String>, size: (u32, u32), columns: Option<u32> },
     Turntable { file: PathBuf, frames: u32, fps: f32, size: Option<(u32, u32)>, turn: Turn },
@@ -36,6 +63,8 @@ impl Job {
 pub(in crate::app) struct Running {
     pub(in crate::app) number: u64,
     pub(in crate::app) title: &'static str,
+    /// The identifier of the command in its line; null without one.
+    id: Value,
     /// Pictures that are done, and of how many; 0 while that is not known.
     pub(in crate::app) done: u64,
     pub(in crate::app) of: u64,
@@ -62,13 +91,20 @@ pub(in crate::app) struct Captures {
 
 impl Captures {
     /// Adds a capture. Returns its number and what cancels it.
-    pub(in crate::app) fn begin(&mut self, title: &'static str) -> Result<(u64, Arc<AtomicBool>), String> {
+    pub(in crate::app) fn begin(&mut self, title: &'static str, id: &Value) -> Result<(u64, Arc<AtomicBool>), String> {
         if self.running.len() >= MOST {
             return Err(format!("{MOST} captures are waiting already; send this one again when one of them has ended"));
         }
         self.last += 1;
         let canceled = Arc::new(AtomicBool::new(false));
-        self.running.push(Running { number: self.last, title, done: 0, of: 0, canceled: canceled.clone() });
+        self.running.push(Running {
+            number: self.last,
+            title,
+            id: id.clone(),
+            done: 0,
+            of: 0,
+            canceled: canceled.clone(),
+        });
         Ok((self.last, canceled))
     }
 
@@ -83,6 +119,12 @@ impl Captures {
     /// Ends the capture with this number.
     pub(in crate::app) fn cancel_one(&self, number: u64) {
         self.running.iter().filter(|running| running.number == number).for_each(Running::cancel);
+    }
+
+    /// Ends the capture of the command with this identifier. Returns whether there is one.
+    pub(in crate::app) fn cancel_of(&self, id: &Value) -> bool {
+        let found = self.running.iter().filter(|running| running.id == *id);
+        found.map(Running::cancel).count() > 0
     }
 
     /// Ends all.
@@ -110,9 +152,9 @@ mod tests {
     #[test]
     fn a_capture_is_refused_while_too_many_wait() {
         let mut captures = Captures::default();
-        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture").unwrap().0).collect();
-        assert!(captures.begin("Picture").unwrap_err().contains("64 captures are waiting"));
+        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture", &Value::Null).unwrap().0).collect();
+        assert!(captures.begin("Picture", &Value::Null).unwrap_err().contains("64 captures are waiting"));
         captures.ended(begun[0]);
-        assert!(captures.begin("Picture").is_ok());
+        assert!(captures.begin("Picture", &Value::Null).is_ok());
     }
 }

@@ -98,6 +98,8 @@ pub(super) struct FirstFrame {
 /// The stores of the window. Nothing in it needs the device, so panels are tested over it.
 pub(super) struct State {
     pub(super) session: Session,
+    /// Whether somebody sees the picture in a window.
+    pub(super) has_window: bool,
     pub(super) workspace: Workspace,
     /// The picture on screen.
     pub(super) picture: Picture,
@@ -153,6 +155,8 @@ pub(super) struct State {
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) edits: Edits,
+    /// How many texts programs have sent for files of the tree.
+    pub(super) texts_sent: u64,
     /// The times of the last frames.
     pub(super) timing: Timing,
     /// The stages of the shaders on screen.
@@ -195,6 +199,7 @@ impl State {
         Self {
             edits: Edits::new(&session.settings.expression),
             session,
+            has_window: true,
             workspace: Workspace::default(),
             picture: Picture::default(),
             previews: Previews::default(),
@@ -227,6 +232,7 @@ impl State {
             watched: WatchedFiles::default(),
             load_options: LoadOptions::default(),
             versions: Versions::default(),
+            texts_sent: 0,
             timing: Timing::default(),
             stages: StageTable::default(),
             first_frame: None,

@@ -29,19 +29,22 @@ impl Kind {
     }
 }
 
-/// Absolute paths of files that could be opened, the newest first.
+/// Absolute paths of files that could be opened, the newest first. A list that was not [restored](Self::restored) is not stored either.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(in crate::app) struct Recent {
     models: Vec<PathBuf>,
     environments: Vec<PathBuf>,
     trees: Vec<PathBuf>,
+    #[serde(skip)]
+    is_stored: bool,
 }
 
 impl Recent {
     /// The files of the last run that still exist.
     pub(in crate::app) fn restored() -> Self {
-        state_folder::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
+        let stored = state_folder::load(FILE).and_then(|text| parse(&text)).unwrap_or_default();
+        Self { is_stored: true, ..stored }
     }
 
     pub(in crate::app) fn of(&self, kind: Kind) -> &[PathBuf] {
@@ -62,7 +65,7 @@ impl Recent {
 
     /// Moves an opened file to the front, and stores the list.
     pub(in crate::app) fn remember(&mut self, kind: Kind, path: &Path) {
-        if self.insert(kind, path) {
+        if self.insert(kind, path) && self.is_stored {
             state_folder::change(FILE, |stored: &mut Self| {
                 stored.drop_missing();
                 stored.insert(kind, path);
@@ -76,7 +79,9 @@ impl Recent {
         let list = self.of_mut(kind);
         if list.contains(&path) && !path.exists() {
             list.retain(|known| *known != path);
-            state_folder::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
+            if self.is_stored {
+                state_folder::change(FILE, |stored: &mut Self| stored.of_mut(kind).retain(|known| *known != path));
+            }
         }
     }
 

@@ -4,11 +4,21 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::captures::Job;
+use super::captures::{Destination, Job};
 use crate::control::Reply;
+
+/// The answer to a command that another one has ended.
+const CANCELED: &str = "canceled";
 
 /// Looks for a result in the state of the window.
 type Find<S> = Box<dyn Fn(&S) -> Option<Result<Value, String>>>;
+
+/// Work of a thread, which needs nothing of the window.
+pub(in crate::app) struct Work {
+    /// Whether it uses the device, so that the end of the window waits for it.
+    pub(in crate::app) uses_device: bool,
+    pub(in crate::app) run: Box<dyn FnOnce() -> Result<Value, String> + Send>,
+}
 
 /// When a command is done, and its result, which may depend on the state `S` of the window.
 pub(in crate::app) enum Until<S> {
@@ -29,11 +39,17 @@ pub(in crate::app) enum Until<S> {
     VersionWritten(u64),
     /// Once the shader files have these edits.
     EditsWritten(Value),
+    /// Once this file of the tree has the text that was sent, and its picture is final.
+    TextWritten(u64),
     /// Once there is a result, or a reason why there is none.
     Found(Find<S>),
-    /// Once the final picture is written.
-    Screen(Option<PathBuf>),
-    /// The same for the window with its panels.
+    /// Once a thread has done this.
+    Work(Work),
+    /// Once the final picture is written as it is on screen.
+    Screen(Destination),
+    /// Once the final picture is written as a command renders it.
+    Rendered(Destination),
+    /// Once the window with its panels is written.
     Window(Option<PathBuf>),
     /// The same for a picture that a thread draws.
     Picture(Job),
@@ -50,12 +66,20 @@ impl<S> Until<S> {
     pub(in crate::app) const SHOWN: Self = Self::Settled(|_| Value::Null);
 
     pub(in crate::app) fn is_capture(&self) -> bool {
-        matches!(self, Self::Screen(_) | Self::Window(_) | Self::Picture(_))
+        matches!(self, Self::Screen(_) | Self::Rendered(_) | Self::Window(_) | Self::Picture(_))
     }
 }
 
 /// A picture of the screen that is asked for, and where it goes.
 pub(in crate::app) struct Shot {
+    pub(in crate::app) reply: Reply,
+    pub(in crate::app) to: Destination,
+    /// Whether it is to be the picture that a command renders, even if that on screen is another one.
+    pub(in crate::app) is_rendered: bool,
+}
+
+/// A picture of the window that is asked for, and where it goes.
+pub(in crate::app) struct WindowShot {
     pub(in crate::app) reply: Reply,
     pub(in crate::app) file: Option<PathBuf>,
 }
@@ -64,7 +88,7 @@ pub(in crate::app) struct Shot {
 pub(in crate::app) struct Waiting<S> {
     list: Vec<(Reply, Until<S>)>,
     /// The capture of the window that the device is copying.
-    copying: Option<Shot>,
+    copying: Option<WindowShot>,
 }
 
 impl<S> Default for Waiting<S> {
@@ -89,7 +113,9 @@ impl<S> Waiting<S> {
 
     /// Whether a command waits for nothing but another frame. Messages wake the window for all others.
     pub(in crate::app) fn needs_frame(&self) -> bool {
-        let needs_frame = |until: &Until<S>| matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_));
+        let needs_frame = |until: &Until<S>| {
+            matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_))
+        };
         self.list.iter().any(|(_, until)| needs_frame(until))
     }
 
@@ -98,7 +124,8 @@ impl<S> Waiting<S> {
         let waits = |until: &Until<S>| {
             let waits_for_more =
                 matches!(until, Until::Reloaded | Until::Compared(_) | Until::Picture(_) | Until::Found(_));
-            waits_for_more || matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Window(_))
+            let waits = matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_));
+            waits_for_more || waits
         };
         self.list.iter().any(|(_, until)| waits(until)) || self.copying.is_some()
     }
@@ -129,6 +156,7 @@ impl<S> Waiting<S> {
                     | Until::Tree(_)
                     | Until::VersionWritten(_)
                     | Until::EditsWritten(_)
+                    | Until::TextWritten(_)
                     | Until::CapturesEnded
                     | Until::Closed
             )
@@ -184,9 +212,26 @@ impl<S> Waiting<S> {
         });
     }
 
+    /// Answers the one who waits for the text of a file, or lets it wait for its picture.
+    pub(in crate::app) fn text_written(&mut self, number: u64, result: Result<(), &str>) {
+        let is_it = |until: &Until<S>| matches!(until, Until::TextWritten(of) if *of == number);
+        match result {
+            Ok(()) => {
+                self.list.iter_mut().filter(|(_, until)| is_it(until)).for_each(|(_, until)| *until = Until::Reloaded);
+            }
+            Err(message) => self.refuse(is_it, message),
+        }
+    }
+
     /// Answers those who wait for a picture that is to be written.
     pub(in crate::app) fn cancel_captures(&mut self) {
-        self.refuse(Until::is_capture, "canceled");
+        self.refuse(Until::is_capture, CANCELED);
+    }
+
+    /// Answers the command with this identifier that it is canceled. Returns whether it waits.
+    pub(in crate::app) fn cancel_of(&mut self, id: &Value) -> bool {
+        let found = self.list.iter().position(|(reply, _)| reply.id() == id);
+        found.map(|index| self.list.remove(index).0.error(CANCELED)).is_some()
     }
 
     /// Answers those who wait for the end of the window.
@@ -196,13 +241,17 @@ impl<S> Waiting<S> {
 
     /// Answers all: the device is lost.
     pub(in crate::app) fn end_all(&mut self) {
-        self.list.extend(self.copying.take().map(|Shot { reply, file }| (reply, Until::Window(file))));
+        self.list.extend(self.copying.take().map(|WindowShot { reply, file }| (reply, Until::Window(file))));
         self.refuse(|_| true, "the graphics device was lost");
     }
 
     /// Removes the first picture of the screen that is asked for.
     pub(in crate::app) fn take_shot(&mut self) -> Option<Shot> {
-        self.take_first(|until| matches!(until, Until::Screen(_)))
+        match self.take_first(|until| matches!(until, Until::Screen(_) | Until::Rendered(_)))? {
+            (reply, Until::Screen(to)) => Some(Shot { reply, to, is_rendered: false }),
+            (reply, Until::Rendered(to)) => Some(Shot { reply, to, is_rendered: true }),
+            _ => None,
+        }
     }
 
     /// Whether a picture of the window is asked for.
@@ -212,22 +261,22 @@ impl<S> Waiting<S> {
 
     /// The device copies the window for the first picture of it that is asked for, or `error` tells why it cannot.
     pub(in crate::app) fn window_copied(&mut self, error: Option<String>) {
-        let shot = self.take_first(|until| matches!(until, Until::Window(_)));
-        match (shot, error) {
-            (Some(shot), Some(error)) => shot.reply.error(error),
-            (shot, _) => self.copying = shot,
+        let Some((reply, Until::Window(file))) = self.take_first(|until| matches!(until, Until::Window(_))) else {
+            return;
+        };
+        match error {
+            Some(error) => reply.error(error),
+            None => self.copying = Some(WindowShot { reply, file }),
         }
     }
 
     /// The picture of the window whose copy is done.
-    pub(in crate::app) fn take_copied(&mut self) -> Option<Shot> {
+    pub(in crate::app) fn take_copied(&mut self) -> Option<WindowShot> {
         self.copying.take()
     }
 
-    fn take_first(&mut self, is: impl Fn(&Until<S>) -> bool) -> Option<Shot> {
-        match self.list.remove(self.list.iter().position(|(_, until)| is(until))?) {
-            (reply, Until::Screen(file) | Until::Window(file)) => Some(Shot { reply, file }),
-            _ => None,
-        }
+    fn take_first(&mut self, is: impl Fn(&Until<S>) -> bool) -> Option<(Reply, Until<S>)> {
+        let first = self.list.iter().position(|(_, until)| is(until))?;
+        Some(self.list.remove(first))
     }
 }

@@ -73,6 +73,8 @@ pub(in crate::app) struct Sight {
     pub(in crate::app) inspector: bool,
     /// Whether the code with the values of the pinned pixel was.
     pub(in crate::app) source: bool,
+    /// Whether the mouse rests on one of these values.
+    pub(in crate::app) around: bool,
     /// The texture that is shown.
     pub(in crate::app) texture: Option<TextureRequest>,
     /// The modes whose thumbnails are in sight, by their slugs.

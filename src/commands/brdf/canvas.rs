@@ -116,11 +116,14 @@ impl Canvas {
     /// # Errors
     /// A message if the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), String> {
+        picture::write_image(&image::DynamicImage::ImageRgba8(self.image()), path)
+    }
+
+    /// Its pixels.
+    pub fn image(&self) -> image::RgbaImage {
         let (width, height) = (self.pixmap.width(), self.pixmap.height());
         // The page is opaque, so premultiplied colors are plain ones.
-        let image = image::ImageBuffer::from_raw(width, height, self.pixmap.data().to_vec());
-        let image = image.ok_or_else(|| format!("cannot write {}: the page has no size", path.display()))?;
-        picture::write_image(&image::DynamicImage::ImageRgba8(image), path)
+        image::RgbaImage::from_raw(width, height, self.pixmap.data().to_vec()).unwrap_or_default()
     }
 
     fn scale(&self, size: f32) -> f32 {

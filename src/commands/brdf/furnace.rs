@@ -1,18 +1,10 @@
 //! `specula brdf furnace`: the directional albedo of a surface by roughness and angle.
 
-use serde_json::json;
-use specula::measure::{Claim, Grid, Surface};
-use specula::settings::ShaderValue;
-use specula::shader::Constant;
+use specula::measure::{Furnace, Surface};
 
+use super::furnace_page::fill;
 use super::options::{Opened, Options, SurfaceOptions, listed, short};
 use crate::commands::{Failure, print_json};
-
-/// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.
-const MOST: f64 = 1.005;
-const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
-/// A coarse grid, just fine enough to detect whether a choice changes the albedo.
-const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
 
 /// Options of `brdf furnace`.
 #[derive(clap::Args)]
@@ -30,22 +22,15 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let opened = Opened::new(&args.options)?;
     let surface = Surface { base_color: args.surface.base_color, metallic: args.surface.metallic.unwrap_or(1.0) };
-    let albedo: Vec<[f64; 3]> = opened.meter.furnace(surface, GRID)?.into_iter().map(|a| a.map(f64::from)).collect();
-    let mut without = Vec::new();
-    for (constant, chosen) in opened.unclaimed(Claim::Conserves) {
-        if has_part(&opened, constant, surface)? {
-            without.push((constant, chosen));
-        }
-    }
-    let (min, max) = extremes(&albedo);
-    let conserves = max <= MOST;
+    let found = Furnace::measure(&opened.meter, (&*opened.shaders, &opened.settings), surface)?;
+    let (max, conserves, claims) = (found.max, found.conserves(), found.without.is_empty());
     if args.json {
-        print_rows(&albedo, min, max, without.is_empty());
+        print_json(&found.json());
     } else {
-        print_table(&albedo, surface);
-        out!("\nmin {min:.4}  max {max:.4}");
-        match (without.as_slice(), conserves) {
-            ([], true) => out!("claims to conserve energy, and does: no albedo is above {MOST}"),
+        print_table(&found.albedo, surface);
+        out!("\nmin {:.4}  max {max:.4}", found.min);
+        match (found.without.as_slice(), conserves) {
+            ([], true) => out!("claims to conserve energy, and does: no albedo is above {}", Furnace::MOST),
             ([], false) => out!("claims to conserve energy, but does not"),
             (without, true) => {
                 out!("does not claim to conserve energy ({}), but does for this surface", listed(without))
@@ -53,58 +38,30 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             (without, false) => out!("does not claim to conserve energy ({}), and does not", listed(without)),
         }
     }
-    let broken = without.is_empty() && !conserves;
+    let broken = claims && !conserves;
+    opened.report(&args.options, "White furnace", |report| fill(report, &found, surface))?;
+    drop(found);
     opened.close()?;
     if broken {
         let found = if max.is_nan() { "a value that is not a number".to_owned() } else { format!("up to {max:.4}") };
         return Err(Failure::Input(format!(
-            "furnace: this combination claims to conserve energy, but its largest albedo is {found}; at most {MOST} is \
-             expected. Correct the formula, or remove the choice from `conserves=` in brdf/models.glsl"
+            "furnace: this combination claims to conserve energy, but its largest albedo is {found}; at most {} is \
+             expected. Correct the formula, or remove the choice from `conserves=` in brdf/models.glsl",
+            Furnace::MOST
         )));
     }
     Ok(())
-}
-
-/// Whether an unclaimed choice changes the albedo of this surface. The diffuse model, for example, does not change that of
-/// a metal.
-fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
-    let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
-    let mut settings = opened.settings.clone();
-    settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
-    let chosen = opened.meter.furnace(surface, COARSE)?;
-    let claiming = opened.meter.with(&settings)?.furnace(surface, COARSE)?;
-    // Drivers may reorder sums when other code changes. 1e-4 is far above the rounding errors of that.
-    let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
-    Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))
-}
-
-/// Smallest and largest value; NaN when any value is NaN.
-pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
-    let values = || albedo.as_flattened().iter().copied();
-    let with = |pick: fn(f64, f64) -> f64| {
-        values().reduce(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) }).unwrap_or(f64::NAN)
-    };
-    (with(f64::min), with(f64::max))
-}
-
-fn print_rows(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
-    let cells = (0..GRID.rows).flat_map(|row| (0..GRID.columns).map(move |column| (row, column)));
-    let row = |((row, column), albedo): ((u32, u32), &[f64; 3])| {
-        json!({ "roughness": GRID.roughness_of(row), "cos_theta": GRID.theta_of(column).to_radians().cos(),
-            "albedo": albedo })
-    };
-    let rows: Vec<_> = cells.zip(albedo).map(row).collect();
-    print_json(&json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
 }
 
 fn print_table(albedo: &[[f64; 3]], surface: Surface) {
     let base_color = short(surface.base_color).map(|c| c.to_string()).join(" ");
     out!("Albedo (largest channel) of base color {base_color}, metallic {}", surface.metallic);
     out!("Rows: roughness. Columns: angle to the normal in degrees\n");
-    let angles = (0..GRID.columns).map(|column| format!("{:>6}", GRID.theta_of(column))).collect::<String>();
+    let angles =
+        (0..Furnace::GRID.columns).map(|column| format!("{:>6}", Furnace::GRID.theta_of(column))).collect::<String>();
     out!("     {angles}");
-    for (row, cells) in (0..).zip(albedo.chunks(GRID.columns as usize)) {
+    for (row, cells) in (0..).zip(albedo.chunks(Furnace::GRID.columns as usize)) {
         let largest = cells.iter().map(|[r, g, b]| format!(" {:.3}", r.max(*g).max(*b)));
-        out!("{:.2} {}", GRID.roughness_of(row), largest.collect::<String>());
+        out!("{:.2} {}", Furnace::GRID.roughness_of(row), largest.collect::<String>());
     }
 }

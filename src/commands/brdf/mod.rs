@@ -2,6 +2,7 @@
 
 mod canvas;
 mod furnace;
+mod furnace_page;
 mod normalization;
 mod options;
 mod plot;

@@ -2,6 +2,7 @@
 
 use serde_json::json;
 use specula::measure::Grid;
+use specula::report::{Lines, Series};
 
 use super::options::{Opened, Options};
 use crate::commands::{Failure, print_json};
@@ -39,6 +40,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let verdict = if holds { "D is normalized" } else { "D is not normalized" };
         out!("\n{verdict}: largest error {:.3} %, at roughness {}", off(&worst) * 100.0, worst.0);
     }
+    let verdict = if holds { "D is normalized" } else { "D is not normalized" };
+    let verdict = format!("{verdict}: largest error {:.3} %, at roughness {}.", off(&worst) * 100.0, worst.0);
+    opened.report(&args.options, "Normalization of D", |report| {
+        report.verdict(holds, &verdict);
+        report.note("The integral of D NoH over the hemisphere is 1 for every distribution of microfacets.");
+        report.lines(&Lines {
+            title: "Integral of D NoH over roughness".to_owned(),
+            x: "roughness".to_owned(),
+            y: "integral".to_owned(),
+            series: vec![Series { name: "D NoH".to_owned(), points: rows.clone() }],
+            least: 0.1,
+        });
+        let row = |(roughness, integral): &(f64, f64)| vec![format!("{roughness:.2}"), format!("{integral:.5}")];
+        report.table("Values", &["roughness", "integral"], &rows.iter().map(row).collect::<Vec<_>>());
+    })?;
     opened.close()?;
     if !holds {
         let (roughness, integral) = worst;

@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use specula::frame::stages::all_stages;
 use specula::gpu::Gpu;
-use specula::measure::{BrdfMeter, Claim, Surface, unclaimed};
+use specula::measure::{BrdfMeter, Claim, Surface, choices, unclaimed};
+use specula::report::Report;
 use specula::settings::Settings;
 use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 
 use crate::commands::Failure;
 use crate::commands::common::parse::number;
+use crate::commands::common::report::{check_report, write_report};
 use crate::commands::common::{TIMEOUT_S, check_validation, compiler, open_gpu, source};
 
 /// Options of every measurement.
@@ -23,6 +25,9 @@ pub(super) struct Options {
     /// Set a constant or parameter of the shader tree, such as NDF=Beckmann; may be repeated. `specula modes` lists them
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) set: Vec<String>,
+    /// Write a page of HTML with charts of the result
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) report: Option<PathBuf>,
     /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
     pub(super) device: Option<String>,
@@ -77,6 +82,7 @@ pub(super) struct Opened {
 
 impl Opened {
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
+        options.report.as_deref().map_or(Ok(()), check_report)?;
         let settings = options.settings()?;
         let mut library = Library::new(source(options.shaders.as_deref())?, compiler()?, &all_stages());
         let shaders = match library.update(&Change::All) {
@@ -97,6 +103,18 @@ impl Opened {
         unclaimed(claim, &self.settings, &self.shaders)
     }
 
+    /// Writes the page of `--report`, with the choices of the tree at its end. `fill`: adds the result.
+    pub(super) fn report(&self, options: &Options, title: &str, fill: impl FnOnce(&mut Report)) -> Result<(), Failure> {
+        let Some(path) = &options.report else { return Ok(()) };
+        let mut report = Report::new(title);
+        fill(&mut report);
+        let choices = choices(&self.settings, &self.shaders);
+        let rows: Vec<Vec<String>> =
+            choices.into_iter().map(|(constant, chosen)| vec![constant.label.clone(), chosen]).collect();
+        report.table("Choices of the shader tree", &["choice", "value"], &rows);
+        write_report(path, &report)
+    }
+
     /// Destroys everything, and fails if the validation layers reported a message then or before.
     pub(super) fn close(self) -> Result<(), Failure> {
         let gpu = self.gpu.clone();
@@ -108,6 +126,17 @@ impl Opened {
 /// Choices in the form of `--set`: `NDF=GGX, DIFFUSE=Burley`.
 pub(super) fn listed(choices: &[(&Constant, String)]) -> String {
     choices.iter().map(|(constant, chosen)| format!("{}={chosen}", constant.name)).collect::<Vec<_>>().join(", ")
+}
+
+/// A surface in words.
+pub(super) fn title(surface: Surface) -> String {
+    let kind = match surface.metallic {
+        0.0 => "Dielectric".to_owned(),
+        1.0 => "Metal".to_owned(),
+        metallic => format!("Metallic {metallic}"),
+    };
+    let [r, g, b] = short(surface.base_color);
+    format!("{kind}, base color {r} {g} {b}")
 }
 
 /// Rounds floats to six digits after the point, so that 0.3 is not printed as 0.30000001192092896.

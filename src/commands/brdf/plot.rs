@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices};
+use specula::measure::{BrdfMeter, Claim, Grid, Lobe, Surface, choices, extremes};
+use specula::report::{Lines, Series, Tile};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
-use super::furnace::extremes;
-use super::options::{Opened, Options, SurfaceOptions, short, unit};
+use super::options::{Opened, Options, SurfaceOptions, title, unit};
 use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
 use crate::commands::Failure;
 use crate::commands::common::check_out;
@@ -70,8 +70,33 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let opened = Opened::new(&args.options)?;
     let surfaces = args.surface.surfaces(&[0.0, 1.0]);
     let measured = surfaces.into_iter().map(|s| measure(&opened.meter, s, args)).collect::<Result<Vec<_>, _>>()?;
-    draw(&opened, args, &measured).and_then(|canvas| canvas.save(&args.out)).map_err(Failure::Input)?;
+    let canvas = draw(&opened, args, &measured).map_err(Failure::Input)?;
+    canvas.save(&args.out).map_err(Failure::Input)?;
+    let picture = Tile { name: "Lobes and albedo".to_owned(), note: String::new(), image: canvas.image() };
+    let mut drawn = Ok(());
+    opened.report(&args.options, "Lobes and albedo", |report| {
+        drawn = report.gallery(&[picture], Some(1));
+        measured.iter().for_each(|measured| report.lines(&albedo_lines(&args.roughness, measured)));
+    })?;
+    drawn.map_err(Failure::Input)?;
     opened.close()
+}
+
+/// The albedo over the angle, a line for each roughness.
+fn albedo_lines(roughness: &[f32], measured: &MeasuredLobes) -> Lines {
+    let step = 89.0 / f64::from(ALBEDO_COLUMNS - 1);
+    let points = |albedo: &[f32]| (0..).zip(albedo).map(|(i, a)| (step * f64::from(i), f64::from(*a))).collect();
+    let series = |(roughness, albedo): (&f32, &Vec<f32>)| Series {
+        name: format!("roughness {roughness}"),
+        points: points(albedo),
+    };
+    Lines {
+        title: format!("Albedo of the {}", lower(&title(measured.surface))),
+        x: "angle to the normal, degrees".to_owned(),
+        y: "albedo, largest channel".to_owned(),
+        series: roughness.iter().zip(&measured.albedo).map(series).collect(),
+        least: 0.1,
+    }
 }
 
 fn measure(meter: &BrdfMeter, surface: Surface, args: &Args) -> Result<MeasuredLobes, Failure> {
@@ -124,16 +149,6 @@ fn draw(opened: &Opened, args: &Args, measured: &[MeasuredLobes]) -> Result<Canv
         draw_albedo(&mut canvas, (left, top), each - 60.0, &args.roughness, measured);
     }
     Ok(canvas)
-}
-
-fn title(surface: Surface) -> String {
-    let kind = match surface.metallic {
-        0.0 => "Dielectric".to_owned(),
-        1.0 => "Metal".to_owned(),
-        metallic => format!("Metallic {metallic}"),
-    };
-    let [r, g, b] = short(surface.base_color);
-    format!("{kind}, base color {r} {g} {b}")
 }
 
 fn draw_header(canvas: &mut Canvas, opened: &Opened, args: &Args) {

@@ -54,6 +54,24 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             (false, false) => out!("does not claim to be reciprocal ({}), and is not", listed(&without)),
         }
     }
+    let verdict = match (claims, holds) {
+        (_, true) => "Reciprocal: f(l, v) = f(v, l), as far as floats tell.".to_owned(),
+        (true, false) => "Claims to be reciprocal, but is not.".to_owned(),
+        (false, false) => format!("Does not claim to be reciprocal ({}), and is not.", listed(&without)),
+    };
+    opened.report(&args.options, "Reciprocity", |report| {
+        report.verdict(holds || !claims, &verdict);
+        let rows = [
+            ("largest difference, of the mean", format!("{:.3e}", pair.error)),
+            ("allowed", format!("{MOST:e}")),
+            ("roughness", roughness.to_string()),
+            ("metallic", metallic.to_string()),
+            ("l", direction(pair.l)),
+            ("v", direction(pair.v)),
+        ];
+        let rows: Vec<Vec<String>> = rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
+        report.table("The worst pair of directions", &["", "value"], &rows);
+    })?;
     opened.close()?;
     if claims && !holds {
         let message = format!(

@@ -4,12 +4,15 @@ use std::path::Path;
 
 use serde_json::json;
 use specula::headless::Headless;
+use specula::measure::Surface;
 use specula::render::Capture;
+use specula::report::{Lines, Report, Series};
 use specula::scene::{self, LoadOptions};
 use specula::settings::{LightSource, MaterialOverride};
 
-use super::options::{Options, SurfaceOptions};
+use super::options::{Options, SurfaceOptions, title};
 use crate::commands::common::names::check_environment;
+use crate::commands::common::report::{check_report, write_report};
 use crate::commands::common::{TIMEOUT_S, check_mode, check_validation, compiler, open_gpu, source};
 use crate::commands::progress::Progress;
 use crate::commands::{Failure, print_json};
@@ -61,6 +64,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<(), Failure> {
     let base_color = args.surface.base_color;
     settings.material = MaterialOverride { enabled: true, base_color, metallic, ..MaterialOverride::default() };
     settings.check().map_err(Failure::Usage)?;
+    args.options.report.as_deref().map_or(Ok(()), check_report)?;
     check_environment(&args.env)?;
     if !settings.environment.is_lit() {
         return Err(Failure::Usage("split-sum needs an environment: use --env studio, sky, furnace or a file".into()));
@@ -101,7 +105,40 @@ pub fn run(args: &Args, progress: &Progress) -> Result<(), Failure> {
             out!("{:9.1}  {:+6.2} %  {:5.2} %", row.roughness, row.bias * 100.0, row.rms * 100.0);
         }
     }
+    if let Some(path) = &args.options.report {
+        write_report(path, &page(args, Surface { base_color, metallic }, &rows))?;
+    }
     check_validation(&gpu)
+}
+
+/// The page of `--report`.
+fn page(args: &Args, surface: Surface, rows: &[RoughnessRow]) -> Report {
+    let mut report = Report::new(&format!("Split sum in {}", args.env));
+    report.note(&format!(
+        "{}. Split sum minus random paths ({} frames), relative to their mean: bias is the mean difference, rms its root mean square with the noise of the paths.",
+        title(surface),
+        args.frames
+    ));
+    let series = |name: &str, value: fn(&RoughnessRow) -> f64| Series {
+        name: name.to_owned(),
+        points: rows.iter().map(|row| (f64::from(row.roughness), 100.0 * value(row))).collect(),
+    };
+    report.lines(&Lines {
+        title: "Error over roughness".to_owned(),
+        x: "roughness".to_owned(),
+        y: "error, percent".to_owned(),
+        series: vec![series("bias", |row| row.bias), series("rms", |row| row.rms)],
+        least: 1.0,
+    });
+    let row = |row: &RoughnessRow| {
+        vec![
+            format!("{:.1}", row.roughness),
+            format!("{:+.2} %", 100.0 * row.bias),
+            format!("{:.2} %", 100.0 * row.rms),
+        ]
+    };
+    report.table("Values", &["roughness", "bias", "rms"], &rows.iter().map(row).collect::<Vec<_>>());
+    report
 }
 
 fn capture(headless: &mut Headless, mode: &str) -> Result<Capture, Failure> {

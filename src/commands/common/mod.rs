@@ -7,6 +7,7 @@ mod look;
 pub mod names;
 pub mod opened;
 pub mod parse;
+pub mod report;
 pub mod unchecked;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +19,7 @@ use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::pipeline::DiskPipelines;
+use specula::process_end::end_process;
 use specula::settings::{AddedModel, LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
 use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
@@ -354,10 +356,7 @@ fn end_of_device(what: &str, limit: Duration) -> ! {
         limit.as_secs()
     ));
     let _halt = picture::remove_unfinished();
-    #[cfg(unix)]
-    signal_hook::low_level::exit(3);
-    #[cfg(not(unix))]
-    std::process::exit(3);
+    end_process(3);
 }
 
 /// Fails before any work when no picture can be written to `path`.

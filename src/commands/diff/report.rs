@@ -1,26 +1,17 @@
 //! `--report` of `specula diff`.
 
-use std::fmt;
 use std::path::Path;
 
 use specula::picture::{self, read_look};
 use specula::picture_difference::report::{ReportPair, Shown, page};
-use specula::picture_difference::{Comparison, Picture};
+use specula::picture_difference::{Comparison, Limits, Picture};
 
 use crate::commands::Failure;
 
-/// The largest error that passes, and the largest difference of a channel, if that has a limit.
-#[derive(Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) max: f64,
-    pub(super) max_channel: Option<f64>,
-}
-
-impl fmt::Display for Limits {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "--max {}", self.max)?;
-        self.max_channel.map_or(Ok(()), |most| write!(f, " --max-channel {most}"))
-    }
+/// The limits as options of the command line.
+pub(super) fn options(limits: Limits) -> String {
+    let channel = limits.max_channel.map(|most| format!(" --max-channel {most}"));
+    format!("--max {}{}", limits.max, channel.unwrap_or_default())
 }
 
 /// A picture that is compared.
@@ -85,7 +76,7 @@ pub(super) fn write_report(
     pairs: Vec<ReportPair>,
 ) -> Result<(), Failure> {
     let title = format!("{} and {}", a.display(), b.display());
-    let page = page(&title, &limits.to_string(), pairs);
+    let page = page(&title, &options(limits), pairs);
     let cannot = |error: std::io::Error| Failure::Input(format!("cannot write {}: {error}", path.display()));
     picture::replace_file(path, page.as_bytes()).map_err(cannot)
 }

@@ -13,7 +13,7 @@ use crate::commands::common::{Common, Models};
 pub struct Args {
     #[command(flatten)]
     pub(super) models: Models,
-    /// File to write, .png or .exr (raw values); with --frames also .mp4, .webp or .gif, which hold all frames. With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
+    /// File to write, .png, .exr (raw values) or .npy (the same as a NumPy array); with --frames also .mp4, .webp or .gif, which hold all frames. With `--mode all` or a list, as `--mode final,d`: FILE.<mode>.png for each mode; `all` leaves out those of random paths
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     pub(super) out: PathBuf,
     /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
@@ -28,6 +28,9 @@ pub struct Args {
     /// Page of a sheet
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "dark")]
     pub(super) page: Page,
+    /// Write a page of HTML with the pictures of a sheet, too: to enlarge, and to compare two of them
+    #[arg(long, value_name = "FILE.html", conflicts_with = "turntable")]
+    pub(super) report: Option<PathBuf>,
     /// Size of each picture on a sheet in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
     pub(super) tile: (u32, u32),

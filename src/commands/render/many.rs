@@ -9,6 +9,7 @@ use specula::pipeline::Outcome;
 
 use super::args::Args;
 use super::{Failure, Progress};
+use crate::commands::common::report::check_report;
 
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;
@@ -38,6 +39,9 @@ pub fn check(args: &Args) -> Result<(), Failure> {
     }
     if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
         return Err(Failure::Usage(format!("cannot write {}: a sheet must end in .png", args.out.display())));
+    }
+    if let Some(page) = &args.report {
+        check_report(page)?;
     }
     picture::check_path(&args.out).map_err(Failure::Input)
 }
@@ -102,5 +106,9 @@ fn draw(
     fit?;
     let is_grid = args.sweep.len() + usize::from(args.sheet.is_some()) > 1;
     let columns = (is_grid || (!args.sweep.is_empty() && columns <= MOST_COLUMNS)).then_some(columns as u32);
-    SheetPlan { cells, size: args.tile, columns, page: args.page }.write(headless, out, tell)
+    let plan = SheetPlan { cells, size: args.tile, columns, page: args.page };
+    match &args.report {
+        Some(page) => plan.write_with_page(headless, (out, page), tell),
+        None => plan.write(headless, out, tell),
+    }
 }

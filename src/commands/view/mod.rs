@@ -1,5 +1,6 @@
-//! `specula view`: opens the window, in a child process.
+//! `specula view`: opens the window, in a child process; and the same session without a window, for `specula serve`.
 
+mod end_of_input;
 pub mod supervisor;
 
 use std::io::IsTerminal as _;
@@ -11,14 +12,16 @@ use specula::app::{self, AppError, AppOptions, OtherPicture};
 use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
+use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, RecoveryState, SessionState};
 use specula::scene::LoadOptions;
 use specula::shader::Source;
 
 use super::Failure;
 use super::common::names::check_model_path;
-use super::common::{Common, Models, compiler};
+use super::common::{Common, EventFormat, Models, compiler};
 use super::limits;
+use supervisor::Forward;
 
 /// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
 const LARGEST_WINDOW: u32 = 16384;
@@ -53,32 +56,59 @@ impl Args {
     }
 }
 
-/// Runs the command: the window if this is the child, else the child.
-pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
+/// Whether the session has a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Front {
+    /// For a user.
+    Window,
+    /// For a program on standard input, with whose end the session ends.
+    Stdin,
+}
+
+/// Runs the command.
+pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+    run_with(args, start, Front::Window)
+}
+
+/// Runs a session: here if this is the child, else in the child.
+pub fn run_with(mut args: Args, start: Instant, front: Front) -> Result<(), Failure> {
     args.common.take_files(&mut args.models)?;
+    if front == Front::Stdin {
+        args.common.events = Some(EventFormat::Json);
+    }
+    let forwards = match front {
+        Front::Stdin => Forward::All,
+        Front::Window if reads_commands(&args) => Forward::Lines,
+        Front::Window => Forward::Nothing,
+    };
     match supervisor::session() {
-        Some(folder) => window(args, start, Some(folder)),
-        None => supervisor::run(reads_commands(&args), || window(args, start, None)),
+        Some(folder) => open(args, start, Some(folder), front),
+        None => supervisor::run(forwards, || open(args, start, None, front)),
     }
 }
 
-/// Whether commands come on standard input. A terminal is not read: it would stop the window of a background job.
+/// Whether commands for a window come on standard input. A terminal is not read: it would stop the window of a background job.
 fn reads_commands(args: &Args) -> bool {
     args.common.emits() && !std::io::stdin().is_terminal()
 }
 
 /// Starts to print events and to read commands.
-fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
+fn control(args: &Args, is_supervised: bool, front: Front) -> Result<Control, Failure> {
     let mut control = Control::new();
     if is_supervised {
         supervisor::wake_with_parent();
     }
     if args.common.emits() {
         let stdout = control.print_events();
-        if is_supervised {
-            control.read(std::io::stdin(), stdout, supervisor::end);
+        if front == Front::Stdin {
+            end_of_input::read(&control, stdout, is_supervised);
+        } else if is_supervised {
+            control.read(std::io::stdin(), stdout, |_| {
+                supervisor::end();
+                None
+            });
         } else if reads_commands(args) {
-            control.read(std::io::stdin(), stdout, || ());
+            control.read(std::io::stdin(), stdout, |_| None);
         }
     } else if is_supervised {
         supervisor::end_with_parent();
@@ -90,20 +120,24 @@ fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
     Ok(control)
 }
 
-/// Opens the window. With the `folder` of a session, goes on where the process before was lost.
-fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Failure> {
+/// Opens the window, or the session without one. With the `folder` of a session, goes on where the process before was lost.
+fn open(args: Args, start: Instant, folder: Option<PathBuf>, front: Front) -> Result<(), Failure> {
     limits::check()?;
-    let control = control(&args, folder.is_some())?;
+    let has_window = front == Front::Window;
+    let control = control(&args, folder.is_some(), front)?;
     check_model_path(args.models.model.as_deref())?;
     let (width, height) = args.common.size();
-    if width.max(height) > LARGEST_WINDOW {
+    if has_window && width.max(height) > LARGEST_WINDOW {
         let message =
             format!("--size {width}x{height} is too large for a window; at most {LARGEST_WINDOW} pixels a side");
         return Err(Failure::Usage(message));
     }
     let source = args.common.source()?;
     let given = SessionState {
-        settings: Arc::new(args.common.settings_of_window()?),
+        settings: Arc::new(match front {
+            Front::Window => args.common.settings_of_window()?,
+            Front::Stdin => args.common.settings()?,
+        }),
         model: args.models.model,
         scene: args.common.load_options().scene,
         tree: source.location().map(Path::to_owned),
@@ -112,7 +146,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let follows_environment = args.common.leaves_environment_open();
     let state = folder.as_deref().map(RecoveryState::read).unwrap_or_default();
     // A model and options say what is wanted, and after a loss the record does.
-    let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
+    let is_plain = has_window && given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
     let restored = is_plain.then(|| app::session_to_restore(given.tree.as_deref())).flatten();
     let plain = (is_plain && restored.is_none()).then(|| given.clone());
     let work = state.work.clone().or(restored).unwrap_or(given);
@@ -131,15 +165,15 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     };
     let source = state.source(source, good.clone());
     // The size of the last window, unless one was given.
-    let last = if args.common.size.is_none() { app::last_size() } else { None };
+    let last = if has_window && args.common.size.is_none() { app::last_size() } else { None };
     let added = work.settings.added_files();
     let options = AppOptions {
         source,
         compiler: compiler()?,
         model: work.model,
         // After a loss the settings are those of the session.
-        follows_lights: follows_lights && state.work.is_none(),
-        follows_environment: follows_environment && state.work.is_none(),
+        follows_lights: has_window && follows_lights && state.work.is_none(),
+        follows_environment: has_window && follows_environment && state.work.is_none(),
         settings: Arc::unwrap_or_clone(work.settings),
         plain,
         size: state.window.map(|window| window.size).or(last).unwrap_or_else(|| args.common.size()),
@@ -152,12 +186,14 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         recorder: Recorder::new(folder, state, good),
         start,
     };
-    app::run(options).map_err(|error| match error {
+    let ended = if has_window { app::run(options) } else { app::serve(options) };
+    ended.map_err(|error| match error {
         AppError::Gpu(GpuError::DeviceLost(_)) if is_supervised => {
             message::tell(error);
-            end_now(LOST)
+            end_process(LOST)
         }
         AppError::Validation(_) => Failure::Input(error.to_string()),
+        AppError::Size(..) => Failure::Usage(error.to_string()),
         AppError::NoDisplay(_) | AppError::Gpu(_) => Failure::Device(error.to_string()),
     })
 }
@@ -168,13 +204,5 @@ fn end_of_device(what: &str, limit: Duration) -> ! {
         "the graphics device has not finished {what} within {} s (`--timeout SECONDS`)",
         limit.as_secs()
     ));
-    end_now(HUNG)
-}
-
-/// Ends the process without destructors, which would wait for the device, and while other threads may be in the driver.
-fn end_now(code: u8) -> ! {
-    #[cfg(unix)]
-    signal_hook::low_level::exit(code.into());
-    #[cfg(not(unix))]
-    std::process::exit(code.into());
+    end_process(HUNG)
 }

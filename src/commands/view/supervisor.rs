@@ -13,6 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use specula::control::remove_sockets;
 use specula::message;
+use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
 
 use crate::commands::Failure;
@@ -28,9 +29,19 @@ pub fn session() -> Option<PathBuf> {
     std::env::var_os(VARIABLE).map(PathBuf::from)
 }
 
-/// Runs the window in child processes until one ends by itself. `in_place` runs it in this process, if there can be no child. With
-/// `forwards`, the child gets what comes on standard input.
-pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+/// What becomes of this process's standard input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Forward {
+    /// Nobody reads it.
+    Nothing,
+    /// The child gets its lines. Its end ends nothing.
+    Lines,
+    /// The child gets its lines and its end.
+    All,
+}
+
+/// Runs the window in child processes until one ends by itself. `in_place` runs it in this process, if there can be no child.
+pub fn run(forwards: Forward, in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
     let input = Input::default();
     let child = create_folder().and_then(|folder| {
         let program = std::env::current_exe()?;
@@ -60,7 +71,7 @@ pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Re
         if state.losses >= MOST_LOSSES {
             return Err(Failure::Device(farewell(&cause, &state)));
         }
-        message::tell(format_args!("{cause}; the session goes on in a new window"));
+        message::tell(format_args!("{cause}; the session goes on in a new process"));
         let next = state.write(&folder.0).and_then(|()| run_child(&program, &folder.0, &input, forwards));
         status = next.map_err(|error| Failure::Device(format!("{cause}, and the session cannot go on: {error}")))?;
     }
@@ -87,10 +98,11 @@ pub fn wake_with_parent() {
 
 /// Ends the child, whose parent has ended.
 pub fn end() {
+    let _halt = specula::picture::remove_unfinished();
     clean_up();
     #[cfg(unix)]
     let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
-    std::process::exit(1);
+    end_process(1);
 }
 
 /// Removes the sockets, and the folder of the session if this process is the child, before a signal ends it.
@@ -141,19 +153,19 @@ fn remove_abandoned(parent: &Path) {
 }
 
 /// Runs the program again with the same arguments, to its end.
-fn run_child(program: &Path, folder: &Path, input: &Input, forwards: bool) -> io::Result<ExitStatus> {
+fn run_child(program: &Path, folder: &Path, input: &Input, forwards: Forward) -> io::Result<ExitStatus> {
     let mut child =
         Command::new(program).args(std::env::args_os().skip(1)).env(VARIABLE, folder).stdin(Stdio::piped()).spawn()?;
     input.lead_to(child.stdin.take());
-    if forwards {
-        input.forward();
+    if forwards != Forward::Nothing {
+        input.forward(forwards);
     }
     let status = child.wait();
     input.lead_to(None);
     status
 }
 
-/// Forwards standard input to the child. The pipe to the child stays open when the input ends.
+/// Forwards standard input to the child.
 #[derive(Clone, Default)]
 struct Input(Arc<(Mutex<Lead>, Condvar)>);
 
@@ -162,6 +174,8 @@ struct Input(Arc<(Mutex<Lead>, Condvar)>);
 struct Lead {
     pipe: Option<ChildStdin>,
     is_read: bool,
+    /// Whether no child gets any more.
+    has_ended: bool,
 }
 
 impl Input {
@@ -169,14 +183,21 @@ impl Input {
         self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Leads the input to another child, or lets it wait.
+    /// Leads the input to another child, or lets it wait. After the end of the input, the pipe to the child is closed.
     fn lead_to(&self, pipe: Option<ChildStdin>) {
-        self.lock().pipe = pipe;
+        let mut lead = self.lock();
+        lead.pipe = pipe.filter(|_| !lead.has_ended);
         self.0.1.notify_all();
     }
 
+    /// Ends the input of the child, and of the next ones.
+    fn end(&self) {
+        let mut lead = self.lock();
+        (lead.pipe, lead.has_ended) = (None, true);
+    }
+
     /// Reads standard input on a thread until it ends. The thread is started once.
-    fn forward(&self) {
+    fn forward(&self, forwards: Forward) {
         if std::mem::replace(&mut self.lock().is_read, true) {
             return;
         }
@@ -190,6 +211,9 @@ impl Input {
                 }
                 input.pass(&line);
                 line.clear();
+            }
+            if forwards == Forward::All {
+                input.end();
             }
         };
         // If the thread cannot start, the window gets no commands from this input.

@@ -1,14 +1,12 @@
 //! A page of HTML about the differences of pictures: all in one file, without a network.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Cursor;
 
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde::Serialize;
 
 use super::{Comparison, Measure, Picture, differences};
+use crate::report::{png_uri, uri_of};
 
 /// The page without its pictures, and its script.
 const PAGE: &str = include_str!("page.html");
@@ -142,7 +140,7 @@ pub fn page(title: &str, limits: &str, mut pairs: Vec<ReportPair>) -> String {
 fn side_of(shown: &Shown<'_>) -> Result<Side, String> {
     let is_png = image::guess_format(shown.bytes).is_ok_and(|format| format == ImageFormat::Png);
     let image = match (shown.picture, is_png) {
-        (Picture::Display(_), true) => uri(shown.bytes),
+        (Picture::Display(_), true) => png_uri(shown.bytes),
         (Picture::Display(image), false) => uri_of(&image.clone().into())?,
         (Picture::Raw(image), _) => {
             let colors = image.pixels().map(|pixel| Rgb([0, 1, 2].map(|channel| srgb(pixel.0[channel]))));
@@ -150,16 +148,6 @@ fn side_of(shown: &Shown<'_>) -> Result<Side, String> {
         }
     };
     Ok(Side { file: shown.file.clone(), image, settings: shown.settings.clone() })
-}
-
-fn uri(png: &[u8]) -> String {
-    format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png))
-}
-
-fn uri_of(image: &DynamicImage) -> Result<String, String> {
-    let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| error.to_string())?;
-    Ok(uri(bytes.get_ref()))
 }
 
 fn pixels_to_image(pixels: impl Iterator<Item = Rgb<u8>>, (width, height): (u32, u32)) -> RgbImage {
@@ -232,6 +220,8 @@ fn flatten(path: &str, value: &toml::Value, all: &mut BTreeMap<String, String>) 
 
 #[cfg(test)]
 mod tests {
+    use base64::Engine as _;
+    use base64::prelude::BASE64_STANDARD;
     use image::{Rgba, RgbaImage};
 
     use super::*;

@@ -73,6 +73,12 @@ impl Readback {
         (self.width, self.height, rgba8)
     }
 
+    /// The captured frame without its raw values. SYNC: after the fence of the submission.
+    pub fn finish_picture(self) -> Capture {
+        let (width, height, rgba8) = self.finish_display();
+        Capture { width, height, rgba8, ..Capture::default() }
+    }
+
     /// The captured frame. SYNC: after the fence of the submission.
     pub fn finish(self) -> Capture {
         let (raw, half) = (self.raw.clone(), self.half);

@@ -22,12 +22,14 @@ mod model_draws;
 mod motion;
 mod moved_vertices;
 mod new_picture;
+mod output;
 mod parts;
 mod passes;
 mod peel_images;
 mod peeling;
 mod pixel_modes;
 mod range_sample;
+mod results;
 mod scan;
 mod targets;
 mod thumbnails;
@@ -41,7 +43,7 @@ use glam::Mat4;
 use capture::PixelReadback;
 pub use capture::{Capture, PixelAt, Readback};
 pub use declared::beyond_memory;
-pub use passes::Output;
+pub use output::Output;
 pub use pixel_modes::PixelModes;
 pub use range_sample::RangeSample;
 pub use scan::NotFinitePixels;
@@ -59,10 +61,8 @@ use peel_images::PeelImages;
 
 use super::bound_frame::BoundFrame;
 use super::scene::PlacedScene;
-use crate::frame::{Display, Limits, TargetFormat};
-use crate::gpu::{
-    DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
-};
+use crate::frame::{Display, Limits};
+use crate::gpu::{DescriptorSet, Encoder, Gpu, GpuError, Image, Rect, Sampler, SamplerDesc, SetLayouts, Use};
 use crate::shader::annotation::pass::PassTarget;
 use crate::shader::graph::Input;
 
@@ -327,7 +327,7 @@ impl View {
             }
         }
         encoder.transition(output.image, output.before, Use::Color);
-        passes::clear(encoder, output.image);
+        output::clear_image(encoder, output.image);
         if let Some(display) = display {
             if is_on_display {
                 in_flight.pixel.record(encoder, &display, self.probe, self.picture);
@@ -337,7 +337,7 @@ impl View {
                     in_flight.pass_pixels.push(("final".to_owned(), pixel));
                 }
             }
-            passes::copy(encoder, &display, output);
+            output::copy_image(encoder, &display, output);
         }
         Ok(())
     }
@@ -420,72 +420,6 @@ impl View {
     /// Fills an output with black while there is no frame to draw.
     pub fn clear(encoder: &mut Encoder, output: &Output<'_>) {
         encoder.transition(output.image, output.before, Use::Color);
-        passes::clear(encoder, output.image);
-    }
-
-    /// The number of the current picture. It increases when the model is drawn, not when only the tone map runs.
-    pub fn picture(&self) -> u64 {
-        self.picture
-    }
-
-    /// The number of accumulated frames.
-    pub fn accumulated(&self) -> u32 {
-        self.sample_index + 1
-    }
-
-    /// The probed pixel of the last frame of slot `slot`, if that frame had one. SYNC: after that frame's fence.
-    pub fn pixel(&self, slot: usize) -> Option<PixelAt> {
-        self.in_flight.get(slot).and_then(|in_flight| in_flight.pixel.read())
-    }
-
-    /// The values of [`View::probe_passes`] in the last frame of slot `slot`, by the slugs of the modes that show them. SYNC: after that frame's fence.
-    pub fn pass_pixels(&self, slot: usize) -> Vec<(String, PixelAt)> {
-        let pixels = self.in_flight.get(slot).into_iter().flat_map(|in_flight| &in_flight.pass_pixels);
-        pixels.filter_map(|(name, pixel)| Some((name.clone(), pixel.read()?))).collect()
-    }
-
-    /// The pixels with NaN or infinity in the frame of slot `slot`, if it looked for them. SYNC: after that frame's fence.
-    pub fn take_scan(&mut self, slot: usize) -> Option<NotFinitePixels> {
-        self.in_flight.get_mut(slot)?.scan.take().map(Scan::finish)
-    }
-
-    /// Records the readback of the image in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
-    /// `Readback::finish` once the frame has finished.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub fn read_back(&self, encoder: &mut Encoder, output: &Arc<Image>) -> Result<Option<Readback>, GpuError> {
-        let Some(targets) = &self.targets else { return Ok(None) };
-        encoder.transition(output, Use::Color, Use::CopyFrom);
-        let values = self.drawn.as_ref().and_then(|(frame, _)| self.declared.values_on_display(frame));
-        let picture = values.or(self.declared.picture()).unwrap_or(targets.picture());
-        encoder.transition(picture, Use::Sampled, Use::CopyFrom);
-        let readback = Readback::record(&self.gpu, encoder, output, picture)?;
-        encoder.transition(picture, Use::CopyFrom, Use::Sampled);
-        Ok(Some(readback))
-    }
-
-    /// Creates an output image that can be read back.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub fn output_image(&self, (width, height): (u32, u32)) -> Result<Arc<Image>, GpuError> {
-        use vk::ImageUsageFlags as Usage;
-        let usage = Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Swapchain::FORMAT, usage))
-    }
-
-    /// The target format for `msaa` samples per pixel, with full or half floats.
-    ///
-    /// # Errors
-    /// A message, if `msaa` is neither 1 nor 4 or the device does not support it.
-    pub fn target_format(gpu: &Gpu, msaa: u32, full: bool) -> Result<TargetFormat, String> {
-        match msaa {
-            samples @ (1 | 4) if gpu.supports_samples(samples) => {
-                Ok(if full { TargetFormat::full(samples) } else { TargetFormat::half(samples) })
-            }
-            4 => Err("this device has no 4x multisampling; use --set view.msaa=1".into()),
-            other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
-        }
+        output::clear_image(encoder, output.image);
     }
 }

@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use super::declared::PassSets;
 use super::model_draws::{Draws, ModelDraws, instances};
+use super::output::cleared;
 use super::peel_images::PeelImages;
 use super::targets::{ColorTarget, Targets};
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
@@ -24,16 +25,6 @@ use crate::interface::ALPHA_BLEND;
 use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{Frustum, Layer, PlacedScene, Run, SortedDraws};
 use crate::shader::GraphPass;
-
-/// The destination of a view's output.
-pub struct Output<'a> {
-    /// The image. [`super::View::draw`] leaves it in [`Use::Color`].
-    pub image: &'a Arc<Image>,
-    /// The use that the image is in: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
-    pub before: Use,
-    /// Upper left corner of the output in the image. The rest of the image becomes black.
-    pub at: (u32, u32),
-}
 
 /// The rows of the model that a submission draws.
 #[derive(Clone, Copy)]
@@ -383,25 +374,6 @@ impl Passes<'_> {
             placed.scene.take_back(sorted);
         }
     }
-}
-
-/// Fills an image with black.
-pub(super) fn clear(encoder: &mut Encoder, output: &Arc<Image>) {
-    encoder.begin_rendering(&cleared(output));
-    encoder.end_rendering();
-}
-
-/// Copies an image in [`Use::Sampled`] to its place in an output in [`Use::Color`].
-pub(super) fn copy(encoder: &mut Encoder, display: &Arc<Image>, output: &Output<'_>) {
-    encoder.transition(display, Use::Sampled, Use::CopyFrom);
-    encoder.transition(output.image, Use::Color, Use::CopyTo);
-    encoder.copy_image_to(display, output.image, output.at);
-    encoder.transition(output.image, Use::CopyTo, Use::Color);
-    encoder.transition(display, Use::CopyFrom, Use::Sampled);
-}
-
-fn cleared(output: &Arc<Image>) -> Attachments<'_> {
-    Attachments { clear: Some([0.0, 0.0, 0.0, 1.0]), ..Attachments::of(output) }
 }
 
 fn whole(image: &Image) -> Rect {

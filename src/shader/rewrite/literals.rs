@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::shader::glsl::{TokenKind, lines};
+use crate::shader::glsl::{Line, TokenKind, lines};
 
 /// A number in a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +20,16 @@ pub struct Literal {
 /// The numbers in the code of a line, from the left. Those of directives are left out, and those in the name of something.
 pub fn literals(text: &str, number: u32) -> Vec<Literal> {
     let all = lines(text);
-    let line = all.get((number as usize).wrapping_sub(1)).filter(|line| !line.is_directive);
-    let tokens = line.map(|line| line.tokens()).unwrap_or_default();
+    all.get((number as usize).wrapping_sub(1)).map(of_line).unwrap_or_default()
+}
+
+/// The same of all lines.
+pub fn literals_by_line(text: &str) -> Vec<Vec<Literal>> {
+    lines(text).iter().map(of_line).collect()
+}
+
+fn of_line(line: &Line<'_>) -> Vec<Literal> {
+    let tokens = if line.is_directive { Vec::new() } else { line.tokens() };
     // Digits behind a dot or a name are nothing that can be dragged.
     let follows = |at: usize| {
         let before = at.checked_sub(1).map(|before| &tokens[before]);

@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::shader::source::TreePath;
 
 pub use defaults::defaults;
-pub use literals::{Literal, literals, spelled_like};
+pub use literals::{Literal, literals, literals_by_line, spelled_like};
 
 /// A change of a part of one line.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,6 +8,7 @@
 //! The set of pipelines is that of the picture except for this stage (`PipelineSet::variant`), so light and tables are the picture's.
 //! The color with which the log of the visible fragment ends is compared with the picture's, bit by bit; that of a pass with its image.
 
+mod around;
 mod assertion;
 mod calls;
 mod invocations;
@@ -26,6 +27,7 @@ use serde::Serialize;
 
 use super::spirv::trace::Purpose;
 use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
+pub use around::Neighborhood;
 pub use assertion::Assertion;
 use calls::Calls;
 use invocations::color_of;

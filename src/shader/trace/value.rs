@@ -31,6 +31,11 @@ impl TracedValue {
         Self::new(NumberKind::Float, &numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>())
     }
 
+    /// Whether it is true or false, or several of these.
+    pub fn is_truth(&self) -> bool {
+        matches!(self.kind, NumberKind::Bool)
+    }
+
     /// Its type in GLSL.
     pub fn type_name(&self) -> String {
         let (scalar, vector) = match self.kind {

@@ -170,12 +170,13 @@ fn derivatives_are_undefined_where_pixels_of_a_quad_part() {
     let (checked, first) = of(&APART, "");
     checked.expect(1, &["in a branch that only some pixels of a quad take, first at the pixel"]);
     let found: Value = serde_json::from_str(&checked.stdout).unwrap();
-    let all = found.as_array().unwrap().iter();
-    let all = all.map(|of| (of["line"].as_u64().unwrap() as u32 - first, of["rule"].as_str().unwrap(), &of["count"]));
-    // The quad covers the picture: of 48 by 32 pixels, those of the columns and rows that run alone.
-    let expected =
-        [(0, "derivative", &json!(24 * 32)), (1, "derivative", &json!(48 * 16)), (2, "derivative", &json!(32))];
-    assert_eq!(all.collect::<Vec<_>>(), expected, "{found:#}");
+    // The quad covers the picture of 48 by 32 pixels. Along the diagonal of its two triangles, a device may leave neighbors out.
+    let most = [24 * 32, 48 * 16, 32];
+    assert_eq!(found.as_array().unwrap().len(), most.len(), "{found:#}");
+    for ((of, line), most) in found.as_array().unwrap().iter().zip(first..).zip(most) {
+        assert_eq!((&of["line"], &of["rule"]), (&json!(line), &json!("derivative")), "{of}");
+        assert!((most * 9 / 10..=most).contains(&of["count"].as_u64().unwrap()), "{of}");
+    }
     let (checked, _) = of(&TOGETHER, "");
     checked.expect(0, &[]);
     // A device that cannot tell says so.

@@ -188,7 +188,7 @@ fn an_out_that_cannot_be_written() {
         run(directory.path(), &["render", "sphere-grid", "--env", "none", "--out", path, SMALL[0], SMALL[1]])
     };
     out("no/such/folder/x.png").expect(1, &["no/such/folder/x.png", "no folder"]);
-    out("x.bmp").expect(2, &["x.bmp", ".png or .exr"]);
+    out("x.bmp").expect(2, &["x.bmp", ".exr or .npy"]);
     fs::create_dir(directory.path().join("folder.png")).unwrap();
     out("folder.png").expect(1, &["folder.png", "is a folder"]);
     // Not even root can write there, and the error appears only after rendering.

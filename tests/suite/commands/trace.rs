@@ -267,3 +267,35 @@ fn each_fragment_of_a_pixel_is_traced() {
     text.expect(0, &[]);
     assert!(text.stdout.contains("of 2: discarded\n") && text.stdout.contains("   discard\n"), "{}", text.stdout);
 }
+
+/// The pixels around one have the values that a trace of each has, and none where the model is not.
+#[test]
+fn the_values_around_a_pixel_are_those_of_its_neighbors() {
+    let directory = tempfile::tempdir().unwrap();
+    write_sphere(directory.path());
+    let traced = |at: &str, more: &[&str]| {
+        let place = [&["ball.glb", "--at", at, "--file", "brdf/ndf.glsl", "--json"], &EYE[..], more].concat();
+        trace(directory.path(), &place).expect(0, &[]).json()
+    };
+    // At the silhouette, so that a part of the square is beside the sphere.
+    let found = traced("73,32", &["--around"]);
+    let around = &found["around"];
+    assert_eq!((&around["first"], &around["size"]), (&json!([69, 28]), &json!([8, 8])));
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/brdf/ndf.glsl")).unwrap();
+    let line = line_of(&text, "float a2 = alpha * alpha");
+    let values = |name: &str, line: u32| -> Vec<Value> {
+        let statements = around["statements"].as_array().unwrap();
+        let found = statements.iter().find(|of| of["name"] == name && of["line"] == line);
+        found.unwrap_or_else(|| panic!("no {name}: {statements:#?}"))["values"].as_array().unwrap().clone()
+    };
+    let spread = values("spread", line + 1);
+    assert_eq!(spread.len(), 64);
+    let missing = spread.iter().filter(|value| value.is_null()).count();
+    assert!((1..60).contains(&missing), "{missing} of 64 pixels are beside the sphere");
+    for (x, y) in [(71_usize, 30_usize), (70, 34)] {
+        let own = traced(&format!("{x},{y}"), &[]);
+        let last = done(&own, "brdf/ndf.glsl", line + 1).last().unwrap().2.last().unwrap().clone();
+        assert_eq!(spread[(y - 28) * 8 + (x - 69)], last, "{x}, {y}");
+    }
+    trace(directory.path(), &["ball.glb", "--at", "73,32", "--around"]).expect(2, &["--json"]);
+}

@@ -1,11 +1,13 @@
 //! Shared by the tests: one device and compiler for all of them, shader trees that can be edited, models
 //! made in code, and the program as a child process.
 
+pub mod browser;
 mod damage;
 pub mod glb;
 pub mod hdr;
 pub mod process;
 mod renderer;
+pub mod served;
 pub mod video;
 pub mod window;
 pub mod xdnd;

@@ -28,7 +28,7 @@ fn a_window_that_was_closed_stays_closed_whatever_fails_then() {
     for (fault, warning) in [
         ("closing-panic:1", "Specula failed while the window closed"),
         // Ten minutes: the test has no patience for that.
-        ("closing-delay-ms:600000,closing-limit-ms:1000", "a thread did not end with the window"),
+        ("closing-delay-ms:600000,closing-limit-ms:1000", "a thread did not end with the session"),
     ] {
         let mut viewer = Viewer::with_fault(Tree::new(), &["sphere-grid"], fault);
         viewer.running.event("ready");

@@ -53,7 +53,7 @@ pub(in crate::app) fn on_second_tree_found(
 /// The current settings, model and targets.
 pub(in crate::app) fn snapshot(state: &State, engine: &Engine) -> Snapshot {
     let settings = state.session.shared_settings();
-    let target = target(&engine.gpu, &settings);
+    let target = target(&engine.gpu, &settings, !state.has_window);
     let suns = state.session.revisions.suns_of(&settings);
     Snapshot { scene: state.session.scene(), settings, target, suns }
 }

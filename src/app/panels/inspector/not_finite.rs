@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, Sense, Ui};
 
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::inspection::NotFiniteSearch;
@@ -55,7 +55,7 @@ fn line(
         match has_files {
             true => {
                 let (line, column) = (Some(*line), Some(*column));
-                commands.push(EDIT.with(Place { file: PathBuf::from(file), line, column }));
+                commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(file), line, column }));
             }
             false => ui.ctx().copy_text(format!("{file}:{line}:{column}: {code}")),
         }

@@ -99,7 +99,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::app::command::file::EDIT;
+    use crate::app::command::file::OPEN_EDITOR;
     use crate::app::editor::Place;
     use crate::app::state::inspection::NotFiniteSearch;
     use crate::render::TexelPlace;
@@ -145,6 +145,6 @@ mod tests {
         harness.run();
         let file = PathBuf::from("/home/me/shaders/brdf/ndf.glsl");
         let place = Place { file, line: Some(20), column: Some(5) };
-        assert_eq!(harness.state().last(), Some(&EDIT.with(place)));
+        assert_eq!(harness.state().last(), Some(&OPEN_EDITOR.with(place)));
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use egui::{Align2, Id, Rect, RichText, Ui};
 
 use super::card::{area, card};
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::widgets::plural;
@@ -124,7 +124,7 @@ fn position(ui: &mut Ui, diagnostic: &Diagnostic, is_file: bool, commands: &mut 
     if response.clicked() {
         let Diagnostic { file, line, column, .. } = diagnostic;
         match is_file {
-            true => commands.push(EDIT.with(Place { file: PathBuf::from(file), line: *line, column: *column })),
+            true => commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(file), line: *line, column: *column })),
             false => ui.ctx().copy_text(place.clone()),
         }
     }

@@ -3,7 +3,7 @@
 use egui::{Align2, Id, Rect, RichText, Ui};
 
 use super::card::{area, card};
-use crate::app::command::file::{EDIT, NEW_TREE};
+use crate::app::command::file::{NEW_TREE, OPEN_EDITOR};
 use crate::app::command::program::{DISMISS_HINT, LEARN};
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
@@ -36,7 +36,7 @@ pub(super) fn show(egui: &egui::Context, state: &State, picture: Rect, commands:
                     buttons(ui, commands, &mut is_done, |ui| {
                         let hover = "Opens the folder with $SPECULA_EDITOR, $VISUAL, $EDITOR or an installed editor";
                         let is_clicked = ui.button("Open in the editor").on_hover_text(hover).clicked();
-                        is_clicked.then_some(EDIT.with(Place { file: folder, line: None, column: None }))
+                        is_clicked.then_some(OPEN_EDITOR.with(Place { file: folder, line: None, column: None }))
                     });
                 }
                 None => {
@@ -74,7 +74,7 @@ fn buttons(
     ui.horizontal_wrapped(|ui| {
         let command = first(ui);
         // A tree that has just been written is shown with its path, and the other hint.
-        *is_done |= command.as_ref().is_some_and(|command| command.is_a(&EDIT));
+        *is_done |= command.as_ref().is_some_and(|command| command.is_a(&OPEN_EDITOR));
         commands.extend(command);
         let hover = format!("{} short exercises about shading, which Specula checks", exercises().len());
         if ui.button("Learn…").on_hover_text(hover).clicked() {

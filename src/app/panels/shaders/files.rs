@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Align2, Color32, CursorIcon, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::program::SAY;
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
@@ -261,7 +261,7 @@ fn open_on_click(response: egui::Response, display: &str, commands: &mut Vec<Com
     let is_on_disk = !display.starts_with("embedded:");
     if response.clicked() {
         match is_on_disk {
-            true => commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None })),
+            true => commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(display), line: None, column: None })),
             false => commands.push(SAY.with(
                 "this file is built in. `specula new DIR` writes the tree to a folder where you can edit it".into(),
             )),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::spec::Command;
 use crate::app::editor::Place;
 use crate::app::state::State;
@@ -90,7 +90,9 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic, has_files: bool, commands: &mut Vec
         if label.clicked() {
             let Diagnostic { file, line, column, .. } = diagnostic;
             match has_files {
-                true => commands.push(EDIT.with(Place { file: PathBuf::from(file), line: *line, column: *column })),
+                true => {
+                    commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(file), line: *line, column: *column }))
+                }
                 false => ui.ctx().copy_text(diagnostic.one_line()),
             }
         }

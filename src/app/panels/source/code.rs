@@ -5,19 +5,31 @@ use egui::{ScrollArea, Ui, vec2};
 use super::colors::ROW;
 use super::edit::Editor;
 use super::find::Find;
+use super::fold::Folds;
+use super::look::Look;
 use super::model::CodeModel;
-use super::row::{Look, show_row};
+use super::number::NumberDrag;
+use super::row::{Clicked, show_row};
 use super::scroll::Scroll;
 use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::widgets::theme::small_mono_font;
+
+/// The parts of the panel that the lines show and change.
+pub(super) struct Parts<'a> {
+    pub(super) find: &'a Find,
+    pub(super) editor: &'a mut Editor,
+    pub(super) folds: &'a mut Folds,
+    pub(super) drag: &'a mut NumberDrag,
+    pub(super) scroll: &'a mut Scroll,
+}
 
 /// Shows the lines.
 pub(super) fn show(
     ui: &mut Ui,
     state: &State,
     model: &CodeModel,
-    (find, editor, scroll): (&Find, &mut Editor, &mut Scroll),
+    Parts { find, editor, folds, drag, scroll }: Parts<'_>,
     commands: &mut Commands,
 ) {
     let Some((path, text)) = model.path().zip(model.text()) else { return };
@@ -33,6 +45,11 @@ pub(super) fn show(
         scroll.offer(first.unwrap_or(0));
     }
     if let Some(line) = scroll.take() {
+        if folds.open_at(model, line) {
+            // The next frame has its row.
+            scroll.to(line);
+            ui.ctx().request_repaint();
+        }
         let above = (ui.available_height() / 3.0).min(6.0 * ROW);
         area = area.vertical_scroll_offset((ROW * model.shown_at(line) as f32 - above).max(0.0));
     }
@@ -41,9 +58,10 @@ pub(super) fn show(
         ui.set_min_width(width.max(ui.available_width()));
         scroll.first = model.line_at(range.start);
         for shown in &model.shown[range] {
-            let begins = show_row(ui, (state, path), model, shown, (&look, find), commands);
-            if let Some(line) = begins {
-                editor.begin(path, text, line);
+            match show_row(ui, (state, path), model, shown, (&look, find, drag), commands) {
+                Some(Clicked::Edit(line)) => editor.begin(path, text, line),
+                Some(Clicked::Fold(name)) => folds.toggle(path, &name),
+                None => {}
             }
         }
     });

@@ -12,8 +12,9 @@ use egui::{
 
 use super::colors::{ROW, colored};
 use super::find::Find;
+use super::look::Look;
 use super::model::CodeModel;
-use super::row::{Look, beside};
+use super::row::beside;
 use super::scroll::Scroll;
 use crate::app::closing::Unsaved;
 use crate::app::command::source::{SAVE_FILE, Typed};

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use egui::{ComboBox, RichText, ScrollArea, Ui};
 
 use super::edit::Editor;
+use super::fold::Folds;
 use super::model::CodeModel;
 use super::scroll::Scroll;
-use crate::app::command::file::EDIT;
+use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::scene::UNPIN;
 use crate::app::command::source::{CHOOSE_STAGE, CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
 use crate::app::commands::Commands;
 use crate::app::editor::Place;
+use crate::app::panels::draft::show_draft;
 use crate::app::state::State;
 use crate::app::state::shaders::edits::NO_FOLDER;
 use crate::app::state::trace::choice::{Choice, calls, most_times};
@@ -34,7 +36,7 @@ pub(super) fn show(
     ui: &mut Ui,
     state: &State,
     (shaders, model): (&ShaderSet, &CodeModel),
-    (editor, scroll): (&mut Editor, &mut Scroll),
+    (editor, folds, scroll): (&mut Editor, &mut Folds, &mut Scroll),
     commands: &mut Commands,
 ) {
     let newest = state.traces.newest();
@@ -51,7 +53,13 @@ pub(super) fn show(
             choices(ui, &state.traces.choice, trace, fragment, commands);
         }
         edit(ui, state, model, (editor, scroll), commands);
+        if !model.path().is_some_and(|path| editor.has(path)) {
+            folds.menu(ui, model);
+        }
         open_in_editor(ui, state, model, commands);
+        if let Some(draft) = &state.edits.draft {
+            show_draft(ui, state, draft, true, &mut commands.list);
+        }
     });
     ui.add_space(2.0);
 }
@@ -138,10 +146,8 @@ fn pixel(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>) {
     let quiet = |ui: &mut Ui, text: &str| drop(ui.label(RichText::new(text).small().color(QUIET)));
     match (state.traces.progress, newest) {
-        (Progress::UnderWay(_), _) => {
-            ui.add(egui::Spinner::new().size(12.0));
-            quiet(ui, "Tracing…");
-        }
+        // Nothing that moves: frames of a software device would hold the trace up.
+        (Progress::UnderWay(_), _) => quiet(ui, "Tracing…"),
         (Progress::Outside, _) => quiet(ui, "outside of the picture"),
         (Progress::Waits, _) if state.inspection.is_pinned() => quiet(ui, "Waiting for the final picture…"),
         (Progress::Done, Some(PixelTrace { trace: Err(message), .. })) => {
@@ -226,7 +232,7 @@ fn open_in_editor(ui: &mut Ui, state: &State, model: &CodeModel, commands: &mut 
         .on_hover_text(format!("Open {display} in your editor"))
         .clicked()
     {
-        commands.push(EDIT.with(Place { file: PathBuf::from(display), line: None, column: None }));
+        commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(display), line: None, column: None }));
     }
 }
 

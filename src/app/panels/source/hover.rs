@@ -3,6 +3,8 @@
 use egui::{Grid, RichText, Ui};
 
 use super::model::CodeLine;
+use super::{bar, neighborhood};
+use crate::app::state::State;
 use crate::app::state::trace::rows::Note;
 use crate::app::widgets::plural;
 use crate::app::widgets::theme::{ACCENT, ERROR, QUIET, small_mono};
@@ -13,7 +15,13 @@ use crate::shader::trace::{Act, Once};
 const MOST: usize = 12;
 
 /// Shows the hover text of a value.
-pub(super) fn show(ui: &mut Ui, (path, line): (&TreePath, &CodeLine), note: &Note, expression: Option<&str>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &State,
+    (path, line): (&TreePath, &CodeLine),
+    note: &Note,
+    expression: Option<&str>,
+) {
     ui.set_max_width(520.0);
     let done = &note.done;
     let kind = done.values().next().map(|value| value.type_name()).unwrap_or_default();
@@ -46,6 +54,10 @@ pub(super) fn show(ui: &mut Ui, (path, line): (&TreePath, &CodeLine), note: &Not
     let more = done.count.saturating_sub(all.len().min(MOST));
     if more > 0 {
         ui.label(RichText::new(format!("and {more} more of {}", plural(done.count, "time"))).small().color(QUIET));
+    }
+    if bar::value(note).is_some() {
+        neighborhood::show(ui, state, line, note);
+        ui.label(RichText::new(bar::LEGEND).small().color(QUIET));
     }
     if expression.is_some() {
         ui.label(RichText::new("Click to see it over the whole model").small().color(ACCENT));

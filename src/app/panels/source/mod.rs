@@ -1,13 +1,21 @@
 //! The panel Source: a file of the shader tree with the values that its statements have at the pinned pixel, now and before the last edit.
 
+mod bar;
 mod code;
 mod colors;
 mod cost;
 mod edit;
 mod find;
+mod fold;
+mod functions;
+#[cfg(test)]
+mod gesture_tests;
 mod head;
 mod hover;
+mod look;
 mod model;
+mod neighborhood;
+mod number;
 mod row;
 mod scroll;
 #[cfg(test)]
@@ -21,9 +29,12 @@ use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::arrangement::Panel;
 use crate::app::widgets::theme::QUIET;
+use code::Parts;
 use edit::Editor;
 use find::Find;
+use fold::Folds;
 use model::CodeModel;
+use number::NumberDrag;
 use scroll::Scroll;
 
 /// How the rest of the window finds the panel.
@@ -41,6 +52,8 @@ struct SourceState {
     model: CodeModel,
     editor: Editor,
     find: Find,
+    folds: Folds,
+    drag: NumberDrag,
     scroll: Scroll,
 }
 
@@ -52,15 +65,15 @@ impl PanelUi for SourceState {
             ui.label(RichText::new("Compiling shaders…").small().color(QUIET));
             return;
         };
-        let Self { model, editor, find, scroll } = self;
+        let Self { model, editor, find, folds, drag, scroll } = self;
         editor.update(state);
-        model.update(state, shaders, |path| editor.text(path));
+        model.update(state, shaders, |path| folds.of(path), |path| editor.text(path));
         find.take_keys(ui);
-        head::show(ui, state, (shaders, model), (editor, scroll), commands);
+        head::show(ui, state, (shaders, model), (editor, folds, scroll), commands);
         find.show(ui, model, scroll);
         match model.path().is_some_and(|path| editor.has(path)) {
             true => editor.show(ui, state, model, (find, scroll), commands),
-            false => code::show(ui, state, model, (find, editor, scroll), commands),
+            false => code::show(ui, state, model, Parts { find, editor, folds, drag, scroll }, commands),
         }
     }
 

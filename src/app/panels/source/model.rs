@@ -1,12 +1,16 @@
 //! The rows of a file, made anew when the file, the trace or the choice changes.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::functions::{Fold, Function, functions};
 use crate::app::state::State;
 use crate::app::state::trace::PixelTrace;
 use crate::app::state::trace::choice::Choice;
-use crate::app::state::trace::rows::Row;
+use crate::app::state::trace::rows::{Reach, Row};
+use crate::shader::rewrite::literals_by_line;
+use crate::shader::trace::Act;
 use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
 
 /// A line of the file.
@@ -19,6 +23,10 @@ pub(super) struct CodeLine {
     pub(super) row: Row,
     /// The first error or warning about the line.
     pub(super) message: Option<(Severity, String)>,
+    /// The bytes of its numbers that can be dragged.
+    pub(super) numbers: Vec<Range<usize>>,
+    /// The function that begins here.
+    pub(super) fold: Option<Fold>,
 }
 
 /// A row of the list.
@@ -38,6 +46,8 @@ struct Inputs {
     traces: [usize; 2],
     choice: Choice,
     diagnostics: Vec<Diagnostic>,
+    /// The folded functions.
+    folded: BTreeSet<String>,
 }
 
 /// The file that is shown.
@@ -45,6 +55,7 @@ struct Inputs {
 pub(super) struct CodeModel {
     inputs: Option<Inputs>,
     pub(super) lines: Vec<CodeLine>,
+    pub(super) functions: Vec<Function>,
     pub(super) shown: Vec<Shown>,
     /// Characters of the longest line.
     pub(super) longest: usize,
@@ -61,12 +72,22 @@ impl CodeModel {
         self.inputs.as_ref().map(|inputs| &inputs.text)
     }
 
-    /// Makes the rows anew if something has changed. `typed`: the text that the user has typed into a file.
-    pub(super) fn update(&mut self, state: &State, shaders: &ShaderSet, typed: impl Fn(&TreePath) -> Option<Arc<str>>) {
+    /// Makes the rows anew if something has changed. `folds`: the folded functions of a file; `typed`: the text that the user has typed into
+    /// a file, which has none.
+    pub(super) fn update(
+        &mut self,
+        state: &State,
+        shaders: &ShaderSet,
+        folds: impl Fn(&TreePath) -> BTreeSet<String>,
+        typed: impl Fn(&TreePath) -> Option<Arc<str>>,
+    ) {
         let Some((path, text)) = shown_file(state, shaders) else {
             return *self = Self::default();
         };
-        let text = typed(&path).unwrap_or(text);
+        let (text, folded) = match typed(&path) {
+            Some(text) => (text, BTreeSet::new()),
+            None => (text, folds(&path)),
+        };
         let address = |trace: Option<&Arc<PixelTrace>>| trace.map_or(0, |trace| Arc::as_ptr(trace) as usize);
         let display = state.source.display_path(&path);
         let diagnostics = state.session.diagnostics.iter().chain(state.checks.diagnostics());
@@ -77,11 +98,19 @@ impl CodeModel {
             traces: [address(state.traces.newest()), address(state.traces.before())],
             choice: state.traces.choice.clone(),
             diagnostics: diagnostics.cloned().collect(),
+            folded,
         };
         if self.inputs.as_ref() == Some(&inputs) {
             return;
         }
         self.lines = lines(state, shaders, &inputs);
+        self.functions = functions(&inputs.text);
+        let about = |line: &CodeLine| inputs.diagnostics.iter().any(|found| found.line == Some(line.row.line));
+        for function in &self.functions {
+            // What is wrong is never hidden.
+            let is_wrong = self.lines[function.lines.clone()].iter().any(about);
+            fold(&mut self.lines, function, !is_wrong && inputs.folded.contains(&function.name));
+        }
         self.shown = rows(&mut self.lines, &inputs.diagnostics);
         self.longest = self.lines.iter().map(|line| line.text.chars().count()).max().unwrap_or(0);
         self.inputs = Some(inputs);
@@ -111,9 +140,9 @@ impl CodeModel {
         below.iter().find_map(line).unwrap_or_else(|| self.lines.len().saturating_sub(1))
     }
 
-    /// The index of the row that shows a line.
+    /// The index of the row that shows a line, or the last one above it.
     pub(super) fn shown_at(&self, line: usize) -> usize {
-        self.shown.iter().position(|shown| *shown == Shown::Line(line)).unwrap_or(0)
+        self.shown.iter().rposition(|shown| matches!(shown, Shown::Line(at) if *at <= line)).unwrap_or(0)
     }
 }
 
@@ -133,6 +162,7 @@ fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs) -> Vec<CodeLine> {
     let Inputs { path, text, .. } = inputs;
     let mut parts = highlights(text).into_iter().peekable();
     let mut names = includes(text).peekable();
+    let mut numbers = literals_by_line(text).into_iter();
     let mut start = 0;
     let with_breaks = text.split_inclusive('\n').zip(text.lines());
     let line = |((with_break, line), row): ((&str, &str), Row)| {
@@ -150,6 +180,8 @@ fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs) -> Vec<CodeLine> {
             include: include.and_then(|include| included(shaders, path, include.name)),
             row,
             message: None,
+            numbers: numbers.next().unwrap_or_default().into_iter().map(|literal| literal.bytes).collect(),
+            fold: None,
         }
     };
     with_breaks.zip(state.traces.rows(path, text)).map(line).collect()
@@ -161,13 +193,41 @@ fn included(shaders: &ShaderSet, path: &TreePath, name: &str) -> Option<TreePath
     places.find(|place| shaders.texts.contains_key(place))
 }
 
-/// The lines with the messages about them.
+/// Marks the first line of a function. If it is folded, that line shows what the function returns, and whether something in it has changed.
+fn fold(lines: &mut [CodeLine], function: &Function, is_folded: bool) {
+    let (first, body) = match lines.get_mut(function.lines.clone()) {
+        Some([first, body @ ..]) => (first, body),
+        _ => return,
+    };
+    let hidden = if is_folded { body.len() } else { 0 };
+    first.fold = Some(Fold { name: function.name.clone(), hidden });
+    if is_folded {
+        let returns = body.iter().flat_map(|line| &line.row.notes).filter(|note| note.done.act == Act::Return);
+        first.row.notes.extend(returns.cloned());
+        first.row.is_first_change |= body.iter().any(|line| line.row.is_first_change);
+        let is_reached = body.iter().any(|line| line.row.reach == Reach::Reached);
+        let is_missed = body.iter().any(|line| line.row.reach == Reach::Missed);
+        first.row.reach = match (is_reached, is_missed) {
+            (true, _) => Reach::Reached,
+            (false, true) => Reach::Missed,
+            (false, false) => first.row.reach,
+        };
+    }
+}
+
+/// The lines with the messages about them, without those that are folded.
 fn rows(lines: &mut [CodeLine], diagnostics: &[Diagnostic]) -> Vec<Shown> {
     let mut shown = Vec::new();
     let about = |line: Option<u32>| diagnostics.iter().filter(move |found| found.line == line);
     let message = |found: &Diagnostic| Shown::Message(found.severity, found.message.replace('\n', " "));
     shown.extend(about(None).map(message));
+    let mut hidden = 0;
     for (index, line) in lines.iter_mut().enumerate() {
+        if hidden > 0 {
+            hidden -= 1;
+            continue;
+        }
+        hidden = line.fold.as_ref().map_or(0, |fold| fold.hidden);
         shown.push(Shown::Line(index));
         shown.extend(about(Some(line.row.line)).map(message));
         let first = about(Some(line.row.line)).min_by_key(|found| found.severity);

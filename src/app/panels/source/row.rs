@@ -5,16 +5,21 @@ use std::ops::Range;
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
+use super::bar;
 use super::colors::{ROW, colored};
 use super::cost;
 use super::find::Find;
+use super::functions::Fold;
 use super::hover;
+use super::look::Look;
 use super::model::{CodeLine, CodeModel, Shown};
+use super::number::NumberDrag;
 use crate::app::command::source::SHOW_FILE;
 use crate::app::commands::Commands;
 use crate::app::source_line::watch;
 use crate::app::state::State;
 use crate::app::state::trace::rows::{Note, Reach};
+use crate::app::widgets::plural;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{
     ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, PANEL, QUIET, TEXT, WARNING, small_font, small_mono_font,
@@ -26,44 +31,36 @@ use crate::shader::{Severity, TreePath};
 const MOST_VALUES: f32 = 0.6;
 /// Points between code and values, and between two values.
 const GAP: f32 = 14.0;
+/// Points between a bar and its value.
+const BAR_GAP: f32 = 5.0;
 /// Opacity of lines that the pixel does not reach.
 const MISSED: f32 = 0.42;
 
-/// The measures of the rows.
-pub(super) struct Look {
-    /// Width of a letter, points.
-    letter: f32,
-    /// Width of the numbers with their marks, points.
-    pub(super) gutter: f32,
+/// A click on a row.
+pub(super) enum Clicked {
+    /// Begins to type at a line, by its index.
+    Edit(usize),
+    /// Folds a function, or opens it.
+    Fold(String),
 }
 
-impl Look {
-    pub(super) fn new(letter: f32, lines: usize) -> Self {
-        let digits = lines.max(100).to_string().len() as f32;
-        Self { letter, gutter: letter * digits + 26.0 }
-    }
-
-    /// The width of a line with this many letters, and of its number.
-    pub(super) fn width(&self, letters: usize) -> f32 {
-        self.gutter + self.letter * letters as f32 + 40.0
-    }
-}
-
-/// Shows a row. Returns the index of its line, if a double click begins to type there.
+/// Shows a row. Returns a click on it.
 pub(super) fn show_row(
     ui: &mut Ui,
     of: (&State, &TreePath),
     model: &CodeModel,
     shown: &Shown,
-    (look, find): (&Look, &Find),
+    (look, find, drag): (&Look, &Find, &mut NumberDrag),
     commands: &mut Commands,
-) -> Option<usize> {
+) -> Option<Clicked> {
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
     match shown {
         Shown::Line(index) => {
             let line = model.lines.get(*index)?;
-            show_line(ui, of, line, rect, (look, find), commands).then_some(*index)
+            let begins = show_line(ui, of, line, rect, (look, find, drag), commands);
+            let folds = line.fold.as_ref().filter(|fold| fold_button(ui, line, fold, in_sight(ui, rect)));
+            folds.map(|fold| Clicked::Fold(fold.name.clone())).or(begins.then_some(Clicked::Edit(*index)))
         }
         Shown::Message(severity, text) => {
             message(ui, rect, *severity, text, look);
@@ -94,7 +91,7 @@ fn show_line(
     (state, path): (&State, &TreePath),
     line: &CodeLine,
     rect: Rect,
-    (look, find): (&Look, &Find),
+    (look, find, drag): (&Look, &Find, &mut NumberDrag),
     commands: &mut Commands,
 ) -> bool {
     let (row, sight) = (&line.row, in_sight(ui, rect));
@@ -110,6 +107,8 @@ fn show_line(
     let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity, None));
     let code_end = left + galley.size().x;
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
+    drag.show(ui, (state, path), line, (left, rect, look), commands);
+    let code_end = hidden(ui, line, (code_end, rect));
     cost::show(ui, state, (path, row.line), rect, code_end);
     gutter(ui, line, sight, background, look);
     if let Some(include) = &line.include {
@@ -117,6 +116,29 @@ fn show_line(
     }
     values(ui, (state, path), line, (sight, code_end, background), commands);
     response.double_clicked()
+}
+
+/// Says how many lines of a folded function are hidden. Returns where the line ends then.
+fn hidden(ui: &Ui, line: &CodeLine, (end, rect): (f32, Rect)) -> f32 {
+    let Some(fold) = line.fold.as_ref().filter(|fold| fold.hidden > 0) else { return end };
+    let place = pos2(end + GAP / 2.0, rect.center().y);
+    let text = format!("… {}", plural(fold.hidden, "line"));
+    ui.painter().text(place, Align2::LEFT_CENTER, text, small_font(), QUIET.color()).right()
+}
+
+/// The triangle that folds a function. Returns whether it was clicked.
+fn fold_button(ui: &mut Ui, line: &CodeLine, fold: &Fold, sight: Rect) -> bool {
+    let center = pos2(sight.left() + 16.0, sight.center().y);
+    let area = Rect::from_center_size(center, vec2(14.0, ROW));
+    let response = ui.interact(area, ui.id().with(("fold", line.row.line)), Sense::click());
+    let name = fold.name.split(' ').next().unwrap_or_default();
+    let is_open = fold.hidden == 0;
+    spoken::button(&response, &format!("{} {name}", if is_open { "Fold" } else { "Open" }));
+    let color = if response.hovered() { ACCENT.color() } else { QUIET.color().gamma_multiply(0.8) };
+    let corner = |x: f32, y: f32| center + if is_open { vec2(x, y) } else { vec2(y, x) };
+    let points = vec![corner(-3.5, -2.0), corner(3.5, -2.0), corner(0.0, 2.5)];
+    ui.painter().add(Shape::convex_polygon(points, color, egui::Stroke::NONE));
+    response.on_hover_cursor(CursorIcon::PointingHand).clicked()
 }
 
 /// Marks behind the places of a line that the search has found. `left`: where its code begins.
@@ -234,20 +256,25 @@ fn values(
         if room < 3.0 * GAP && !galleys.is_empty() {
             break;
         }
+        let bar = bar::value(note);
+        let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
         let mut job = job_of(note);
-        job.wrap = TextWrapping::truncate_at_width(room);
+        job.wrap = TextWrapping::truncate_at_width(room - of_bar);
         let galley = ui.painter().layout_job(job);
-        total += gap + galley.size().x;
-        galleys.push((note, galley));
+        total += gap + of_bar + galley.size().x;
+        galleys.push((note, galley, bar));
     }
     let start = right - total;
     if start < code_end + GAP {
         cover(ui, sight.with_min_x(start - GAP), background);
     }
     let mut x = start;
-    for (index, (note, galley)) in galleys.into_iter().enumerate() {
-        let size = galley.size();
-        let area = Rect::from_x_y_ranges(x..=x + size.x, sight.y_range()).expand2(vec2(3.0, 0.0));
+    for (index, (note, galley, bar)) in galleys.into_iter().enumerate() {
+        let (size, begin) = (galley.size(), x);
+        if bar.is_some() {
+            x += bar::WIDTH + BAR_GAP;
+        }
+        let area = Rect::from_x_y_ranges(begin..=x + size.x, sight.y_range()).expand2(vec2(3.0, 0.0));
         let expression =
             expression(note).filter(|_| state.session.shaders.as_ref().is_some_and(|of| of.can_watch(path)));
         let sense = if expression.is_some() { Sense::click() } else { Sense::hover() };
@@ -256,12 +283,14 @@ fn values(
         if response.hovered() {
             ui.painter().rect_filled(area, 3.0, ui.visuals().widgets.inactive.weak_bg_fill);
         }
+        bar.into_iter().for_each(|value| bar::draw(ui.painter(), (begin, sight.center().y), value));
         ui.painter().galley(pos2(x, sight.center().y - size.y / 2.0), galley, CODE_VALUE.color());
+        commands.sight.around |= response.hovered() && bar.is_some();
         if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
             watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
         }
         let response = if expression.is_some() { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
-        response.on_hover_ui(|ui| hover::show(ui, (path, line), note, expression.as_deref()));
+        response.on_hover_ui(|ui| hover::show(ui, state, (path, line), note, expression.as_deref()));
         x += size.x + GAP;
     }
 }

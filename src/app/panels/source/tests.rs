@@ -31,13 +31,13 @@ use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::threads::TracedPlace;
 use crate::write_back::TreeFile;
 
-const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
+pub(super) const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 
 /// The panel under test, and the commands that it has sent.
-struct Window {
-    state: State,
+pub(super) struct Window {
+    pub(super) state: State,
     panel: SourceState,
-    asked: Vec<Command>,
+    pub(super) asked: Vec<Command>,
 }
 
 fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
@@ -65,7 +65,7 @@ fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, state
         stage: None,
         file: None,
     };
-    state.traces.ask(of, generation);
+    state.traces.ask(of, generation, false);
     let names = TracedPlace {
         stage: "a.frag".to_owned(),
         stages: Vec::new(),
@@ -75,7 +75,7 @@ fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, state
     assert!(state.traces.take(generation, names, Ok(trace(events, statements))));
 }
 
-fn events(a: f32) -> Vec<Event> {
+pub(super) fn events(a: f32) -> Vec<Event> {
     vec![
         event(2, Act::Argument, "x", &[0.5 * a]),
         event(3, Act::Store, "a", &[a]),
@@ -84,7 +84,7 @@ fn events(a: f32) -> Vec<Event> {
     ]
 }
 
-fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static, Window> {
+pub(super) fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static, Window> {
     let mut state = State::new(Settings::of_window(), Source::embedded());
     add(&mut state, 1, text, events, statements);
     let window = Window { state, panel: SourceState::default(), asked: Vec::new() };
@@ -115,7 +115,7 @@ fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static
 }
 
 /// The labels that a screen reader finds.
-fn labels(harness: &Harness<'_, Window>) -> Vec<String> {
+pub(super) fn labels(harness: &Harness<'_, Window>) -> Vec<String> {
     let texts = |node: egui_kittest::Node<'_>| [node.accesskit_node().label(), node.accesskit_node().value()];
     harness.root().children_recursive().flat_map(texts).flatten().collect()
 }

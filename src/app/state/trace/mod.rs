@@ -1,7 +1,9 @@
 //! The traces of a file at the pinned pixel: the newest one, that of the version before, and which part of them the user has chosen.
 //! Nothing is traced while the panel Source is out of sight.
 
+pub(in crate::app) mod around;
 pub(in crate::app) mod choice;
+mod pixel_trace;
 pub(in crate::app) mod rows;
 pub(in crate::app) mod saved;
 pub(in crate::app) mod subject;
@@ -13,42 +15,18 @@ use serde_json::{Value, json};
 
 use super::picture_subject::PictureSubject;
 use super::resting::Resting;
-use crate::shader::trace::{Trace, TraceableStage};
+use crate::shader::trace::Trace;
 use crate::shader::{ShaderSet, TreePath};
 use crate::threads::TracedPlace;
+use around::Around;
 use choice::Choice;
-use rows::{Row, Side, Sources, rows};
+pub(in crate::app) use pixel_trace::PixelTrace;
+use rows::{Row, Sources, rows};
 use saved::{SavedText, WrittenText};
 use subject::Subject;
 
 /// Frames within which the panel comes into sight after it was asked for.
 const MOST_UNSEEN: u32 = 8;
-
-/// A trace, and what it is of.
-pub(in crate::app) struct PixelTrace {
-    pub(in crate::app) of: Subject,
-    /// The stage; empty if there is none.
-    pub(in crate::app) stage: String,
-    /// The stages of the picture that can be traced.
-    pub(in crate::app) stages: Vec<TraceableStage>,
-    /// The files whose statements it has at the pixel.
-    pub(in crate::app) files: Vec<String>,
-    /// The file whose statements were traced.
-    pub(in crate::app) file: TreePath,
-    /// The trace, or the reason why there is none.
-    pub(in crate::app) trace: Result<Trace, String>,
-}
-
-impl PixelTrace {
-    /// The text of the traced file.
-    pub(in crate::app) fn text(&self) -> Arc<str> {
-        self.of.picture.shaders.texts.get(&self.file).cloned().unwrap_or_default()
-    }
-
-    fn side(&self) -> Option<Side<'_>> {
-        Some(Side { trace: self.trace.as_ref().ok()?, text: self.text() })
-    }
-}
 
 /// How far the newest trace is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,6 +74,9 @@ pub(in crate::app) struct Traces {
     newest: Option<Arc<PixelTrace>>,
     /// The trace of the version before, at the same pixel of the same picture.
     before: Option<Arc<PixelTrace>>,
+    /// Whether the thread has still to answer about the version before.
+    awaits_before: bool,
+    pub(in crate::app) around: Around,
 }
 
 impl Traces {
@@ -120,14 +101,18 @@ impl Traces {
     }
 
     /// Notes that a trace of `subject` was asked for, by the number of the request.
-    pub(in crate::app) fn ask(&mut self, subject: Subject, number: u64) {
+    /// `with_before`: that of the version before follows.
+    pub(in crate::app) fn ask(&mut self, subject: Subject, number: u64, with_before: bool) {
         (self.asked, self.number, self.is_awaited) = (Some(subject), number, true);
+        self.awaits_before = with_before;
         self.progress = Progress::UnderWay(number);
     }
 
     /// Records that the thread has failed. The same trace would fail again, so it is not asked for again.
     pub(in crate::app) fn fail(&mut self, message: &str) {
         self.take(self.number, Default::default(), Err(message.to_owned()));
+        self.around.fail(message);
+        self.awaits_before = false;
     }
 
     /// How long `subject` must still stay as it is, of a total of `rest`, before it is asked for: settings may be dragged. A click, a save and
@@ -215,14 +200,22 @@ impl Traces {
     }
 
     /// Takes the trace of the version before for the newest request, unless there is one.
-    pub(in crate::app) fn take_before(&mut self, number: u64, (shaders, trace): (Arc<ShaderSet>, Trace)) {
+    pub(in crate::app) fn take_before(&mut self, number: u64, before: Option<(Arc<ShaderSet>, Trace)>) {
         let is_taken = self.number == number && self.asked.is_some() && !self.is_awaited;
+        self.awaits_before &= !is_taken;
+        let Some((shaders, trace)) = before else { return };
         let is_missing = is_taken && self.before.is_none();
         let Some(newest) = self.newest.as_ref().filter(|_| is_missing) else { return };
         let PixelTrace { of, stage, stages, files, file, .. } = &**newest;
         let of = Subject { picture: PictureSubject { shaders, ..of.picture.clone() }, ..of.clone() };
         let (stage, stages, files, file) = (stage.clone(), stages.clone(), files.clone(), file.clone());
         self.before = Some(Arc::new(PixelTrace { of, stage, stages, files, file, trace: Ok(trace) }));
+    }
+
+    /// The newest trace, if the values around its pixel are missing and the thread is free.
+    pub(in crate::app) fn lacks_around(&self) -> Option<Arc<PixelTrace>> {
+        let newest = self.newest.as_ref().filter(|newest| newest.trace.is_ok() && self.around.lacks(newest))?;
+        (self.progress == Progress::Done && !self.awaits_before).then(|| newest.clone())
     }
 
     /// The fragment whose statements are shown.

@@ -38,6 +38,8 @@ pub(in crate::app) enum Reach {
 pub(in crate::app) struct Row {
     /// From 1.
     pub(in crate::app) line: u32,
+    /// The same line of the text that was traced, from 1.
+    pub(in crate::app) traced: Option<u32>,
     pub(in crate::app) reach: Reach,
     /// The values and decisions of its statements, in order.
     pub(in crate::app) notes: Vec<Note>,
@@ -95,6 +97,7 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let mut changed = Vec::new();
     for (at, row) in rows.iter_mut().enumerate() {
         let Some(line) = traced.get(at).copied().flatten() else { continue };
+        row.traced = Some(line);
         let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
         let is_loop = text.lines().nth(at).is_some_and(is_loop);
         row.notes = lines.get(&line).map(|line| notes(line, earlier, is_loop)).unwrap_or_default();

@@ -36,7 +36,7 @@ fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
 
 /// Takes a trace of a version.
 fn add(traces: &mut Traces, shaders: &Arc<ShaderSet>, number: u64, events: Vec<Event>, statements: &[u32]) {
-    traces.ask(subject(shaders), number);
+    traces.ask(subject(shaders), number, false);
     let names = TracedPlace {
         stage: "a.frag".to_owned(),
         stages: Vec::new(),
@@ -103,14 +103,14 @@ fn another_pixel_has_no_version_before() {
     assert!(!traces.lacks_before(&subject(&newest)), "the last trace is the version before");
     let other = Subject { at: [9, 9], ..subject(&newest) };
     assert!(traces.lacks_before(&other));
-    traces.ask(other, 2);
+    traces.ask(other, 2, false);
     let names = || TracedPlace { stage: "a.frag".to_owned(), file: "a.glsl".to_owned(), ..TracedPlace::default() };
     assert!(traces.take(2, names(), Ok(trace(new_events(), &[1]))));
     assert!(traces.before().is_none());
     // The thread traces it, too.
-    traces.take_before(1, (shaders(1, OLD), trace(old_events(), &[1])));
+    traces.take_before(1, Some((shaders(1, OLD), trace(old_events(), &[1]))));
     assert!(traces.before().is_none(), "an answer to an older request");
-    traces.take_before(2, (shaders(1, OLD), trace(old_events(), &[1])));
+    traces.take_before(2, Some((shaders(1, OLD), trace(old_events(), &[1]))));
     assert_eq!(texts(&traces, NEW)[2], "a = 2 → 4");
     // A result that is not awaited any more is none.
     assert!(!traces.take(1, names(), Ok(trace(old_events(), &[1]))));
@@ -189,7 +189,7 @@ fn a_command_is_answered_with_the_trace_of_the_picture() {
     assert!(traces.answer().unwrap().unwrap_err().contains("not in sight"));
     add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1]);
     assert_eq!(traces.answer().unwrap().unwrap()["pixel"], json!([3, 4]));
-    traces.ask(subject(&shaders(2, NEW)), 2);
+    traces.ask(subject(&shaders(2, NEW)), 2, false);
     assert_eq!(traces.answer(), None);
     traces.fail("the trace failed");
     assert_eq!(traces.answer(), Some(Err("the trace failed".to_owned())));
@@ -201,7 +201,7 @@ fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
     for meanwhile in [Progress::Waits, Progress::Outside, Progress::NoPixel] {
         let mut traces = Traces::default();
         let newest = shaders(2, NEW);
-        traces.ask(subject(&newest), 1);
+        traces.ask(subject(&newest), 1, false);
         traces.progress = meanwhile;
         let names = || TracedPlace {
             stage: "a.frag".to_owned(),
@@ -212,7 +212,7 @@ fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
         assert!(traces.take(1, names(), Ok(trace(new_events(), &[1]))), "{meanwhile:?}");
         assert_eq!(traces.progress, meanwhile, "the picture is not that of the trace yet");
         assert!(!traces.take(1, names(), Ok(trace(old_events(), &[1]))), "a result is taken once");
-        traces.take_before(1, (shaders(1, OLD), trace(old_events(), &[1])));
+        traces.take_before(1, Some((shaders(1, OLD), trace(old_events(), &[1]))));
         assert_eq!(texts(&traces, NEW)[2], "a = 2 → 4", "{meanwhile:?}");
         traces.resume();
         assert_eq!(traces.progress, Progress::Done);
@@ -220,7 +220,7 @@ fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
     }
     // Out of sight, nothing is asked for any more.
     let mut traces = Traces::default();
-    traces.ask(subject(&shaders(1, OLD)), 1);
+    traces.ask(subject(&shaders(1, OLD)), 1, false);
     traces.unseen();
     assert!(!traces.take(1, Default::default(), Ok(trace(old_events(), &[1]))));
 }

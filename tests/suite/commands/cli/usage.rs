@@ -136,7 +136,7 @@ fn a_wrong_value_has_code_2_and_a_wrong_file_code_1() {
         (2, render(&["--ev", "nan"]), "-30 to 30"),
         (2, render(&["--mode", "metal-ness"]), "metal"),
         (2, render(&["--mode", "d", "--mode", "g"]), "more than once"),
-        (2, render(&["--out", "out.bmp"]), ".png or .exr"),
+        (2, render(&["--out", "out.bmp"]), ".exr or .npy"),
         (2, render(&["--set", "view.msaa=3"]), "1 or 4"),
         (2, render(&["--set", "variant=Gold"]), "Gold"),
         (2, render(&["--set", "view.ev"]), "path=value"),

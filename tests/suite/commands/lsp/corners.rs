@@ -53,6 +53,27 @@ fn the_server_ends_with_its_input_and_leaves_nothing() {
     run(&tree.root(), &["lsp", "--size", "0x0"]).expect(2, &["--size"]);
 }
 
+#[test]
+fn the_server_ends_while_it_compiles() {
+    for round in 0..8 {
+        let mut opened = Opened::new("brdf/ndf.glsl");
+        // A text that no cache knows, with an error at a later place in each round.
+        let wrong = format!("float a2 = alpha * alpha * {round}.5;\n{} nonsense", "\n".repeat(round));
+        opened.edit("float a2 = alpha * alpha;", &wrong);
+        // Later rounds end later: at once, after an answer, after the first diagnostics.
+        if round % 3 > 0 {
+            opened.ask("hover", "alpha", 1);
+        }
+        if round % 3 > 1 {
+            let path = opened.path.clone();
+            opened.client.diagnostics(&path, |all| !all.is_empty());
+            opened.edit("nonsense", "no_sense");
+        }
+        // No thread may crash the process at its end.
+        opened.client.quit();
+    }
+}
+
 fn files(tree: &Tree) -> Vec<std::path::PathBuf> {
     let source = specula::shader::Source::disk(tree.root());
     source.list().iter().map(|path| tree.path(path.as_str())).collect()

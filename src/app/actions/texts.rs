@@ -1,0 +1,87 @@
+//! Texts of the shader tree that programs write: to a file of the tree on disk, or over the built-in shaders, in memory.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::app::engine::Engine;
+use crate::app::state::State;
+use crate::shader::{Change, StageKind, TreePath};
+use crate::threads::Message;
+use crate::write_back::{TreeFile, Written, write_whole};
+
+/// What becomes of a text.
+pub(in crate::app) enum Outcome {
+    /// It is compiled.
+    Compiling,
+    /// A thread writes it to a file of the tree. Its message has this number.
+    Writing(u64),
+}
+
+/// The path of a file that a program may write: of shader code, and not of a hidden folder, as those of git.
+///
+/// # Errors
+/// Why it may not.
+pub(in crate::app) fn writable(path: &str) -> Result<TreePath, String> {
+    let inside =
+        TreePath::parse(path).ok_or_else(|| format!("{path} is not in the shader tree; name it from its root"))?;
+    let is_hidden = inside.as_str().split('/').any(|part| part.starts_with('.'));
+    if is_hidden || !(inside.extension() == Some("glsl") || StageKind::of(&inside).is_some()) {
+        return Err(format!("{path} is no file of shader code: its name must end as .glsl, .vert, .frag or .comp do"));
+    }
+    Ok(inside)
+}
+
+/// Writes a text to a file of the tree, on a thread, or puts it over the built-in shaders; `None` takes the text of these again.
+///
+/// # Errors
+/// Why it cannot be written.
+pub(in crate::app) fn write_text(
+    state: &mut State,
+    engine: &mut Engine,
+    path: TreePath,
+    text: Option<Arc<str>>,
+) -> Result<Outcome, String> {
+    if let Some(restored) = &state.edits.restored {
+        return Err(format!("version {} is shown; show the newest one first", restored.number));
+    }
+    if let Some(root) = state.source.root() {
+        let file = TreeFile { root: root.to_owned(), path };
+        let text = text.ok_or(
+            "`text` is missing: the tree is on disk, and its files have only the text that is written to them",
+        )?;
+        let number = state.texts_sent + 1;
+        state.texts_sent = number;
+        engine.threads.wait(move || {
+            let written = write_whole(&file, &text);
+            Some(Message::TextWritten(number, file, written))
+        });
+        return Ok(Outcome::Writing(number));
+    }
+    if let Some(file) = state.source.location() {
+        return Err(format!("the shader is a single file: write {} itself, and the picture follows", file.display()));
+    }
+    let source = state.source.with_text(path.clone(), text);
+    state.source = source.clone();
+    engine.threads.worker.read_from(source, BTreeSet::from([path]));
+    Ok(Outcome::Compiling)
+}
+
+/// Takes the result of writing. The worker is told at once, so that the command waits for the picture of this text.
+pub(in crate::app) fn on_text_written(
+    state: &mut State,
+    engine: &mut Engine,
+    number: u64,
+    (file, written): (&TreeFile, Result<Written, String>),
+) {
+    match written {
+        Ok(written) => {
+            state.history.record_files(&state.session.shared_settings(), written);
+            if state.source.root() == Some(&file.root) {
+                engine.threads.worker.change(Change::Paths(BTreeSet::from([file.path.clone()])), Instant::now());
+            }
+            state.waiting.text_written(number, Ok(()));
+        }
+        Err(message) => state.waiting.text_written(number, Err(&message)),
+    }
+}

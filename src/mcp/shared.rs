@@ -1,0 +1,20 @@
+//! The state that all calls of a client share.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::places::Places;
+use super::program::{Call, Program};
+
+/// The program, the folders, and the calls that are open.
+pub struct Shared {
+    pub program: Program,
+    pub places: Places,
+    /// By the text of their id.
+    pub calls: Mutex<HashMap<String, Arc<Call>>>,
+}
+
+/// Locks a value, also after a panic of another thread.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
