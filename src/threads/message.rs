@@ -13,7 +13,7 @@ use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMes
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
-use crate::headless::CheckedPicture;
+use crate::headless::{CheckedPicture, StageCosts};
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
 use crate::picture::Look;
@@ -24,6 +24,7 @@ use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
+use crate::statistics::Difference;
 use crate::write_back::{TreeFile, Written};
 
 /// The desktop shows no file dialog: no XDG portal answers.
@@ -82,6 +83,10 @@ pub(crate) enum Message {
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.
     OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
+    /// What the functions of a stage cost, for the request with this number.
+    FunctionsTimed(u64, Result<Arc<StageCosts>, String>),
+    /// By how much an older version of the shaders is slower, for the request with this number.
+    VersionTimed(u64, Result<Difference, String>),
     /// The text of a file of the tree as it was saved.
     SourceText(TreePath, Arc<str>),
     /// The settings of a look file, or the reason why it cannot be used.
@@ -143,6 +148,8 @@ pub(crate) enum TaskKind {
     GuestTracer,
     /// Checks assertions and operations of the picture.
     OperationChecker,
+    /// Measures times of the picture.
+    Timekeeper,
     Capture(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),

@@ -27,6 +27,8 @@
 //! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
 //!   new frame or pixel ends its work before the next step.
 //! - **The operation checker** draws the picture with stages that find assertions that fail, while it rests.
+//! - **The timekeeper** draws the picture with and without each function of a stage, or in two versions of the shaders, in turn, while it
+//!   rests. A change of the picture ends that before the next frame.
 //! - **The tracer** compiles the stage of the pinned pixel with a log, builds its pipelines and draws the pixel, while the panel Source is
 //!   open. It has a view of its own and keeps the pipelines for the next pixel. The newest request wins.
 //! - **Captures** are drawn by one thread, one after the other, each with a clone of `Resources`. A second shader tree has a thread as long as it is
@@ -54,6 +56,7 @@ mod newest;
 pub(crate) mod operation_checker;
 mod results;
 pub(crate) mod second_tree;
+pub(crate) mod timekeeper;
 pub(crate) mod tracer;
 pub(crate) mod worker;
 pub(crate) mod writer;
@@ -77,6 +80,7 @@ use finder::Finder;
 use loader::Loader;
 use measurer::Measurer;
 use operation_checker::OperationChecker;
+use timekeeper::Timekeeper;
 use tracer::Tracer;
 use worker::Worker;
 use writer::Writer;
@@ -127,6 +131,7 @@ pub(crate) struct Threads {
     pub(crate) measurer: Measurer,
     pub(crate) finder: Finder,
     pub(crate) operation_checker: OperationChecker,
+    pub(crate) timekeeper: Timekeeper,
     pub(crate) tracer: Tracer,
     /// Traces for other programs.
     pub(crate) guest_tracer: Tracer,
@@ -162,6 +167,7 @@ impl Threads {
             measurer: Measurer::new(device.0, sender),
             finder: Finder::new(device.0, sender),
             operation_checker: OperationChecker::new(device.0, sender),
+            timekeeper: Timekeeper::new(device.0, sender),
             tracer: Tracer::new(device.0, sender, TaskKind::PixelTracer, Message::Traced),
             guest_tracer: Tracer::new(device.0, sender, TaskKind::GuestTracer, Message::GuestTraced),
             writer: Writer::new(sender),

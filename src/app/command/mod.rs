@@ -8,6 +8,7 @@ pub(super) mod camera;
 pub(super) mod capture;
 pub(super) mod checks;
 pub(super) mod compare;
+pub(super) mod costs;
 mod fields;
 pub(super) mod file;
 mod history;

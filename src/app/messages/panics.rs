@@ -71,6 +71,10 @@ pub(in crate::app) fn on_panic(state: &mut State, engine: &mut Engine, task: Tas
             state.checks.fail("the checks failed");
             "operation checker"
         }
+        TaskKind::Timekeeper => {
+            state.costs.fail("the measurement failed");
+            "timekeeper"
+        }
         TaskKind::Capture(number) => {
             state.captures.ended(number);
             "capturing"

@@ -6,6 +6,7 @@ pub(super) mod arrangement;
 pub(super) mod captures;
 pub(super) mod checks;
 pub(super) mod compare;
+pub(super) mod costs;
 pub(super) mod dialog;
 pub(super) mod exercise;
 pub(super) mod grid;
@@ -55,6 +56,7 @@ use adaptive::Previews;
 use captures::Captures;
 use checks::Checks;
 use compare::Compare;
+use costs::Costs;
 use dialog::Dialog;
 use exercise::Learning;
 use grid::Grid;
@@ -128,6 +130,8 @@ pub(super) struct State {
     pub(super) guests: Guests,
     /// The checks of the picture.
     pub(super) checks: Checks,
+    /// Times that are measured while the picture rests.
+    pub(super) costs: Costs,
     /// The modes that the picture shows side by side.
     pub(super) grid: Grid,
     /// Files that were open, in this run and before.
@@ -216,6 +220,7 @@ impl State {
             traces: Traces::default(),
             guests: Guests::default(),
             checks: Checks::default(),
+            costs: Costs::default(),
             grid: Grid::default(),
             recent: Recent::default(),
             last_sessions: LastSessions::default(),
