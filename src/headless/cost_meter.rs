@@ -12,7 +12,7 @@ use crate::frame::stages::DEFORM;
 use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, one_shot, vk};
 use crate::pipeline::{PipelineSet, StageReport, figures};
 use crate::render::{BoundFrame, Redraw};
-use crate::shader::costs::{Calls, CostStage, Lack, NamedFunction};
+use crate::shader::costs::{Batch, Calls, CostStage, Lack, NamedFunction};
 use crate::shader::graph::RenderPhase;
 use crate::shader::{GraphPass, ShaderSet, StageKind};
 use crate::statistics::Difference;
@@ -145,7 +145,7 @@ impl CostMeter {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
         let (mut invocations, mut calls, mut numbers) = (0, BTreeMap::new(), Vec::new());
-        for batch in stage.batches(wanted) {
+        for batch in Batch::all(stage, wanted) {
             let buffer = Buffer::new(&self.gpu, "costs", batch.bytes(), usage, Memory::Readback)?;
             let shaders = batch.shaders(buffer.address(), size).map_err(HeadlessError::Settings)?;
             let (_set, frame) = bound(request, tools, &shaders)?;

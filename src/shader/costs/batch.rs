@@ -7,6 +7,8 @@ use crate::shader::spirv::cost::{StageFunction, functions, groups, groups_of, re
 use crate::shader::trace::{EXTENSIONS, compile_listening};
 use crate::shader::{ShaderSet, StageKind};
 
+/// Most functions of a batch.
+const BATCH: usize = 8;
 /// Words of the buffer for the stage and for each function.
 const SLOT: usize = 6;
 
@@ -32,7 +34,15 @@ pub struct Recorded {
 }
 
 impl<'a> Batch<'a> {
-    pub(super) fn new(stage: &'a CostStage<'a>, members: &[usize]) -> Self {
+    /// The functions of a stage that can be left out, of those with these places, in batches that are recorded together: a driver takes
+    /// minutes for a stage that records all of them.
+    pub fn all(stage: &'a CostStage<'a>, wanted: &[usize]) -> Vec<Self> {
+        let is_measured = |at: &usize| stage.functions.get(*at).is_some_and(|function| function.lack.is_none());
+        let measured: Vec<usize> = wanted.iter().copied().filter(is_measured).collect();
+        measured.chunks(BATCH).map(|members| Self::new(stage, members)).collect()
+    }
+
+    fn new(stage: &'a CostStage<'a>, members: &[usize]) -> Self {
         let functions: Vec<StageFunction> = members.iter().map(|at| stage.functions[*at].clone()).collect();
         let (first, groups) = groups(&functions);
         Self { stage, members: members.to_vec(), functions, first, groups: groups.max(1) }

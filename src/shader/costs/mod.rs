@@ -21,8 +21,6 @@ pub use batch::{Batch, Recorded};
 
 /// Numbers in the text that stand for the address of the results.
 const STANDING_FOR: [u32; 2] = [0xC0DE_0C01, 0xC0DE_0C02];
-/// Most functions of a batch.
-const BATCH: usize = 8;
 const NAMES: Names<'_> = Names {
     main: "specula_main",
     own: "specula_cost",
@@ -105,14 +103,6 @@ impl<'a> CostStage<'a> {
         functions_of_text(&code.tokens).iter().map(lines).collect()
     }
 
-    /// The functions that can be left out, of those with these places, in batches that are recorded together: a driver takes minutes for a
-    /// stage that records all of them.
-    pub fn batches(&self, wanted: &[usize]) -> Vec<Batch<'_>> {
-        let is_measured = |at: &usize| self.functions.get(*at).is_some_and(|function| function.lack.is_none());
-        let measured: Vec<usize> = wanted.iter().copied().filter(is_measured).collect();
-        measured.chunks(BATCH).map(|members| Batch::new(self, members)).collect()
-    }
-
     /// Words by which the stage without a function may be larger than with it. If it grows by more, constants had decided the result.
     pub fn allowance(&self, function: usize) -> usize {
         self.functions.get(function).map_or(0, |function| self.known.allowance(function))
@@ -186,8 +176,8 @@ mod tests {
                 assert_eq!(validate(words), Ok(()), "{path}: {what}");
                 assert_eq!(validate(&optimize(specialize(words, &[]))), Ok(()), "{path}: {what}, optimized");
             };
-            let batches = stage.batches(&measured);
-            assert_eq!(batches.len(), measured.len().div_ceil(BATCH));
+            let batches = Batch::all(&stage, &measured);
+            assert_eq!(batches.len(), measured.len().div_ceil(8));
             batches
                 .iter()
                 .take(2)

@@ -5,34 +5,9 @@
 //! have begun. An invocation that discards its fragment is gone as well, which is no fault, so the others are only told at the end, if the
 //! missing one is still there: it took another way.
 
-use super::{Checker, MOST_DERIVATIVES, Names, Report, Rule};
-use crate::shader::spirv::module::{Id, Instruction, Module, Type};
+use super::{Checker, MOST_DERIVATIVES, Report, Rule};
+use crate::shader::spirv::module::{Id, Instruction, Type};
 use crate::shader::spirv::op::{Class, Op};
-
-/// The capability of queries of images.
-const IMAGE_QUERY: u32 = 50;
-
-/// What the text has for quads, and how many derivatives are checked.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Quads {
-    names: Option<(Id, Id)>,
-    count: usize,
-}
-
-impl Quads {
-    /// Those of a module, which gets the capability to ask for levels; nothing is checked if its text lacks the names.
-    pub(super) fn of(module: &mut Module, names: &Names<'_>) -> Self {
-        let function = module.named(&format!("{}(", names.gone)).next();
-        let quads = module.named(&format!("{}\0", names.quads)).next();
-        let names = function.zip(quads);
-        let has = module.head.iter().any(|i| i.op == Op::Capability && module[*i][1] == IMAGE_QUERY);
-        if names.is_some() && !has {
-            let capability = module.make(Op::Capability, &[IMAGE_QUERY]);
-            module.head.insert(0, capability);
-        }
-        Self { names, count: 0 }
-    }
-}
 
 /// Whether an instruction needs its neighbors.
 fn needs_quad(op: Op) -> bool {

@@ -7,7 +7,9 @@
 mod derivatives;
 mod operands;
 mod operations;
+mod quads;
 mod rule;
+mod sets;
 mod statements;
 mod suspect;
 mod track;
@@ -19,7 +21,7 @@ use super::module::{Function, Id, Instruction, Module};
 use super::op::Op;
 use super::reach::file_of;
 use super::trace::NumberKind;
-use derivatives::Quads;
+use quads::Quads;
 pub use rule::Rule;
 use suspect::{Selected, Suspect, selected};
 use track::{Tracked, TrackedFunction};
@@ -88,7 +90,7 @@ pub fn check(words: &[u32], names: &Names<'_>, undefined: bool, chosen: Option<&
     };
     let extended = module.head.iter().find(|i| i.op == Op::ExtInstImport).map(|i| module[*i][1]);
     let silent: BTreeSet<Id> = module.named(names.silent).collect();
-    let quads = Quads::of(&mut module, names);
+    let quads = Quads::of(&mut module, [names.gone, names.quads]);
     let order = module.entry_function().and_then(|entry| module.callees_first(entry)).unwrap_or_default();
     let mut functions = std::mem::take(&mut module.functions);
     let mut tracked =

@@ -7,7 +7,6 @@
 
 use foldhash::{HashMap, HashSet};
 
-use super::is_line;
 use crate::shader::spirv::enums::storage;
 use crate::shader::spirv::fold::places;
 use crate::shader::spirv::module::{Function, Id, Instruction, Module, Type};
@@ -338,6 +337,10 @@ impl<'a> Reader<'a> {
         // Without a return, nothing leaves it.
         (entries, leaves.unwrap_or_else(|| self.all.clone()))
     }
+}
+
+fn is_line(i: Instruction) -> bool {
+    matches!(i.op, Op::Line | Op::NoLine)
 }
 
 /// What is set on two paths.

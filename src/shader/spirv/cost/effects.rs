@@ -2,7 +2,8 @@
 
 use foldhash::{HashMap, HashSet};
 
-use super::{Lack, parameters};
+use super::lack::Lack;
+use super::parameters::parameters;
 use crate::shader::spirv::enums::storage;
 use crate::shader::spirv::module::{Function, Id, Instruction, Module};
 use crate::shader::spirv::op::{Class, Op};

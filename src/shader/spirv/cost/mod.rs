@@ -5,11 +5,12 @@
 //! plain constant would not do, since the optimizer and the driver would compute all that depends on it once and for all.
 
 mod effects;
+mod lack;
 mod numbers;
+mod parameters;
 mod replace;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use foldhash::HashMap;
 
@@ -17,6 +18,8 @@ use super::module::{Function, Id, Module, Type};
 use super::op::{Class, Op, text};
 use super::reach::file_of;
 use effects::Effects;
+pub use lack::Lack;
+use parameters::{parameters, value_type};
 pub use replace::{recording, without};
 
 /// Most numbers that a function may return, with its `out` parameters.
@@ -36,48 +39,6 @@ pub struct Names<'a> {
     pub count: &'a str,
     /// The names of variables of four numbers each begin with this: see [`groups`].
     pub values: &'a str,
-}
-
-/// Why the cost of a function cannot be measured.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Lack {
-    /// It discards fragments, which decides what else is drawn.
-    Discards,
-    /// It writes to a buffer or an image.
-    WritesMemory,
-    /// It writes a variable of the whole stage, of this name.
-    WritesVariable(String),
-    /// It waits for other invocations, or emits vertices or primitives.
-    Emits,
-    /// It returns more numbers than are kept, or other things than numbers.
-    Returns,
-    /// It has an instruction that is not known.
-    Unknown,
-    /// Its result is a constant with the constants of the picture.
-    Constant,
-    /// Without it, the driver would get a larger stage: the compiler computes its result once for all pixels.
-    Decides,
-    /// Without it, a loop of the stage does not end.
-    Endless,
-    /// It is not called in this picture.
-    NotCalled,
-}
-
-impl fmt::Display for Lack {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Discards => f.write_str("it discards fragments, which decides what else is drawn"),
-            Self::WritesMemory => f.write_str("it writes to a buffer or an image"),
-            Self::WritesVariable(name) => write!(f, "it writes `{name}`, which the rest of the stage reads"),
-            Self::Emits => f.write_str("it waits for other invocations, or emits vertices or primitives"),
-            Self::Returns => f.write_str("it returns too much to be replaced by numbers"),
-            Self::Unknown => f.write_str("it has an instruction that Specula does not know"),
-            Self::Constant => f.write_str("its result is a constant in this picture, so it costs nothing"),
-            Self::Decides => f.write_str("the compiler computes its result once for all pixels"),
-            Self::Endless => f.write_str("without it, a loop of the stage does not end"),
-            Self::NotCalled => f.write_str("this picture does not call it"),
-        }
-    }
 }
 
 /// A function of a stage.
@@ -192,16 +153,6 @@ fn describe(module: &Module, function: &Function, effects: &Effects, names: &Has
     let lack = effects.lack(function.id, names).or_else(|| (!is_small).then_some(Lack::Returns));
     let signature = format!("{name}({})", types.join(", "));
     StageFunction { id: function.id, signature, file, line, lack, numbers: numbers.unwrap_or(0), outs }
-}
-
-/// The parameters of a function.
-fn parameters(module: &Module, function: &Function) -> impl Iterator<Item = Id> {
-    function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| module[*i][2])
-}
-
-/// The type of a value, or that to which a pointer points.
-fn value_type(module: &Module, kind: Id) -> Id {
-    module.pointer(kind).map_or(kind, |(_, to)| to)
 }
 
 /// A type as GLSL names it.

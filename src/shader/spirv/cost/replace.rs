@@ -2,7 +2,8 @@
 
 use foldhash::HashSet;
 
-use super::{Names, StageFunction, by_id, groups, numbers, parameters, value_type};
+use super::parameters::{parameters, value_type};
+use super::{Names, StageFunction, by_id, groups, numbers};
 use crate::shader::spirv::fold::drop_results;
 use crate::shader::spirv::module::{Block, Id, Instruction, Module};
 use crate::shader::spirv::op::Op;
