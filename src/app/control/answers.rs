@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::captures::begin_capture;
 use crate::app::engine::Engine;
-use crate::app::frames::progress::is_settled;
+use crate::app::frames::progress::{is_compiling, is_settled};
 use crate::app::state::State;
 use crate::app::state::waiting::{self, Shot, Work};
 use crate::control::Reply;
@@ -81,7 +81,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                 None => state.waiting.push(reply, Until::Found(result)),
             },
             Until::Picture(job) if settled => begin_capture(state, engine, reply, job),
-            Until::Reloaded if settled || (state.has_errors() && !engine.threads.worker.is_compiling()) => {
+            Until::Reloaded if settled || (state.has_errors() && !is_compiling(state, engine)) => {
                 match state.has_errors() {
                     true => without_picture(state, reply),
                     false => reply.done(json!({ "generation": state.shown_generation() })),
@@ -92,7 +92,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                 true => state.waiting.push(reply, Until::SHOWN),
                 false => reply.error(format!("{} was not loaded", path.display())),
             },
-            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_)
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(..) | Until::Window(_)
                 if never_shows(state, engine) =>
             {
                 without_picture(state, reply);
@@ -139,7 +139,7 @@ fn lacks_model(state: &State) -> bool {
 
 /// Whether there are no shaders, and an edit is needed before there are.
 fn never_shows(state: &State, engine: &Engine) -> bool {
-    state.session.shaders.is_none() && !engine.threads.worker.is_compiling() && state.has_errors()
+    state.session.shaders.is_none() && !is_compiling(state, engine) && state.has_errors()
 }
 
 /// Answers with the errors of the shaders.
