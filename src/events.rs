@@ -8,6 +8,7 @@ use crate::message::print_output;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::BakeReport;
 use crate::shader::Diagnostic;
+use crate::statistics::Difference;
 
 /// An event. The field `event` names its kind.
 #[derive(Clone, Debug, Serialize)]
@@ -119,6 +120,33 @@ pub enum Event<'a> {
         #[serde(skip_serializing_if = "Option::is_none")]
         found: Option<serde_json::Value>,
         /// Why they could not be checked.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        error: Option<&'a str>,
+    },
+    /// What functions of the shaders cost was measured.
+    Costs {
+        /// Shader generation.
+        generation: u64,
+        /// The costs, as `specula bench cost --json` prints them.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        found: Option<serde_json::Value>,
+        /// Why they could not be measured.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        error: Option<&'a str>,
+    },
+    /// The time of an older version of the shaders was compared with that of the newest.
+    Timed {
+        /// Shader generation of the newest.
+        generation: u64,
+        /// Number of the older version.
+        version: u64,
+        /// By how much the older version is slower or faster.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        text: Option<&'a str>,
+        /// The same in numbers.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        difference: Option<Difference>,
+        /// Why they could not be compared.
         #[serde(skip_serializing_if = "Option::is_none")]
         error: Option<&'a str>,
     },

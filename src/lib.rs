@@ -5,6 +5,7 @@
 //!
 //! - [`cpu_clock`]: CPU time of a thread.
 //! - [`process_end`]: ends the process while its threads run.
+//! - [`statistics`]: how certain the difference of two times is.
 //! - `distribution`: names packages of the user's Linux distribution.
 //! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`report`]: pages of HTML about a result.
@@ -70,5 +71,6 @@ pub mod session;
 pub mod settings;
 pub mod shader;
 mod state_folder;
+pub mod statistics;
 mod threads;
 pub mod write_back;

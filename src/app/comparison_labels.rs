@@ -45,7 +45,9 @@ impl State {
 
     /// The names of the earlier picture and of the present one, with what differs; `None` if no comparison is shown.
     pub(in crate::app) fn comparison_labels(&self) -> Option<[String; 2]> {
-        let earlier = self.reference_label()?;
+        let timed = self.compare.version().and_then(|version| self.costs.of_version(self.shown_generation(), version));
+        let time = timed.map(|difference| format!(" ({})", difference.text())).unwrap_or_default();
+        let earlier = self.reference_label()? + &time;
         let restored = self.edits.restored.as_ref().map(|restored| restored.number);
         let now = restored.map_or_else(|| "now".to_owned(), |number| format!("version {number}"));
         let (Some(With::Kept(kept, version)), Some(shown)) = (&self.compare.with, &self.picture.shown) else {

@@ -1,7 +1,8 @@
-//! `specula bench reload|frame|load|bake|thumbnails|passes|scale`: measures times on this machine, and prints them with the device's name.
+//! `specula bench reload|frame|load|bake|thumbnails|passes|scale|cost`: measures times on this machine, and prints them with the device's name.
 
 mod args;
 mod context;
+mod cost;
 mod edits;
 mod folder;
 mod passes;
@@ -47,6 +48,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Passes => passes::passes(&bench)?,
         What::Thumbnails => thumbnails(&bench)?,
         What::Scale => scale::scale(&bench)?,
+        What::Cost => cost::cost(&bench)?,
     };
     if matches!(args.what, What::Scale) {
         result["textures"] = json!(scale::textures::series(&bench)?);
@@ -54,10 +56,10 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     drop(progress);
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
-    if args.json {
-        print_json(&result);
-    } else {
-        print_table(&result);
+    match args.what {
+        _ if args.json => print_json(&result),
+        What::Cost => cost::print(&result),
+        _ => print_table(&result),
     }
     check_validation(&gpu)
 }

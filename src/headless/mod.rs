@@ -1,6 +1,7 @@
 //! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
 mod checks;
+mod cost_meter;
 mod draw;
 mod error;
 mod hints;
@@ -15,8 +16,10 @@ mod pixel;
 mod pixel_tracer;
 mod reload;
 mod sequence;
+mod stage_costs;
 mod stage_plan;
 mod stages;
+mod stopwatch;
 mod thumbnails;
 mod trace;
 
@@ -33,6 +36,7 @@ use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, expression};
 
+pub use cost_meter::{CostMeter, CostRequest};
 pub use draw::Step;
 pub use error::HeadlessError;
 pub use not_finite::{Search, first_not_finite};
@@ -41,6 +45,8 @@ pub use offscreen_view::OffscreenView;
 pub use picture_checker::{CheckRequest, CheckedPicture, PictureChecker};
 pub use pixel_tracer::{PixelTracer, TracePlan, TraceTools, TracedPixel};
 pub use sequence::Sequence;
+pub use stage_costs::{FunctionCost, StageCosts};
+pub use stopwatch::{Contest, Stopwatch};
 pub use thumbnails::Thumbnail;
 pub use trace::TraceRequest;
 

@@ -13,7 +13,7 @@ use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
 use crate::shader::annotation::pass::{PassSize, PassTarget};
-use crate::shader::checks::{Broken, CheckBuffer, CheckedStages};
+use crate::shader::checks::{Broken, CheckBuffer, CheckedStages, Operations};
 use crate::shader::{Diagnostic, ShaderSet, StageKind, TreePath};
 
 /// A picture whose operations were checked.
@@ -31,6 +31,8 @@ pub struct CheckedPicture {
     pub left_out: BTreeSet<String>,
     /// Operations that are not checked, since a stage has too many.
     pub dropped: usize,
+    /// Whether derivatives are not checked, since fragments cannot ask which neighbors run along on this device.
+    pub without_derivatives: bool,
     /// The words of a loop that did not end.
     pub endless_loop: Option<[u32; 2]>,
 }
@@ -101,7 +103,8 @@ impl PictureChecker {
         let buffer = Buffer::new(&self.gpu, "checks", bytes, usage, Memory::Readback)?;
         let place = CheckBuffer { address: buffer.address(), size: state.size };
         let (compiler, source) = (tools.compiler, tools.source);
-        let mut checked = CheckedStages::new(request.shaders, &stages, (compiler, source), (place, request.undefined))
+        let operations = Operations { undefined: request.undefined, derivatives: self.gpu.quad_ballots() };
+        let mut checked = CheckedStages::new(request.shaders, &stages, (compiler, source), (place, operations))
             .map_err(HeadlessError::Settings)?;
         let counting = checked.counting().map_err(HeadlessError::Settings)?;
         write(&buffer, &checked.empty());
@@ -125,6 +128,7 @@ impl PictureChecker {
             checks: checked.check_count(),
             left_out: left_out.into_keys().collect(),
             dropped: checked.left_out(),
+            without_derivatives: request.undefined && !self.gpu.quad_ballots(),
             endless_loop,
         })
     }

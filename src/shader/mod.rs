@@ -9,6 +9,7 @@ pub mod annotation;
 pub mod checks;
 pub mod compile;
 pub mod contract;
+pub mod costs;
 pub mod diagnostic;
 pub mod expression;
 pub(crate) mod glsl;

@@ -13,7 +13,7 @@ use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMes
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
-use crate::headless::CheckedPicture;
+use crate::headless::{CheckedPicture, StageCosts};
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
 use crate::picture::Look;
@@ -24,11 +24,22 @@ use crate::scene::BuiltInPictures;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
+use crate::statistics::Difference;
 use crate::write_back::{TreeFile, Written};
 
 /// The desktop shows no file dialog: no XDG portal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NoDialog;
+
+/// Files of the tree that were written.
+pub(crate) struct TextsWritten {
+    /// The files.
+    pub(crate) files: Vec<PathBuf>,
+    /// The step of undo that they are; none if they are an undo themselves.
+    pub(crate) step: Option<Written>,
+    /// A message for the user.
+    pub(crate) told: Option<String>,
+}
 
 /// Messages of the threads to the window.
 pub(crate) enum Message {
@@ -55,8 +66,9 @@ pub(crate) enum Message {
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
     TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
-    /// A text that a program has sent was written to a file of the tree, or the reason why not, by the number of the request.
-    TextWritten(u64, TreeFile, Result<Written, String>),
+    /// Files of the tree have other texts, which a program has sent or an undo brings back, or the reason why not, by the number of the
+    /// request.
+    TextWritten(u64, Result<TextsWritten, String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
@@ -71,6 +83,10 @@ pub(crate) enum Message {
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.
     OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
+    /// What the functions of a stage cost, for the request with this number.
+    FunctionsTimed(u64, Result<Arc<StageCosts>, String>),
+    /// By how much an older version of the shaders is slower, for the request with this number.
+    VersionTimed(u64, Result<Difference, String>),
     /// The text of a file of the tree as it was saved.
     SourceText(TreePath, Arc<str>),
     /// The settings of a look file, or the reason why it cannot be used.
@@ -132,6 +148,8 @@ pub(crate) enum TaskKind {
     GuestTracer,
     /// Checks assertions and operations of the picture.
     OperationChecker,
+    /// Measures times of the picture.
+    Timekeeper,
     Capture(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),
@@ -139,6 +157,8 @@ pub(crate) enum TaskKind {
     ImageScaling(u64),
     /// Makes the pipelines of outlines and pictures of textures.
     ToolPipelines,
+    /// Writes texts to files of the shader tree.
+    Writer,
     /// Waits for what is outside of Specula, or compares pictures.
     External,
 }

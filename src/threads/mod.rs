@@ -27,12 +27,15 @@
 //! - **The finder** looks for the first statement that computes NaN at the pinned pixel, with a clone of `Resources`. A
 //!   new frame or pixel ends its work before the next step.
 //! - **The operation checker** draws the picture with stages that find assertions that fail, while it rests.
+//! - **The timekeeper** draws the picture with and without each function of a stage, or in two versions of the shaders, in turn, while it
+//!   rests. A change of the picture ends that before the next frame.
 //! - **The tracer** compiles the stage of the pinned pixel with a log, builds its pipelines and draws the pixel, while the panel Source is
 //!   open. It has a view of its own and keeps the pipelines for the next pixel. The newest request wins.
 //! - **Captures** are drawn by one thread, one after the other, each with a clone of `Resources`. A second shader tree has a thread as long as it is
 //!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
 //!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
 //!   the file dialog.
+//! - **The writer** writes the texts that programs send to files of the shader tree, and takes them back.
 //! - **The panel Scene** has a thread make the rows of a model with many nodes (`later.rs`), and says that they are coming until it asks and they are
 //!   there.
 //! - **Watchers** only send paths, under the names that they were given.
@@ -53,8 +56,10 @@ mod newest;
 pub(crate) mod operation_checker;
 mod results;
 pub(crate) mod second_tree;
+pub(crate) mod timekeeper;
 pub(crate) mod tracer;
 pub(crate) mod worker;
+pub(crate) mod writer;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -75,10 +80,12 @@ use finder::Finder;
 use loader::Loader;
 use measurer::Measurer;
 use operation_checker::OperationChecker;
+use timekeeper::Timekeeper;
 use tracer::Tracer;
 use worker::Worker;
+use writer::Writer;
 
-pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind};
+pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind, TextsWritten};
 pub(crate) use results::{
     BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, TracedPlace, WorkerMessage,
 };
@@ -124,9 +131,11 @@ pub(crate) struct Threads {
     pub(crate) measurer: Measurer,
     pub(crate) finder: Finder,
     pub(crate) operation_checker: OperationChecker,
+    pub(crate) timekeeper: Timekeeper,
     pub(crate) tracer: Tracer,
     /// Traces for other programs.
     pub(crate) guest_tracer: Tracer,
+    pub(crate) writer: Writer,
     gpu: Arc<Gpu>,
     /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
     /// compile a second shader tree.
@@ -158,8 +167,10 @@ impl Threads {
             measurer: Measurer::new(device.0, sender),
             finder: Finder::new(device.0, sender),
             operation_checker: OperationChecker::new(device.0, sender),
+            timekeeper: Timekeeper::new(device.0, sender),
             tracer: Tracer::new(device.0, sender, TaskKind::PixelTracer, Message::Traced),
             guest_tracer: Tracer::new(device.0, sender, TaskKind::GuestTracer, Message::GuestTraced),
+            writer: Writer::new(sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturer: None,

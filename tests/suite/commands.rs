@@ -5,6 +5,7 @@ mod bench;
 mod cache;
 mod checks;
 mod cli;
+mod cost;
 mod files;
 mod learn;
 mod lsp;

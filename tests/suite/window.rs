@@ -7,6 +7,7 @@ mod commands;
 mod compare;
 mod compare_files;
 mod controls;
+mod costs;
 mod endurance;
 mod expressions;
 mod faults;

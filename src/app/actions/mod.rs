@@ -2,6 +2,7 @@
 
 pub(super) mod checks;
 pub(super) mod compare;
+pub(super) mod costs;
 pub(super) mod edits;
 pub(super) mod exercises;
 pub(super) mod files;

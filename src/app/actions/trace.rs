@@ -176,7 +176,15 @@ fn is_same_but_lights(last: &PictureSubject, now: &Settings) -> bool {
 
 /// The version before that on screen.
 fn version_before(state: &State, engine: &Engine) -> Option<OlderVersion> {
-    let version = state.versions.before(state.shown_generation())?;
+    version_of(state, engine, state.versions.before(state.shown_generation())?.number)
+}
+
+/// The version with a number, if it can be drawn beside that on screen.
+pub(in crate::app) fn version_of(state: &State, engine: &Engine, number: u64) -> Option<OlderVersion> {
+    let version = state.versions.get(number)?;
+    if !state.versions.can_show(version, state.shown_generation()) {
+        return None;
+    }
     let set = engine.generations.set(version.generation)?.clone();
     let like = engine.generations.picture(version.generation).map(|picture| picture.frame.clone());
     Some(OlderVersion { shaders: version.shaders.clone(), set, like })

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, checks, compare, file, history, layout, measure, modes, numbers, playback, program, scene,
+    camera, capture, checks, compare, costs, file, history, layout, measure, modes, numbers, playback, program, scene,
     settings, shaders, source, texts,
 };
 use crate::app::palette::entries::{entries, entry_with};
@@ -69,6 +69,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &measure::DIFF,
     &checks::CHECKS,
     &checks::SHOW_FAILURE,
+    &costs::COST,
     &source::CHOOSE_STAGE,
     &source::PINNED,
     &source::TRACE,

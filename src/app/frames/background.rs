@@ -9,6 +9,7 @@ use super::picture::missing_thumbnail;
 use super::progress::awaits_edit;
 use super::results::take_background;
 use crate::app::actions::checks::update_checks;
+use crate::app::actions::costs::update_costs;
 use crate::app::actions::guests::update_guests;
 use crate::app::actions::inspect::{begin_values, values_complete};
 use crate::app::actions::trace::update_trace;
@@ -89,11 +90,12 @@ impl Drawing {
         let trace = update_trace(state, engine, is_safe_mode);
         let checks = update_checks(state, engine, is_safe_mode);
         let guests = update_guests(state, engine, is_safe_mode);
+        let costs = update_costs(state, engine, is_safe_mode);
         answer_found(state);
         let preview = prepare_next(state, engine, &mut self.screen)?;
         self.screen.pointer = interface.map(|shown| &shown.mouse).filter(|mouse| mouse.over).map(|mouse| mouse.at);
         let drawn = self.draw_between(state, engine, is_safe_mode)?;
-        Ok(trace.into_iter().chain(checks).chain(guests).chain(preview).chain(drawn).min())
+        Ok(trace.into_iter().chain(checks).chain(guests).chain(costs).chain(preview).chain(drawn).min())
     }
 
     fn draw_between(

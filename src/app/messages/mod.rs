@@ -10,6 +10,7 @@ use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
 use crate::app::actions::compare::tree::{on_second_tree, on_second_tree_found};
 use crate::app::actions::compare::write::on_version_written;
+use crate::app::actions::costs::{on_functions_timed, on_version_timed};
 use crate::app::actions::edits::{on_typed_written, on_written};
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
 use crate::app::actions::files::on_tree_found;
@@ -54,7 +55,8 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
             state.shader.location = source.location().map(Into::into);
             arrange_for(state, source.is_toy());
             engine.threads.follow_tree(&source);
-            state.source = source;
+            // Newer texts may have been put over the built-in shaders since.
+            state.source = state.text_writes.over(source);
             remember_tree(state, &reload.outcome);
             on_reload(state, engine, &reload, detect_ms);
         }
@@ -70,11 +72,13 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::NotFinite(number, found) => on_not_finite(state, number, *found),
         Message::Traced(number, traced) => on_traced(state, number, *traced),
         Message::OperationsChecked(number, result) => on_operations_checked(state, number, result),
+        Message::FunctionsTimed(number, result) => on_functions_timed(state, number, result),
+        Message::VersionTimed(number, result) => on_version_timed(state, number, result),
         Message::GuestTraced(number, traced) => on_guest_traced(state, number, *traced),
         Message::TracedBefore(number, before) => state.traces.take_before(number, before.map(|before| *before)),
         Message::TracedAround(number, around) => state.traces.around.take(number, *around),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
-        Message::TextWritten(number, file, written) => on_text_written(state, engine, number, (&file, written)),
+        Message::TextWritten(number, written) => on_text_written(state, engine, number, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),

@@ -1,6 +1,7 @@
 //! The panel Timeline: the versions of the shaders, each with its picture, its times and what it changed.
 
 pub(super) mod comparison;
+mod times;
 
 use std::sync::Arc;
 
@@ -96,6 +97,7 @@ fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<
     // A strip has no height to spare, so the search stands beside the buttons there.
     let beside = (is_strip && count > search::FEW).then_some(&mut own.search);
     comparison::show(ui, &state.compare, beside, commands);
+    times::show(ui, state);
     let words = match is_strip {
         true if count <= search::FEW => Words::default(),
         true => Words::new(&own.search),

@@ -24,10 +24,21 @@ pub(super) enum What {
     /// CPU time of a frame of 10 to 100,000 primitives, of 10 to 10,000 materials, and of 10 to 10,000 joints; device time of 1 to 1,000 lights;
     /// upload time and memory of textures up to 4 GiB
     Scale,
+    /// What each function of a stage costs: the frame with and without it, drawn in turn until the difference is significant
+    Cost,
 }
 
 /// Options of `bench`.
 #[derive(clap::Args)]
+#[command(
+    after_help = "cost draws the picture with and without each function that it calls, in turn, until their difference is significant or --samples \
+    pairs are drawn. Without a function means that it returns, everywhere, what it returned at the pixel with a call that is nearest to the \
+    middle; `out` parameters get what they got there, and `inout` parameters stay. The difference is what the picture would save: the \
+    function with those that it calls, and all code that computes its arguments for it alone. So the numbers overlap, and do not add up. They \
+    mislead where the result decides about other work (a loop's end, a branch), where a memory access hides the work of others, and where \
+    the stage is slow by its registers: the driver's figures show those. A software device is a CPU: its costs say nothing of a GPU. \
+    Functions that discard, write memory or variables of the stage, or whose result is a constant, are listed with the reason."
+)]
 pub struct Args {
     /// The measurement
     #[arg(value_enum)]
@@ -46,6 +57,12 @@ pub struct Args {
     /// Largest total of the textures of scale, MiB; 0 leaves them out
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) texture_mib: u64,
+    /// Stage of the picture for cost, as tonemap.frag [default: the one that draws the picture]
+    #[arg(long, value_name = "STAGE")]
+    pub(super) stage: Option<String>,
+    /// Measure this function alone for cost, as d_ggx or 'd_ggx(float, float, float)'; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub(super) function: Vec<String>,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

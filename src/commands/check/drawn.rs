@@ -39,7 +39,7 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
         modes => modes.in_shaders(&shaders, args.paths)?.into_iter().map(|mode| mode.slug.clone()).collect(),
     };
     let (mut found, mut checks, mut left_out) = (Vec::<Found>::new(), 0, BTreeSet::new());
-    let mut dropped = 0;
+    let (mut dropped, mut without_derivatives) = (0, false);
     for slug in &slugs {
         progress.say(&format!("checking the mode {slug}"));
         headless.settings_mut().mode.clone_from(slug);
@@ -47,10 +47,11 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
         checks = checks.max(picture.checks);
         left_out.extend(picture.left_out);
         dropped = dropped.max(picture.dropped);
+        without_derivatives |= picture.without_derivatives;
         picture.broken.into_iter().for_each(|(broken, diagnostic)| add(&mut found, broken, diagnostic, slug));
     }
     drop(progress);
-    warn_of_unchecked(&gpu.info().name, &left_out, dropped);
+    warn_of_unchecked(&gpu.info().name, &left_out, (dropped, without_derivatives));
     found.sort_by(|a, b| (&a.broken.file, a.broken.line).cmp(&(&b.broken.file, b.broken.line)));
     let result = tell_of(args, &found, (checks, slugs.len()));
     drop(headless);

@@ -20,7 +20,7 @@ pub(super) fn check(headless: &mut Headless, args: &Args) -> Result<(), Failure>
     let picture = headless.check_operations(false);
     headless.settings_mut().view.msaa = msaa;
     let picture = picture?;
-    warn_of_unchecked("the device", &picture.left_out, picture.dropped);
+    warn_of_unchecked("the device", &picture.left_out, (picture.dropped, picture.without_derivatives));
     let diagnostics: Vec<Diagnostic> = picture.broken.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();
     for diagnostic in &diagnostics {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));

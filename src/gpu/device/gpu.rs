@@ -68,6 +68,7 @@ pub struct Gpu {
     optional_stages: OptionalStages,
     vertex_stores: bool,
     fragment_stores: bool,
+    quad_ballots: bool,
     pub(in crate::gpu) has_memory_budget: bool,
     draws: DrawFeatures,
     info: AdapterInfo,
@@ -137,6 +138,7 @@ impl Gpu {
                 mesh: optional.mesh,
             },
             vertex_stores: supported.vertex_pipeline_stores_and_atomics == vk::TRUE,
+            quad_ballots: optional.quad_ballots,
             fragment_stores: supported.fragment_stores_and_atomics == vk::TRUE,
             info,
         };
@@ -193,6 +195,11 @@ impl Gpu {
     /// Whether vertex and fragment stages can write buffers. Compute stages always can.
     pub fn graphics_stores(&self) -> (bool, bool) {
         (self.vertex_stores, self.fragment_stores)
+    }
+
+    /// Whether fragment stages can ask which invocations of their quad run along.
+    pub fn quad_ballots(&self) -> bool {
+        self.quad_ballots
     }
 
     /// Largest width or height of a 2D image, in pixels.

@@ -17,6 +17,8 @@ pub(in crate::gpu) struct Optional {
     pub(in crate::gpu) mesh: Option<MeshLimits>,
     /// Draws that stages can tell apart.
     pub(in crate::gpu) draws: DrawFeatures,
+    /// Fragment stages can ask which invocations of their quad run along.
+    pub(in crate::gpu) quad_ballots: bool,
 }
 
 /// How a device tells stages which draw they run for.
@@ -79,6 +81,22 @@ fn mesh_limits(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option
     })
 }
 
+/// Whether four neighboring invocations of a subgroup are a quad, and their fragment stage has ballots.
+fn quad_ballots(instance: &ash::Instance, physical: vk::PhysicalDevice) -> bool {
+    use vk::SubgroupFeatureFlags as Feature;
+    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
+    // SAFETY: `physical` comes from this live instance; the chain is valid for the call.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    // Mesa's software device has quads in this order without saying so.
+    let is_cpu = properties.properties.device_type == vk::PhysicalDeviceType::CPU;
+    let operations = subgroups.supported_operations;
+    subgroups.supported_stages.contains(vk::ShaderStageFlags::FRAGMENT)
+        && operations.contains(Feature::BASIC | Feature::BALLOT)
+        && (operations.contains(Feature::QUAD) || is_cpu)
+        && fault::value("no-quad-ballots").is_none()
+}
+
 impl Optional {
     pub(in crate::gpu) fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Self {
         // SAFETY: `physical` comes from this live instance.
@@ -94,6 +112,7 @@ impl Optional {
             executables: executables.pipeline_executable_info == vk::TRUE,
             memory_budget: has(ext::memory_budget::NAME),
             draws: DrawFeatures::of(instance, physical),
+            quad_ballots: quad_ballots(instance, physical),
             mesh: has(ext::mesh_shader::NAME).then(|| mesh_limits(instance, physical)).flatten(),
         }
     }

@@ -6,6 +6,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpeculaCheck
 SpeculaChecks specula_check_buffer() { return SpeculaChecks(uvec2(SPECULA_LOW, SPECULA_HIGH)); }
 
 uint specula_check_bits[SPECULA_WORDS];
+SPECULA_QUADS
 bool specula_check_counts = false;
 
 void specula_check_print(const in uint check, const in uvec4 bits) {
@@ -27,10 +28,12 @@ void specula_check_operands(const in uint check, const in uvec4 bits) {
 
 void main() {
     specula_check_counts = SPECULA_COUNTS;
+    SPECULA_QUADS_BEGIN
     // A function that is never called is left out of the module.
     specula_check_operands(0u, uvec4(0u));
     specula_check_print(0u, uvec4(0u));
     specula_main();
+    SPECULA_QUADS_END
     if (!specula_check_counts) return;
     SpeculaChecks checks = specula_check_buffer();
     for (uint word = 0u; word < SPECULA_USED; word++) {

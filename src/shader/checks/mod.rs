@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::compile::asserts::text_of;
 use super::library::Stage;
 pub use super::spirv::checks::Rule;
-use super::spirv::checks::{Check, MASK_WORDS, MOST_OPERANDS, Names, check};
+use super::spirv::checks::{Check, MASK_WORDS, MOST_DERIVATIVES, MOST_OPERANDS, Names, check};
 use super::spirv::trace::with_constants;
 use super::trace::{EXTENSIONS, TracedValue, compile_listening};
 use super::{Compiler, Diagnostic, ShaderSet, Source, StageKind, TreePath};
@@ -33,8 +33,14 @@ const NAMES: Names<'_> = Names {
     mask: "specula_check_bits",
     function: "specula_check_operands",
     print: "specula_check_print",
+    gone: "specula_check_gone",
+    quads: "specula_check_quads",
     silent: "specula_check",
 };
+
+/// Extensions for the text that asks which invocations of a quad run along.
+const BALLOTS: &str =
+    "#extension GL_KHR_shader_subgroup_basic : require\n#extension GL_KHR_shader_subgroup_ballot : require";
 
 /// The stages of a frame, compiled with the text that checks them.
 pub struct CheckedStages<'a> {
@@ -43,6 +49,15 @@ pub struct CheckedStages<'a> {
     stages: Vec<CheckedStage>,
     buffer: CheckBuffer,
     undefined: bool,
+}
+
+/// What is checked besides what the author asserts and prints.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Operations {
+    /// Operations whose result GLSL leaves open.
+    pub undefined: bool,
+    /// Derivatives among them: fragment stages can ask which invocations of their quad run along.
+    pub derivatives: bool,
 }
 
 /// The buffer of a checked picture: a part for each stage, then a mark for each pixel.
@@ -81,6 +96,8 @@ pub struct Broken {
     pub line: u32,
     /// The rule.
     pub rule: Rule,
+    /// The variable that was read; empty for other rules.
+    pub name: String,
     /// The text of an `assert()` or a `print()`.
     pub text: Option<String>,
     /// The stage.
@@ -96,8 +113,7 @@ pub struct Broken {
 }
 
 impl<'a> CheckedStages<'a> {
-    /// Compiles these stages of `shaders`, each with whether its image has the size of the picture, so that it is marked. `undefined`: checks
-    /// operations, and not only what the author asserts and prints.
+    /// Compiles these stages of `shaders`, each with whether its image has the size of the picture, so that it is marked.
     ///
     /// # Errors
     /// A message why a stage cannot be checked.
@@ -105,16 +121,18 @@ impl<'a> CheckedStages<'a> {
         shaders: &'a ShaderSet,
         stages: &BTreeMap<String, bool>,
         (compiler, source): (&Compiler, &'a Source),
-        (buffer, undefined): (CheckBuffer, bool),
+        (buffer, operations): (CheckBuffer, Operations),
     ) -> Result<Self, String> {
         let stages = stages.iter().filter_map(|(path, marks)| Some((shaders.stages.get(path)?, *marks)));
         let compiled = stages.map(|(stage, marks)| {
-            let (_, words) =
-                compile_listening(shaders, &stage.path, (compiler, source), (&text(stage.kind), EXTENSIONS))?;
+            let quads = operations.undefined && operations.derivatives && stage.kind == StageKind::Fragment;
+            let extensions = if quads { format!("{EXTENSIONS}\n{BALLOTS}") } else { EXTENSIONS.to_owned() };
+            let text = text(stage.kind, quads);
+            let (_, words) = compile_listening(shaders, &stage.path, (compiler, source), (&text, &extensions))?;
             Ok(CheckedStage { stage: stage.clone(), marks, words, checks: Vec::new(), left_out: 0 })
         });
         let stages = compiled.collect::<Result<Vec<_>, String>>()?;
-        Ok(Self { shaders, source, stages, buffer, undefined })
+        Ok(Self { shaders, source, stages, buffer, undefined: operations.undefined })
     }
 
     /// The content of the buffer before the first draw: no check has failed.
@@ -204,6 +222,7 @@ impl<'a> CheckedStages<'a> {
                         file: check.file.clone(),
                         line: check.line,
                         rule: check.rule,
+                        name: check.name.clone(),
                         text: check.text.and_then(|number| self.text(&check.file, number)),
                         stage: stage.stage.path.clone(),
                         kind: stage.stage.kind,
@@ -253,7 +272,7 @@ impl Broken {
     /// It for programs. `diagnostic`: the same for a reader.
     pub fn json(&self, diagnostic: &Diagnostic) -> Value {
         let operands: Vec<Value> = self.operands.iter().map(TracedValue::json).collect();
-        json!({ "file": self.file, "path": diagnostic.file, "line": self.line, "rule": self.rule.name(), "text": self.text,
+        json!({ "file": self.file, "path": diagnostic.file, "line": self.line, "rule": self.rule.name(), "name": self.name, "text": self.text,
             "message": self.message(), "stage": self.stage.as_str(), "count": self.count,
             "first": [self.first.0, self.first.1], "operands": operands })
     }
@@ -281,6 +300,8 @@ impl Broken {
                 let parts: String = parts.map(|part| format!(": {part}")).collect();
                 format!("{rule}{parts}, {where_}")
             }
+            (rule @ Rule::Unset, _) => format!("{rule}: {} {where_}", self.name),
+            (rule, values) if values.is_empty() => format!("{rule}, {where_}"),
             (rule, values) => format!("{rule}: {values} {where_}"),
         }
     }
@@ -294,8 +315,8 @@ fn place(kind: StageKind, packed: u32) -> (u32, u32) {
     }
 }
 
-/// The text that is appended to a stage of this kind.
-fn text(kind: StageKind) -> String {
+/// The text that is appended to a stage of this kind. `quads`: it asks which invocations of a quad run along.
+fn text(kind: StageKind, quads: bool) -> String {
     let (place, counts) = match kind {
         // The pixels around a triangle run along for derivatives.
         StageKind::Fragment => ("(uint(gl_FragCoord.y) << 16 | uint(gl_FragCoord.x))", "!gl_HelperInvocation"),
@@ -307,7 +328,19 @@ fn text(kind: StageKind) -> String {
     };
     let number = |number: u32| format!("{number}u");
     let mark = if kind == StageKind::Fragment { MARK } else { "" };
+    let [declared, begin, end] = match quads {
+        true => [
+            include_str!("quads.glsl"),
+            "specula_check_begun = subgroupBallot(true);\n    if (specula_check_gone() != 0u) specula_check_quads[0] = 0u;",
+            "specula_check_quads_end();",
+        ],
+        false => [""; 3],
+    };
     include_str!("checks.glsl")
+        .replace("SPECULA_QUADS_BEGIN", begin)
+        .replace("SPECULA_QUADS_END", end)
+        .replace("SPECULA_QUADS", declared)
+        .replace("SPECULA_DERIVATIVES", &number(MOST_DERIVATIVES as u32))
         .replace("SPECULA_MARK;", mark)
         .replace("SPECULA_MARKS_LOW", &number(STANDING_FOR[3]))
         .replace("SPECULA_MARKS_HIGH", &number(STANDING_FOR[4]))
@@ -337,8 +370,10 @@ mod tests {
         for path in ["pbr.frag", "debug.frag", "pbr.vert", "tonemap.frag", "deform.comp"] {
             let path = TreePath::from(path);
             let kind = StageKind::of(&path).unwrap();
-            let (_, words) =
-                compile_listening(&shaders, &path, (&compiler, &source), (&text(kind), EXTENSIONS)).unwrap();
+            let quads = kind == StageKind::Fragment;
+            let extensions = if quads { format!("{EXTENSIONS}\n{BALLOTS}") } else { EXTENSIONS.to_owned() };
+            let text = (text(kind, quads), extensions);
+            let (_, words) = compile_listening(&shaders, &path, (&compiler, &source), (&text.0, &text.1)).unwrap();
             let counting = check(&words, &NAMES, true, None).unwrap();
             let all: BTreeSet<usize> = (0..counting.checks.len()).collect();
             let reading = check(&words, &NAMES, true, Some(&all)).unwrap();
@@ -348,6 +383,8 @@ mod tests {
                 assert_eq!(validate(words), Ok(()), "{path}");
                 assert_eq!(validate(&optimize(words.clone())), Ok(()), "{path}, optimized");
             }
+            let has_derivatives = counting.checks.iter().any(|check| check.rule == Rule::Derivative);
+            assert_eq!(has_derivatives, quads, "{path}");
             let without = check(&words, &NAMES, false, None).unwrap();
             assert!(without.checks.is_empty(), "{path}: {:?}", without.checks);
         }

@@ -116,6 +116,13 @@ impl Stage {
         Self::new(&self.path, self.kind, (spirv, self.reflection.clone()), self.dependencies.clone())
     }
 
+    /// A stage of which only the module is known.
+    #[cfg(test)]
+    pub(in crate::shader) fn of_module(path: &TreePath, spirv: Vec<u32>, dependencies: BTreeSet<TreePath>) -> Self {
+        let kind = StageKind::of(path).expect("the path of a stage");
+        Self::new(path, kind, (spirv, Reflection::default()), dependencies)
+    }
+
     fn new(
         path: &TreePath,
         kind: StageKind,

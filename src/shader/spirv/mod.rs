@@ -4,6 +4,7 @@
 pub mod bindings;
 pub mod checks;
 mod conditions;
+pub mod cost;
 mod declared;
 mod draw_index;
 mod enums;

@@ -5,14 +5,14 @@ use std::path::Path;
 use serde_json::{Value, json};
 use specula::learn::exercises;
 
-use crate::support::process::{Finished, run};
+use crate::support::process::{Finished, finish, run, specula};
 use crate::support::{
     Session, Tree, assert_same, failed, glb, is_long, line_of, model, open_image, ready, renderer, settings,
 };
 
 const VIEW: [&str; 5] = ["--size", "48x32", "--env", "none", "--validate"];
 /// `zero`, `izero` and `uzero` are 0, which the compiler does not know. Each line breaks one rule, and has its name and operands.
-const BROKEN: [(&str, &str, &[f64]); 29] = [
+const BROKEN: [(&str, &str, &[f64]); 36] = [
     ("x += 1.0 / zero;", "division-by-zero", &[1.0, 0.0]),
     ("x += (vec3(3.0) / vec3(1.0, zero, 2.0)).x;", "division-by-zero", &[3.0, 0.0]),
     ("x += float(7 / izero);", "division-by-zero", &[7.0, 0.0]),
@@ -42,9 +42,16 @@ const BROKEN: [(&str, &str, &[f64]); 29] = [
     ("x += float(uint(zero - 2.0));", "float-to-integer", &[-2.0]),
     ("x += float(1 << (izero + 40));", "shift", &[1.0, 40.0]),
     ("x += float(bitfieldExtract(izero, 30, izero + 4));", "bit-field", &[30.0, 4.0]),
+    ("float a; if (zero > 0.5) a = 1.0; x += a;", "unset", &[]),
+    ("vec3 b; b.xy = vec2(zero); x += b.z;", "unset", &[]),
+    ("float c[3]; c[0] = zero; c[1] = zero; x += c[2];", "unset", &[]),
+    ("mat2 d; d[0] = vec2(zero); x += d[1].x;", "unset", &[]),
+    ("float e; for (int i = 0; i < izero; i++) e = 1.0; x += e;", "unset", &[]),
+    ("float k; maybe(zero, k); x += k;", "unset", &[]),
+    ("float g; if (zero > 0.5) g = zero; else if (zero < 0.5) x += g;", "unset", &[]),
 ];
 /// None of these is undefined, as the part that would be is not evaluated or not selected.
-const DEFINED: [&str; 10] = [
+const DEFINED: [&str; 17] = [
     "if (zero > 0.5) x += 1.0 / zero;",
     "x += zero > 0.5 ? 1.0 / zero : 0.0;",
     "x += zero > 0.5 ? sqrt(zero - 1.0) : zero;",
@@ -55,7 +62,17 @@ const DEFINED: [&str; 10] = [
     "x += numbers[izero + 3] + float(1 << (izero + 31)) + float(int(zero - 2147483648.0));",
     "x += normalize(vec3(zero, zero, 1e-3)).z + log(zero + 1e-30) + atan(zero, zero - 1.0);",
     "for (int i = 0; i < 4; i++) x += numbers[i];",
+    "float a; if (zero > 0.5) a = 1.0; else a = zero; x += a;",
+    "float b; if (zero < 0.5) b = zero; if (zero < 0.5) x += b;",
+    "vec3 c; c.xy = vec2(zero); c.z = zero; x += c.z + c.x;",
+    "vec4 d; d.xw = vec2(zero); x += d.x + d.w;",
+    "float e[3]; for (int i = 0; i < 3; i++) e[i] = zero; x += e[2];",
+    "float k; maybe(zero + 1.0, k); x += k; float g; maybe(zero, g);",
+    "float h; switch (izero) { case 1: h = 1.0; break; default: h = zero; } x += h;",
 ];
+
+/// Sets its result on one of two paths.
+const MAYBE: &str = "void maybe(float on, out float y) { if (on > 0.5) y = on; }";
 
 /// A tree whose `user_surface` has these lines, and the line of the first one.
 fn tree(lines: &[&str]) -> (Tree, u32) {
@@ -66,6 +83,7 @@ fn tree(lines: &[&str]) -> (Tree, u32) {
     let body = format!("{start}    {}\n    s.occlusion += min(abs(x), 0.0);\n", lines.join("\n    "));
     let text = shipped.replace("    s.roughness = saturate", &format!("{body}    s.roughness = saturate"));
     assert_ne!(text, shipped);
+    let text = text.replace("void user_surface(", &format!("{MAYBE}\nvoid user_surface("));
     tree.write("user.glsl", &text);
     let at = text.lines().position(|line| line.trim() == lines[0]).unwrap();
     (tree, at as u32 + 1)
@@ -81,7 +99,10 @@ fn each_rule_is_found_at_its_line_with_its_operands() {
     let (tree, first) = tree(&BROKEN.map(|(line, ..)| line));
     let checked = check(&tree, &["sphere-grid", "--json"]);
     let found: Value = serde_json::from_str(&checked.stdout).unwrap_or_else(|_| panic!("{}", checked.stderr));
-    checked.expect(1, &["29 errors", "division by 0", "user.glsl"]);
+    checked.expect(
+        1,
+        &["36 errors", "division by 0", "a variable that is read before it is set: k first at", "user.glsl"],
+    );
     let found = found.as_array().unwrap();
     for (line, (code, rule, operands)) in (first..).zip(BROKEN) {
         let here: Vec<&Value> = found.iter().filter(|of| of["file"] == "user.glsl" && of["line"] == line).collect();
@@ -118,6 +139,49 @@ fn a_fault_of_some_pixels_has_their_number_and_the_first() {
     let found: Value = serde_json::from_str(&checked.stdout).unwrap();
     let of = &found[0];
     assert_eq!((&of["line"], &of["first"], &of["count"]), (&json!(line), &json!([10, 0]), &json!(14 * 16)), "{of}");
+}
+
+/// Derivatives that only some pixels of a quad compute, and those that all or no pixels of it do.
+const APART: [&str; 3] = [
+    "if (fract(gl_FragCoord.x * 0.5) < 0.5) x += dFdx(zero + gl_FragCoord.y);",
+    "for (float i = 0.0; i < mod(gl_FragCoord.y - 0.5, 2.0); i++) x += fwidth(i + gl_FragCoord.x);",
+    "if (gl_FragCoord.x > 20.0 && gl_FragCoord.x < 23.0) x += dFdy(gl_FragCoord.x);",
+];
+const TOGETHER: [&str; 5] = [
+    "if (zero < 0.5) x += dFdx(gl_FragCoord.y);",
+    "for (int j = 0; j < 3; j++) x += fwidth(gl_FragCoord.x);",
+    "if (gl_FragCoord.x < 16.0) x += dFdy(gl_FragCoord.x);",
+    "if (fract(gl_FragCoord.x * 0.5) < 0.5) x += zero; x += dFdx(x);",
+    "if (gl_FragCoord.x > 30.0 && fract(gl_FragCoord.x * 0.5) < 0.5) discard; x += dFdx(gl_FragCoord.x);",
+];
+
+#[test]
+fn derivatives_are_undefined_where_pixels_of_a_quad_part() {
+    let of = |lines: &[&str], fault: &str| {
+        let (tree, first) = tree(lines);
+        let quad = tree.beside("quad.glb");
+        std::fs::write(&quad, glb::model(&glb::quad(9.0), &glb::gray())).unwrap();
+        let root = tree.root();
+        let mut command = specula(Path::new("."));
+        let view = ["--eye", "0,0,2", "--target", "0,0,0", "--json", quad.to_str().unwrap()];
+        let args = [&["check", "--undefined", "--shaders", root.to_str().unwrap()], &view[..], &VIEW].concat();
+        (finish(command.args(args).env("SPECULA_FAULT", fault)), first)
+    };
+    let (checked, first) = of(&APART, "");
+    checked.expect(1, &["in a branch that only some pixels of a quad take, first at the pixel"]);
+    let found: Value = serde_json::from_str(&checked.stdout).unwrap();
+    // The quad covers the picture of 48 by 32 pixels. Along the diagonal of its two triangles, a device may leave neighbors out.
+    let most = [24 * 32, 48 * 16, 32];
+    assert_eq!(found.as_array().unwrap().len(), most.len(), "{found:#}");
+    for ((of, line), most) in found.as_array().unwrap().iter().zip(first..).zip(most) {
+        assert_eq!((&of["line"], &of["rule"]), (&json!(line), &json!("derivative")), "{of}");
+        assert!((most * 9 / 10..=most).contains(&of["count"].as_u64().unwrap()), "{of}");
+    }
+    let (checked, _) = of(&TOGETHER, "");
+    checked.expect(0, &[]);
+    // A device that cannot tell says so.
+    let (checked, _) = of(&APART[..1], "no-quad-ballots:1");
+    checked.expect(0, &["does not tell which pixels run along, so derivatives in branches are not checked"]);
 }
 
 #[test]

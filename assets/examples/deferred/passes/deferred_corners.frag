@@ -18,14 +18,14 @@ uniform DeferredCorners {
 // left: occlusion, roughness and metallic as red, green and blue; lower right: distance, white at the front of the model's bounds
 // and black a third of their radius behind the center.
 vec3 view_at(bvec2 corner, vec2 at) {
-    vec4 normal = texture(gbuffer_normal, at);
-    vec4 base = texture(gbuffer, at);
+    vec4 normal = textureLod(gbuffer_normal, at, 0.0);
+    vec4 base = textureLod(gbuffer, at, 0.0);
     if (normal.xyz == vec3(0.0)) return vec3(0.01);
     if (!corner.x && !corner.y) return base.rgb;
     if (!corner.y) return linear_from_srgb(0.5 + 0.5 * normal.xyz);
-    if (!corner.x) return linear_from_srgb(vec3(texture(gbuffer_emission, at).a, normal.a, base.a));
+    if (!corner.x) return linear_from_srgb(vec3(textureLod(gbuffer_emission, at, 0.0).a, normal.a, base.a));
     float to_center = distance(frame.eye_ws, frame.scene_center_ws);
-    float beyond = (texture(gbuffer_distance, at).r - to_center) / frame.scene_radius;
+    float beyond = (textureLod(gbuffer_distance, at, 0.0).r - to_center) / frame.scene_radius;
     return linear_from_srgb(vec3(0.25 - 0.75 * beyond));
 }
 

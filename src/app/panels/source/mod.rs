@@ -3,6 +3,7 @@
 mod bar;
 mod code;
 mod colors;
+mod cost;
 mod edit;
 mod find;
 mod fold;

@@ -7,6 +7,7 @@ use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, Widg
 
 use super::bar;
 use super::colors::{ROW, colored};
+use super::cost;
 use super::find::Find;
 use super::functions::Fold;
 use super::hover;
@@ -108,6 +109,7 @@ fn show_line(
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
     drag.show(ui, (state, path), line, (left, rect, look), commands);
     let code_end = hidden(ui, line, (code_end, rect));
+    cost::show(ui, state, (path, row.line), rect, code_end);
     gutter(ui, line, sight, background, look);
     if let Some(include) = &line.include {
         include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);

@@ -4,11 +4,16 @@
 //! own for each operation that broke its rule, without a branch, and its entry point adds the bits to a buffer at its end. For the few
 //! operations that did, a second module calls a function with their operands.
 
+mod derivatives;
 mod operands;
 mod operations;
+mod quads;
 mod rule;
+mod sets;
 mod statements;
 mod suspect;
+mod track;
+mod unset;
 
 use std::collections::BTreeSet;
 
@@ -16,11 +21,15 @@ use super::module::{Function, Id, Instruction, Module};
 use super::op::Op;
 use super::reach::file_of;
 use super::trace::NumberKind;
+use quads::Quads;
 pub use rule::Rule;
 use suspect::{Selected, Suspect, selected};
+use track::{Tracked, TrackedFunction};
 
 /// Words of the array of bits.
 pub const MASK_WORDS: usize = 128;
+/// Derivatives that are checked; others are not.
+pub const MOST_DERIVATIVES: usize = 128;
 /// Operands that a check gives, as bits.
 pub const MOST_OPERANDS: usize = 4;
 
@@ -32,6 +41,10 @@ pub struct Names<'a> {
     pub function: &'a str,
     /// The same for a `print()`.
     pub print: &'a str,
+    /// `uint function()`: the invocations of the quad that have begun and do not run along, as bits; the text may lack it.
+    pub gone: &'a str,
+    /// An array of [`MOST_DERIVATIVES`] numbers: of a derivative, the invocations that did not run along, and the number of its check.
+    pub quads: &'a str,
     /// Functions whose names begin with this are not checked.
     pub silent: &'a str,
 }
@@ -45,6 +58,8 @@ pub struct Check {
     pub line: u32,
     /// The rule.
     pub rule: Rule,
+    /// The variable that is read; empty for other rules.
+    pub name: String,
     /// The number of the text that an `assert()` or a `print()` has in its file.
     pub text: Option<u32>,
     /// The types of the operands that it gives, and how many numbers each has: at most [`MOST_OPERANDS`] in all.
@@ -75,18 +90,25 @@ pub fn check(words: &[u32], names: &Names<'_>, undefined: bool, chosen: Option<&
     };
     let extended = module.head.iter().find(|i| i.op == Op::ExtInstImport).map(|i| module[*i][1]);
     let silent: BTreeSet<Id> = module.named(names.silent).collect();
+    let quads = Quads::of(&mut module, [names.gone, names.quads]);
+    let order = module.entry_function().and_then(|entry| module.callees_first(entry)).unwrap_or_default();
     let mut functions = std::mem::take(&mut module.functions);
+    let mut tracked =
+        if undefined { Tracked::of(&mut module, &functions, &order, &silent) } else { Tracked::default() };
     let mut checker = Checker::new(&mut module, &functions, (to, extended), undefined);
+    checker.quads = quads;
     for function in &mut functions {
         let is_silent = silent.contains(&function.id);
         function.head.retain(|i| !is_line(*i));
         checker.selected = selected(checker.module, function);
-        for block in &mut function.blocks {
+        checker.tracked = tracked.take(checker.module, function.id);
+        for (at, block) in function.blocks.iter_mut().enumerate() {
             match is_silent {
                 true => block.body.retain(|i| !is_line(*i)),
-                false => block.body = checker.block(&block.body),
+                false => block.body = checker.block(at, &block.body),
             }
         }
+        std::mem::take(&mut checker.tracked).declare(checker.module, function);
     }
     let Checker { checks, left_out, .. } = checker;
     module.functions = functions;
@@ -131,6 +153,9 @@ struct Checker<'a> {
     waiting: Vec<(Id, Suspect, usize)>,
     checks: Vec<Check>,
     left_out: usize,
+    /// The variables of the function that may be read before they are set.
+    tracked: TrackedFunction,
+    quads: Quads,
 }
 
 impl<'a> Checker<'a> {
@@ -161,13 +186,15 @@ impl<'a> Checker<'a> {
             waiting,
             checks,
             left_out,
+            tracked: TrackedFunction::default(),
+            quads: Quads::default(),
         }
     }
 
-    /// The instructions of a block with checks between them, without lines.
-    fn block(&mut self, body: &[Instruction]) -> Vec<Instruction> {
+    /// The instructions of a block, the one at a place of its function, with checks between them, without lines.
+    fn block(&mut self, at: usize, body: &[Instruction]) -> Vec<Instruction> {
         let (mut out, mut line): (Vec<Instruction>, _) = (Vec::with_capacity(body.len()), None);
-        for &i in body {
+        for (place, &i) in body.iter().enumerate() {
             if is_line(i) {
                 line = (i.op == Op::Line).then_some(i);
                 continue;
@@ -178,11 +205,16 @@ impl<'a> Checker<'a> {
             if let Some((file, line)) = line.and_then(|line| file_of(self.module, &self.module[line])) {
                 let own = self.own_statement(&mut out, i);
                 let others = if self.undefined { self.suspects(&mut out, i) } else { Vec::new() };
-                for suspect in own.into_iter().chain(others) {
+                let unset = self.unset(&mut out, (at, place));
+                for suspect in own.into_iter().chain(others).chain(unset) {
                     self.add(&mut out, i, suspect, (file.clone(), line));
+                }
+                if self.undefined {
+                    self.derivative(&mut out, i, (file, line));
                 }
             }
             out.push(i);
+            self.note_sets(&mut out, (at, place));
         }
         out
     }
@@ -195,12 +227,28 @@ impl<'a> Checker<'a> {
         }
         let shown = self.shown(&suspect);
         let operands = shown.into_iter().map(|(operand, count)| (self.kind(operand), count)).collect();
-        self.checks.push(Check { file, line, rule: suspect.rule, text: suspect.text, operands });
+        self.checks.push(Check {
+            file,
+            line,
+            rule: suspect.rule,
+            name: suspect.name.clone(),
+            text: suspect.text,
+            operands,
+        });
         let number = self.checks.len() - 1;
         match self.module.result(i).filter(|result| self.selected.contains(result)) {
             Some(result) => self.waiting.push((result, suspect, number)),
             None => self.report(out, &suspect, number),
         }
+    }
+
+    /// Adds a check without operands. Returns whether there was room.
+    fn push_check(&mut self, (file, line): (String, u32), rule: Rule) -> bool {
+        let has_room = self.checks.len() < 32 * MASK_WORDS;
+        if has_room {
+            self.checks.push(Check { file, line, rule, name: String::new(), text: None, operands: Vec::new() });
+        }
+        has_room
     }
 
     /// Reports what a select is about to read, if it reads that side.

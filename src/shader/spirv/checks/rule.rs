@@ -40,6 +40,10 @@ pub enum Rule {
     Shift,
     /// `bitfieldExtract()` or `bitfieldInsert()` of bits beyond the 32.
     Bits,
+    /// A variable that is read on a path that has not set it.
+    Unset,
+    /// A derivative, or a level of detail, of a quad whose invocations do not all run along.
+    Derivative,
     /// The condition of an `assert()`.
     Assert,
     /// A `print()`, which is no rule: it tells a value wherever it runs.
@@ -48,7 +52,7 @@ pub enum Rule {
 
 impl Rule {
     /// All rules about what is undefined.
-    pub const UNDEFINED: [Self; 17] = [
+    pub const UNDEFINED: [Self; 19] = [
         Self::DivisionByZero,
         Self::Pow,
         Self::Normalize,
@@ -66,6 +70,8 @@ impl Rule {
         Self::ToInteger,
         Self::Shift,
         Self::Bits,
+        Self::Unset,
+        Self::Derivative,
     ];
 
     /// A name for scripts, as "division-by-zero".
@@ -88,6 +94,8 @@ impl Rule {
             Self::ToInteger => "float-to-integer",
             Self::Shift => "shift",
             Self::Bits => "bit-field",
+            Self::Unset => "unset",
+            Self::Derivative => "derivative",
             Self::Assert => "assert",
             Self::Print => "print",
         }
@@ -115,6 +123,8 @@ impl fmt::Display for Rule {
             Self::ToInteger => "a conversion to an integer that cannot hold the number",
             Self::Shift => "a shift by more bits than there are",
             Self::Bits => "bits beyond the last one",
+            Self::Unset => "a variable that is read before it is set",
+            Self::Derivative => "a derivative or a level of detail in a branch that only some pixels of a quad take",
             Self::Assert => "assertion failed",
             Self::Print => "print",
         })

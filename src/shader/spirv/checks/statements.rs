@@ -18,12 +18,24 @@ impl Checker<'_> {
                 let text = arguments.get(1).and_then(|text| self.module.number(*text));
                 let bool = self.module.declare(Op::TypeBool, &[]);
                 let broken = self.module.emit(out, Op::LogicalNot, bool, &[condition]);
-                Some(Suspect { rule: Rule::Assert, broken, operands: self.compared(condition), text })
+                Some(Suspect {
+                    rule: Rule::Assert,
+                    broken,
+                    operands: self.compared(condition),
+                    name: String::new(),
+                    text,
+                })
             }
             [text, value] if self.prints.contains(&callee) => {
                 let bool = self.module.declare(Op::TypeBool, &[]);
                 let broken = self.module.declare(Op::ConstantTrue, &[bool]);
-                Some(Suspect { rule: Rule::Print, broken, operands: vec![value], text: self.module.number(text) })
+                Some(Suspect {
+                    rule: Rule::Print,
+                    broken,
+                    operands: vec![value],
+                    name: String::new(),
+                    text: self.module.number(text),
+                })
             }
             _ => None,
         }

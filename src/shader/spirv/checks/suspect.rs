@@ -13,6 +13,8 @@ pub(super) struct Suspect {
     pub broken: Id,
     /// The values that it works on, for the reader.
     pub operands: Vec<Id>,
+    /// See `Check::name`.
+    pub name: String,
     /// See `Check::text`.
     pub text: Option<u32>,
 }
@@ -20,7 +22,7 @@ pub(super) struct Suspect {
 impl Suspect {
     /// An operation without a text.
     pub(super) fn new(rule: Rule, broken: Id, operands: &[Id]) -> Self {
-        Self { rule, broken, operands: operands.to_vec(), text: None }
+        Self { rule, broken, operands: operands.to_vec(), name: String::new(), text: None }
     }
 }
 
