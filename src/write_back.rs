@@ -13,9 +13,9 @@ use crate::shader::rewrite::{Edit, applied};
 use crate::shader::{SourceError, TreePath, leads_out};
 use text_form::TextForm;
 
-/// Files that were written: the bytes before and after.
+/// Files that were written: the bytes before and after; `None` if there was no file.
 #[derive(Debug)]
-pub struct Written(Vec<(PathBuf, [Vec<u8>; 2])>);
+pub struct Written(Vec<(PathBuf, [Option<Vec<u8>>; 2])>);
 
 impl Written {
     /// Writes the bytes before, or with `again` those after. Files that have changed since stay.
@@ -25,19 +25,34 @@ impl Written {
     pub fn take_back(&self, again: bool) -> Result<(), String> {
         let (from, to) = if again { (0, 1) } else { (1, 0) };
         for (file, texts) in &self.0 {
-            let now = regular_file::read(file, regular_file::LONGEST_TEXT);
-            let now = now.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
-            if now != texts[from] {
+            if bytes_of(file)? != texts[from] {
                 return Err(format!("{} has changed since it was written, so it stays as it is", file.display()));
             }
         }
-        self.0.iter().try_for_each(|(file, texts)| replace(file, &texts[to]))
+        self.0.iter().try_for_each(|(file, texts)| match &texts[to] {
+            Some(bytes) => replace(file, bytes),
+            None => std::fs::remove_file(file).map_err(|error| format!("cannot remove {}: {error}", file.display())),
+        })
+    }
+
+    /// The files.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.0.iter().map(|(file, _)| file.clone()).collect()
     }
 
     /// The names of the files.
     pub fn names(&self) -> String {
         let name = |(file, _): &(PathBuf, _)| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         self.0.iter().map(name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The bytes of a file; `None` if there is none.
+fn bytes_of(file: &Path) -> Result<Option<Vec<u8>>, String> {
+    match regular_file::read(file, regular_file::LONGEST_TEXT) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(format!("cannot read {}: {error}", file.display())),
     }
 }
 
@@ -66,7 +81,7 @@ pub fn write(root: &Path, edits: &[Edit]) -> Result<Written, String> {
         writes.push((file, [bytes, new]));
     }
     writes.iter().try_for_each(|(file, [_, new])| replace(file, new))?;
-    Ok(Written(writes))
+    Ok(Written(writes.into_iter().map(|(file, bytes)| (file, bytes.map(Some))).collect()))
 }
 
 /// A file of a tree on disk.
@@ -104,7 +119,7 @@ pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Wr
     if new != bytes {
         replace(&file, &new)?;
     }
-    Ok((text, Written(vec![(file, [bytes, new])])))
+    Ok((text, Written(vec![(file, [bytes, new].map(Some))])))
 }
 
 /// Writes the whole text of a file, which need not exist, nor its folder in the tree.
@@ -124,18 +139,14 @@ pub fn write_whole(file: &TreeFile, text: &str) -> Result<Written, String> {
     if text.len() as u64 > regular_file::LONGEST_TEXT {
         return Err(cannot(format!("{} bytes; at most {} are read", text.len(), regular_file::LONGEST_TEXT)));
     }
-    let before = match regular_file::read(&file, regular_file::LONGEST_TEXT) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            let folder = file.parent().unwrap_or(root);
-            std::fs::create_dir_all(folder).map_err(|error| cannot(error.to_string()))?;
-            Vec::new()
-        }
-        Err(error) => return Err(format!("cannot read {}: {error}", file.display())),
-    };
-    let new = text.as_bytes().to_vec();
-    if new != before || !file.exists() {
-        replace(&file, &new)?;
+    let before = bytes_of(&file)?;
+    if before.is_none() {
+        let folder = file.parent().unwrap_or(root);
+        std::fs::create_dir_all(folder).map_err(|error| cannot(error.to_string()))?;
+    }
+    let new = Some(text.as_bytes().to_vec());
+    if new != before {
+        replace(&file, text.as_bytes())?;
     }
     Ok(Written(vec![(file, [before, new])]))
 }
@@ -178,8 +189,11 @@ mod tests {
         let tree = tempfile::tempdir().unwrap();
         let file = |path: &str| TreeFile { root: tree.path().to_owned(), path: path.into() };
         let read = |path: &str| std::fs::read_to_string(tree.path().join(path)).unwrap();
-        write_whole(&file("lib/new.glsl"), "one").unwrap();
+        let made = write_whole(&file("lib/new.glsl"), "one").unwrap();
         assert_eq!(read("lib/new.glsl"), "one");
+        made.take_back(false).unwrap();
+        assert!(!tree.path().join("lib/new.glsl").exists(), "an undo leaves an empty file");
+        made.take_back(true).unwrap();
         let written = write_whole(&file("lib/new.glsl"), "two").unwrap();
         assert_eq!(read("lib/new.glsl"), "two");
         written.take_back(false).unwrap();

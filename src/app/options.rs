@@ -1,5 +1,6 @@
 //! How to open the window or a session without one, and the work that begins before it is open.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,7 +13,7 @@ use crate::pipeline::DiskPipelines;
 use crate::recovery::{Recorder, SessionState};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
-use crate::shader::{Compiler, Source, Watcher};
+use crate::shader::{Compiler, Source, TreePath, Watcher};
 use crate::threads::loader::{self, Reading};
 use crate::threads::{MessageSender, watch_files};
 
@@ -20,6 +21,8 @@ use crate::threads::{MessageSender, watch_files};
 pub struct AppOptions {
     /// Shader tree.
     pub source: Source,
+    /// Texts over the built-in shaders, which a session before a loss has drawn.
+    pub texts: BTreeMap<TreePath, Arc<str>>,
     /// Shader compiler.
     pub compiler: Arc<Compiler>,
     /// Model file; `None` is the built-in shader ball.

@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
+use serde_json::Value;
 
 use super::ending::Ending;
 use super::engine::Engine;
@@ -16,6 +17,7 @@ use super::options::{AppOptions, Early};
 use super::screen::Screen;
 use super::start::start;
 use super::state::State;
+use super::state::waiting::CANCELED;
 use crate::control::Asked;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
@@ -24,7 +26,7 @@ use crate::threads::{Message, MessageSender};
 /// Carries out commands until one of them ends the session.
 ///
 /// # Errors
-/// No device, a picture that is too large for it, or a device error.
+/// No device, a picture that is too large for it, a model that does not load, or a device error.
 pub fn serve(mut options: AppOptions) -> Result<(), AppError> {
     // Its end writes the last events, so it outlives the session.
     let control = std::mem::take(&mut options.control);
@@ -47,16 +49,16 @@ pub fn serve(mut options: AppOptions) -> Result<(), AppError> {
     sender.pass_on(control.asked());
     let mut session = Ending { state, engine, drawing, gpu };
     match run(&mut session, &messages) {
-        Err(error @ GpuError::DeviceLost(_)) => {
+        Err(error @ AppError::Gpu(GpuError::DeviceLost(_))) => {
             session.lost();
-            Err(error.into())
+            Err(error)
         }
-        result => session.end(result.map_err(AppError::Gpu), || ()),
+        result => session.end(result, || ()),
     }
 }
 
 /// Takes messages and draws the frames that follow from them, until the session ends.
-fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), GpuError> {
+fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), AppError> {
     let Ending { state, engine, drawing, .. } = session;
     let mut early = Vec::new();
     loop {
@@ -91,11 +93,25 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), GpuErro
 /// Takes a message. Commands wait in `early` for the first shaders, whose names they may use; but not those that end something.
 fn take(state: &mut State, engine: &mut Engine, early: &mut Vec<Box<Asked>>, message: Message) {
     match message {
-        Message::Asked(asked) if !knows_names(state, engine) && !["quit", "cancel"].contains(&&*asked.command) => {
+        Message::Asked(asked) if asked.command == "cancel" => match canceled(early, &asked) {
+            Some(command) => {
+                command.reply.error(CANCELED);
+                asked.reply.done(Value::Null);
+            }
+            None => on_message(state, engine, Message::Asked(asked)),
+        },
+        Message::Asked(asked) if asked.command != "quit" && (!early.is_empty() || !knows_names(state, engine)) => {
             early.push(asked);
         }
         message => on_message(state, engine, message),
     }
+}
+
+/// Removes the early command that another one cancels.
+fn canceled(early: &mut Vec<Box<Asked>>, cancel: &Asked) -> Option<Box<Asked>> {
+    let key = (cancel.reply.key().0, cancel.fields.get("of")?.clone());
+    let found = early.iter().position(|asked| asked.reply.key() == key)?;
+    Some(early.remove(found))
 }
 
 /// Whether all stages have been compiled, or cannot be.

@@ -20,6 +20,7 @@ use super::state::hint::Hint;
 use super::state::last_session::LastSessions;
 use super::state::model::ModelStatus;
 use super::state::recent::Recent;
+use super::state::text_writes::TextWrites;
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::render::Resources;
 use crate::threads::worker::{Snapshot, Worker};
@@ -36,10 +37,13 @@ pub(super) fn start(
     early: Early,
     (sender, has_window): (&MessageSender, bool),
 ) -> Result<(State, Engine), GpuError> {
-    let (source, recorder) = (options.source, options.recorder);
+    let mut text_writes = TextWrites::default();
+    text_writes.restore(options.texts);
+    let (source, recorder) = (text_writes.over(options.source), options.recorder);
     let location = source.location().map(Path::to_owned);
     let mut state = State {
         has_window,
+        text_writes,
         model: ModelStatus { path: options.model.clone(), ..Default::default() },
         events: early.events,
         start: options.start,

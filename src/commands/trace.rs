@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 use specula::headless::TraceRequest;
-use specula::shader::StageKind;
 use specula::shader::trace::{Assertion, Trace};
+use specula::shader::{ShaderSet, StageKind, TreePath};
 
 use super::common::frames::Frames;
 use super::common::opened::Opened;
@@ -80,8 +80,8 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mode = shaders.modes.iter().find(|mode| mode.slug == slug).cloned();
     let mode = mode.ok_or_else(|| Failure::Usage(format!("the shaders have no mode {slug}")))?;
     progress.say("tracing the pixel");
-    let files = args.file.iter().map(String::as_str).chain(args.assert.iter().map(Assertion::file));
-    let files: Vec<&str> = files.collect();
+    let named: Vec<String> = args.file.iter().map(|file| whole_path(&shaders, file)).collect();
+    let files: Vec<&str> = named.iter().map(String::as_str).chain(args.assert.iter().map(Assertion::file)).collect();
     let stage = args.stage.as_deref();
     let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
     let trace = headless.trace(&request)?;
@@ -109,6 +109,16 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     match failed.is_empty() {
         true => Ok(()),
         false => Err(Failure::Input(failed.join("\n"))),
+    }
+}
+
+/// The path of a file of the tree. `ndf.glsl` is enough if only one path ends so.
+fn whole_path(shaders: &ShaderSet, file: &str) -> String {
+    let ending = format!("/{file}");
+    let mut found = shaders.texts.keys().filter(|path| path.as_str().ends_with(&ending));
+    match (shaders.texts.contains_key(&TreePath::from(file)), found.next(), found.next()) {
+        (false, Some(one), None) => one.to_string(),
+        _ => file.to_owned(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::Write;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -9,6 +10,9 @@ use std::time::{Duration, Instant};
 const MOST_UNREAD: usize = 16 << 20;
 /// Commands of a client that may be unanswered. The next one is read only once one of them has been answered.
 const MOST_OPEN: usize = 64;
+
+/// The number of the last client.
+static LAST: AtomicU64 = AtomicU64::new(0);
 
 /// Time between two questions whether to wait any longer.
 const ASK_AGAIN: Duration = Duration::from_millis(100);
@@ -21,6 +25,8 @@ pub type HangUp = Box<dyn Fn() + Send + Sync>;
 pub struct Client(Arc<Shared>);
 
 struct Shared {
+    /// Tells clients apart.
+    number: u64,
     queue: Mutex<Queue>,
     changed: Condvar,
     hang_up: Option<HangUp>,
@@ -38,9 +44,10 @@ struct Queue {
 
 impl Client {
     /// Starts the thread that writes to `writer`. A client that leaves too much unread is disconnected; without `hang_up`, it
-    /// misses lines until it reads again.
+    /// misses events until it reads again, but no answers: its next command is read only then.
     pub fn start(writer: impl Write + Send + 'static, hang_up: Option<HangUp>) -> Self {
-        let client = Self(Arc::new(Shared { queue: Mutex::default(), changed: Condvar::new(), hang_up }));
+        let number = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        let client = Self(Arc::new(Shared { number, queue: Mutex::default(), changed: Condvar::new(), hang_up }));
         let shared = client.0.clone();
         let started = std::thread::Builder::new().name("specula-client".to_owned()).spawn(move || shared.write(writer));
         if started.is_err() {
@@ -49,13 +56,27 @@ impl Client {
         client
     }
 
+    /// A number that no other client of this process has; never 0.
+    pub fn number(&self) -> u64 {
+        self.0.number
+    }
+
     /// Sends a line, without its line break. Returns at once.
     pub fn send(&self, line: &Arc<str>) {
+        self.push(line, false);
+    }
+
+    /// [`Self::send`] for the answer to a command.
+    pub(super) fn answer(&self, line: &Arc<str>) {
+        self.push(line, self.0.hang_up.is_none());
+    }
+
+    fn push(&self, line: &Arc<str>, is_owed: bool) {
         let mut queue = self.0.lock();
         if queue.is_closed {
             return;
         }
-        if queue.bytes + line.len() > MOST_UNREAD {
+        if queue.bytes + line.len() > MOST_UNREAD && !is_owed {
             drop(queue);
             if self.0.hang_up.is_some() {
                 self.close();
@@ -84,10 +105,10 @@ impl Client {
         self.0.lock().is_closed
     }
 
-    /// Counts a command that is to be answered. Blocks while too many are.
+    /// Counts a command that is to be answered. Blocks while too many are, or while too many answers are unread.
     pub(super) fn begin(&self) {
         let mut queue = self.0.lock();
-        while queue.open >= MOST_OPEN && !queue.is_closed {
+        while (queue.open >= MOST_OPEN || queue.bytes > MOST_UNREAD) && !queue.is_closed {
             queue = self.0.changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
         }
         queue.open += 1;
@@ -238,11 +259,13 @@ mod tests {
         (0..8).for_each(|_| clients.send(&long));
         assert!(lazy.is_closed() && hung_up.recv().is_ok());
         assert!(!stdout.is_closed(), "stdout only misses lines");
+        stdout.answer(&"an answer".into());
         (0..100).for_each(|_| {
             let _ = permits.send(());
         });
         clients.flush(Duration::from_secs(60));
-        assert_eq!(written.lock().unwrap().len(), 4 * (long.len() + 1));
+        let answer = "an answer\n".len();
+        assert_eq!(written.lock().unwrap().len(), 4 * (long.len() + 1) + answer, "all but answers is missed");
         clients.send("next");
         clients.flush(Duration::from_secs(60));
         assert!(written.lock().unwrap().ends_with(b"\nnext\n"));

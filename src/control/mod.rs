@@ -20,7 +20,8 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 pub use client::{Client, Clients};
 pub(crate) use line::kind;
-pub(crate) use reply::{Asked, Reply};
+pub use reader::MOST_BYTES;
+pub(crate) use reply::{Asked, Key, Reply};
 pub use socket::{Socket, remove_sockets, socket_path};
 
 use crate::message::warn;

@@ -9,7 +9,7 @@ use super::line::{Parsed, parse};
 use super::{Asked, Client, Reply};
 
 /// Most bytes of a command: the longest text of a shader file, of whose characters some take more than one as JSON.
-const MOST_BYTES: usize = 4 << 20;
+pub const MOST_BYTES: usize = 4 << 20;
 
 /// A line of the input.
 #[derive(Debug, PartialEq, Eq)]

@@ -7,6 +7,9 @@ use super::Client;
 /// Receives the result of a command that the window itself issued.
 type Taken = Box<dyn FnOnce(Result<Value, String>) + Send>;
 
+/// The number of a client, and the identifier of one of its commands.
+pub(crate) type Key = (u64, Value);
+
 /// A command, and the client that waits for its answer.
 pub(crate) struct Asked {
     /// Its name, which may be unknown.
@@ -40,9 +43,10 @@ impl Reply {
         Self { to: To::Window(Box::new(take)), id: Value::Null, command: String::new() }
     }
 
-    /// The identifier in the line of the command; null without one.
-    pub(crate) fn id(&self) -> &Value {
-        &self.id
+    /// The number of the client, 0 for the window itself, and the identifier in the line of the command, null without one.
+    pub(crate) fn key(&self) -> Key {
+        let client = if let To::Client(client) = &self.to { client.number() } else { 0 };
+        (client, self.id.clone())
     }
 
     /// Answers that the command is done. `result` is its result, or null.
@@ -86,7 +90,7 @@ impl Reply {
                 }
             }
         }
-        client.send(&line.to_string().into());
+        client.answer(&line.to_string().into());
         client.end();
     }
 }

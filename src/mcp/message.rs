@@ -10,6 +10,8 @@ pub const INVALID_REQUEST: i32 = -32600;
 pub const METHOD_NOT_FOUND: i32 = -32601;
 /// The parameters do not fit the method.
 pub const INVALID_PARAMS: i32 = -32602;
+/// The server failed.
+pub const INTERNAL_ERROR: i32 = -32603;
 /// There is no such resource (Model Context Protocol).
 pub const RESOURCE_NOT_FOUND: i32 = -32002;
 

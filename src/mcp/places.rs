@@ -55,6 +55,7 @@ pub struct Places {
     pub out: Option<PathBuf>,
     temporary: PathBuf,
     pictures: AtomicU64,
+    passing: AtomicU64,
 }
 
 /// Pictures that are kept for comparisons.
@@ -82,7 +83,7 @@ impl Places {
         remove_abandoned(&parent);
         let temporary = make_private(&parent)?;
         *TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner) = Some(temporary.clone());
-        Ok(Self { out, temporary, pictures: AtomicU64::new(1) })
+        Ok(Self { out, temporary, pictures: AtomicU64::new(1), passing: AtomicU64::new(1) })
     }
 
     /// A number and a path for a new picture. An old one goes.
@@ -101,10 +102,10 @@ impl Places {
 
     /// A path for a file that the caller removes.
     pub fn passing(&self, ending: &str) -> PathBuf {
-        self.temporary.join(format!("p{}.{ending}", self.pictures.fetch_add(1, Ordering::SeqCst)))
+        self.temporary.join(format!("p{}.{ending}", self.passing.fetch_add(1, Ordering::SeqCst)))
     }
 
-    /// The path of a file in the output folder.
+    /// The path of a file in the output folder, which need not be there.
     ///
     /// # Errors
     /// There is no output folder; as [`below`].

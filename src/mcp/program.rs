@@ -12,6 +12,8 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use serde_json::{Map, Value, json};
 
+/// Most bytes of a command. The program would skip a longer one, and answer it without its number.
+const MOST_BYTES: usize = 4 << 20;
 /// How long the end waits for the process to end.
 const FAREWELL: Duration = Duration::from_secs(5);
 
@@ -159,6 +161,10 @@ impl Program {
 
     /// Sends a line whose answer goes to `sender`.
     fn send(&self, line: Value, (number, sender, call): (u64, Sender<Outcome>, &Arc<Call>)) -> Result<(), Failure> {
+        let line = line.to_string();
+        if line.len() > MOST_BYTES {
+            return Err(Failure::new(format!("this is longer than {MOST_BYTES} bytes")));
+        }
         let mut link = lock(&self.link);
         if link.as_ref().is_none_or(|link| lock(&link.commands).end.is_some()) {
             *link = None;
@@ -170,7 +176,7 @@ impl Program {
             return Err(Failure::new(end.clone()));
         }
         commands.open.insert(number, (sender, call.clone()));
-        let _ = link.lines.send(line.to_string());
+        let _ = link.lines.send(line);
         Ok(())
     }
 

@@ -7,12 +7,13 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::{Map, Value, json};
 
-use super::message::{self, INVALID_REQUEST, Incoming, METHOD_NOT_FOUND, Refused};
+use super::message::{self, INTERNAL_ERROR, INVALID_REQUEST, Incoming, METHOD_NOT_FOUND, Refused};
 use super::places::Places;
 use super::program::{Call, Connection, Program};
 use super::shared::{Shared, lock};
 use super::transport::{Batch, Outgoing, Target, next};
 use super::{resources, tools};
+use crate::message::catch_panic;
 
 /// Revisions of the protocol that this server speaks, the newest last.
 const VERSIONS: [&str; 4] = ["2024-11-05", "2025-03-26", "2025-06-18", "2025-11-25"];
@@ -42,7 +43,13 @@ pub struct Config {
 pub fn serve(config: Config, mut input: impl BufRead, output: impl Write + Send + 'static) -> io::Result<()> {
     let places = Places::new(config.out)?;
     let (outgoing, written) = Outgoing::new(output)?;
-    let shared = Arc::new(Shared { program: Program::new(config.connection), places, calls: Mutex::default() });
+    let shared = Arc::new(Shared {
+        program: Program::new(config.connection),
+        places,
+        calls: Mutex::default(),
+        seen: Mutex::default(),
+        checking: Mutex::default(),
+    });
     let mut server = Server { shared: shared.clone(), outgoing, version: None, threads: Vec::new() };
     while let Some(line) = next(&mut input) {
         match line {
@@ -162,7 +169,10 @@ impl Server {
         let (shared, to) = (self.shared.clone(), target.clone());
         let answer_of = id.clone();
         let run = move || {
-            let answered = work(&shared, &call);
+            let answered = catch_panic(|| work(&shared, &call)).unwrap_or_else(|panic| {
+                let message = format!("this is a mistake of Specula: {panic}");
+                Some(Err(Refused { code: INTERNAL_ERROR, message }))
+            });
             // A canceled call is not there any more, or its place is that of a later one.
             let mut calls = lock(&shared.calls);
             let is_open = calls.get(&answer_of.to_string()).is_some_and(|open| Arc::ptr_eq(open, &call));

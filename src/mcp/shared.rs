@@ -12,6 +12,11 @@ pub struct Shared {
     pub places: Places,
     /// By the text of their id.
     pub calls: Mutex<HashMap<String, Arc<Call>>>,
+    /// The texts of files as the agent has last seen or written them. Locked while an edit is under way, so that no other one begins with the
+    /// text before it.
+    pub seen: Mutex<HashMap<String, String>>,
+    /// Locked while the picture is checked, which changes a setting meanwhile.
+    pub checking: Mutex<()>,
 }
 
 /// Locks a value, also after a panic of another thread.

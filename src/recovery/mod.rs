@@ -250,6 +250,16 @@ pub struct GoodTexts {
 }
 
 impl GoodTexts {
+    /// The texts that differ from those of the built-in shaders, in whose place they were drawn.
+    pub fn over_built_in(&self) -> BTreeMap<TreePath, Arc<str>> {
+        let built_in = Source::embedded();
+        let text = |(name, text): (&String, &String)| {
+            let path = TreePath::parse(name)?;
+            (built_in.read(&path).ok().as_ref() != Some(text)).then(|| (path, Arc::from(text.as_str())))
+        };
+        self.texts.iter().filter_map(text).collect()
+    }
+
     /// The texts that were recorded in a session's folder. Before the first frame, the embedded texts count as good for every
     /// tree.
     pub fn read(folder: &Path, tree: Option<&Path>) -> Self {

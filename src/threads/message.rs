@@ -31,6 +31,16 @@ use crate::write_back::{TreeFile, Written};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NoDialog;
 
+/// Files of the tree that were written.
+pub(crate) struct TextsWritten {
+    /// The files.
+    pub(crate) files: Vec<PathBuf>,
+    /// The step of undo that they are; none if they are an undo themselves.
+    pub(crate) step: Option<Written>,
+    /// A message for the user.
+    pub(crate) told: Option<String>,
+}
+
 /// Messages of the threads to the window.
 pub(crate) enum Message {
     Worker(WorkerMessage),
@@ -56,8 +66,9 @@ pub(crate) enum Message {
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
     TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
-    /// A text that a program has sent was written to a file of the tree, or the reason why not, by the number of the request.
-    TextWritten(u64, TreeFile, Result<Written, String>),
+    /// Files of the tree have other texts, which a program has sent or an undo brings back, or the reason why not, by the number of the
+    /// request.
+    TextWritten(u64, Result<TextsWritten, String>),
     /// The curves of a pixel's material.
     Curves(Box<MeasuredCurves>),
     /// The first statement that computes NaN or infinity at the inspected pixel, for the request with this number.
@@ -146,6 +157,8 @@ pub(crate) enum TaskKind {
     ImageScaling(u64),
     /// Makes the pipelines of outlines and pictures of textures.
     ToolPipelines,
+    /// Writes texts to files of the shader tree.
+    Writer,
     /// Waits for what is outside of Specula, or compares pictures.
     External,
 }

@@ -35,6 +35,7 @@
 //!   compared with. Files to compare with are read and scaled by a thread each. Commands from outside have a thread for
 //!   each input and each client. Two threads wait for other programs: the user's editor, whose failure they report, and
 //!   the file dialog.
+//! - **The writer** writes the texts that programs send to files of the shader tree, and takes them back.
 //! - **The panel Scene** has a thread make the rows of a model with many nodes (`later.rs`), and says that they are coming until it asks and they are
 //!   there.
 //! - **Watchers** only send paths, under the names that they were given.
@@ -58,6 +59,7 @@ pub(crate) mod second_tree;
 pub(crate) mod timekeeper;
 pub(crate) mod tracer;
 pub(crate) mod worker;
+pub(crate) mod writer;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -81,8 +83,9 @@ use operation_checker::OperationChecker;
 use timekeeper::Timekeeper;
 use tracer::Tracer;
 use worker::Worker;
+use writer::Writer;
 
-pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind};
+pub(crate) use message::{Message, MessageSender, NoDialog, TaskKind, TextsWritten};
 pub(crate) use results::{
     BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMessage, Traced, TracedPlace, WorkerMessage,
 };
@@ -132,6 +135,7 @@ pub(crate) struct Threads {
     pub(crate) tracer: Tracer,
     /// Traces for other programs.
     pub(crate) guest_tracer: Tracer,
+    pub(crate) writer: Writer,
     gpu: Arc<Gpu>,
     /// Threads that hold device objects: they look for the line of a loop, make the pipelines of tools, scale or compare pictures, or
     /// compile a second shader tree.
@@ -166,6 +170,7 @@ impl Threads {
             timekeeper: Timekeeper::new(device.0, sender),
             tracer: Tracer::new(device.0, sender, TaskKind::PixelTracer, Message::Traced),
             guest_tracer: Tracer::new(device.0, sender, TaskKind::GuestTracer, Message::GuestTraced),
+            writer: Writer::new(sender),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturer: None,

@@ -82,6 +82,16 @@ async def edits(client, tree):
     assert "float a2 = alpha;" in (tree / ndf).read_text(encoding="utf-8")
     assert "compile" in text_of(await call(client, "check"))
     await call(client, "edit_shader", file=ndf, old="a2 = alpha;", new="a2 = alpha * alpha;")
+    # Edits at the same time keep each other; the whole of a file is written only over what the agent has seen.
+    lines = [{"file": ndf, "old": "#endif", "new": f"// {n}\n#endif"} for n in range(3)]
+    await asyncio.gather(*(call(client, "edit_shader", **line) for line in lines))
+    text = (tree / ndf).read_text(encoding="utf-8")
+    assert all(f"// {n}\n" in text for n in range(3)), text
+    (tree / ndf).write_text(text + "// of the user\n", encoding="utf-8")
+    await refused(client, "edit_shader", "read it again", file=ndf, text="// of the agent\n")
+    await call(client, "read_shader", file=ndf)
+    await call(client, "edit_shader", file=ndf, text=text)
+    await call(client, "read_shader", file=ndf, first=2**63, last=2**64 - 1)
     # Where an agent may not write.
     outside = tree.parent / "outside.glsl"
     (tree / "link.glsl").symlink_to(outside)
@@ -109,16 +119,17 @@ async def measures(client, out):
     await refused(client, "probe", "outside", x=960, y=27, modes=["d"])
     saved = text_of(await call(client, "render", mode="d", save="a/d.exr"))
     assert f"Wrote {out}/a/d.exr" in saved and (out / "a/d.exr").stat().st_size > 0, saved
-    assert "Replaced" in text_of(await call(client, "render", mode="d", save="a/d.exr"))
+    await refused(client, "render", "stays as it is", mode="d", save="a/d.exr")
     await call(client, "render", save="final.png")
     assert "equal" in text_of(await call(client, "diff", a="final.png", b="final.png"))
     await refused(client, "open", ".toml", look=str(out / "final.png"))
     elsewhere = out.parent / "elsewhere.png"
     (out / "link.png").symlink_to(elsewhere)
-    for name in ("../elsewhere.png", str(elsewhere), "link.png", "a.txt"):
+    for name in ("../elsewhere.png", str(elsewhere), "link.png", "b/a.txt"):
         result = await client.call_tool("render", {"save": name})
         assert result.is_error, name
-    assert not elsewhere.exists()
+    assert not elsewhere.exists() and not (out / "b").exists()
+    await refused(client, "edit_shader", "bytes", file="long.glsl", text="//" + 5_000_000 * "x")
 
 
 async def cancels(client):

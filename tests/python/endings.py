@@ -83,6 +83,17 @@ def main():
         assert error.code == 2 and "nonsense" in str(error), error
     else:
         raise AssertionError("a wrong option was taken")
+    # A file that is no model: no picture, until another one is opened.
+    Path("bad.glb").write_text("x")
+    with specula.Session("bad.glb", env="none", size=(64, 36)) as session:
+        try:
+            session.render()
+        except specula.CommandError as error:
+            assert "bad.glb" in str(error) and "glTF" in str(error), error
+        else:
+            raise AssertionError("a picture without its model was drawn")
+        session.open(model="sphere-grid")
+        assert session.render()[..., 3].max() == 255
     try:
         specula.Session(program="/nowhere/specula")
     except specula.ProgramNotFound as error:
@@ -97,9 +108,10 @@ def main():
             try:
                 session.render()
             except specula.ProcessError:
+                session.close()
                 os._exit(0)
             os._exit(1)
-        assert os.wait()[1] == 0
+        assert os.wait()[1] == 0 and folder.exists()
         assert session.render().shape == (36, 64, 4)
     assert not any(is_there(process) for process in processes) and not folder.exists()
 

@@ -123,6 +123,12 @@ def edits(s):
     s.edit("brdf/ndf.glsl", text.replace("float a2 = alpha * alpha;", "float a2 = alpha;"))
     assert not np.array_equal(s.render(), before)
     assert s.check() == []
+    try:
+        s.edit("long.glsl", "//" + 5_000_000 * "x")
+    except ValueError as error:
+        assert "bytes" in str(error)
+    else:
+        raise AssertionError("a line that the program skips was sent")
     s.edit("brdf/ndf.glsl", None)
     assert s.read("brdf/ndf.glsl") == text and np.array_equal(s.render(), before)
 

@@ -30,6 +30,8 @@ _File = Union[IO[bytes], socket.SocketIO]
 _PATIENCE_S = 5.0
 """How long the process may take to end by itself."""
 _STDERR_LINES = 40
+_MOST_BYTES = 4 << 20
+"""Of a command."""
 
 
 class _Pending:
@@ -129,6 +131,10 @@ class Channel:
                 self._pending[number] = pending
             self._send({**fields, "id": number, "command": command})
             pending.done.wait()
+        except ValueError:
+            with self._lock:
+                self._pending.pop(number, None)
+            raise
         except BaseException:
             self._abandon(number, pending)
             raise
@@ -136,7 +142,11 @@ class Channel:
 
     def _send(self, line: Dict[str, Any]) -> None:
         # NaN is no JSON.
-        self._lines.put(json.dumps(line, allow_nan=False).encode() + b"\n")
+        text = json.dumps(line, allow_nan=False, ensure_ascii=False).encode("utf-8", "replace")
+        if len(text) > _MOST_BYTES:
+            # The program would skip it, and answer it without its number.
+            raise ValueError(f"`{line['command']}` has {len(text):,} bytes, more than {_MOST_BYTES:,}")
+        self._lines.put(text + b"\n")
 
     def _abandon(self, number: int, pending: _Pending) -> None:
         with self._lock:

@@ -35,6 +35,7 @@ class Scratch:
         self._folder: Optional[Path] = None
         self._lock: Optional[int] = None
         self._mutex = threading.Lock()
+        self._owner = os.getpid()
         self._numbers = itertools.count(1)
 
     def path(self, ending: str) -> Path:
@@ -57,7 +58,9 @@ class Scratch:
             return self._folder
 
     def remove(self) -> None:
-        """Removes the folder with all that is in it."""
+        """Removes the folder with all that is in it. A fork of the process leaves it."""
+        if os.getpid() != self._owner:
+            return
         with self._mutex:
             folder, self._folder = self._folder, None
             if folder is not None:

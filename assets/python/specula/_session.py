@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import threading
 import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union, cast
@@ -62,6 +63,7 @@ class Session:
         self._size: Optional[Size] = (size[0], size[1])
         self._program = ""
         self._modes: Dict[str, Mode] = {}
+        self._checking = threading.Lock()
         if isinstance(window, str):
             if model is not None or shaders is not None or env is not None or device is not None or options:
                 raise ValueError("a window that is joined has its model, shaders, environment and device; change them with open() and set()")
@@ -217,13 +219,15 @@ class Session:
 
         Returns what failed or was printed, with ``file``, ``line``, ``message``, ``count`` and ``first`` (the first pixel).
         """
-        before = self.get("view.checks")
-        self.set("view.checks", "undefined" if undefined else "assertions")
-        try:
-            found: List[Dict[str, Any]] = self.command("checks")
-        finally:
-            self.set("view.checks", before)
-        return found
+        # The kind is a setting, which another thread's checks would change.
+        with self._checking:
+            before = self.get("view.checks")
+            try:
+                self.set("view.checks", "undefined" if undefined else "assertions")
+                found: List[Dict[str, Any]] = self.command("checks")
+            finally:
+                self.set("view.checks", before)
+            return found
 
     # Values
 

@@ -167,6 +167,7 @@ pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written
             // The file has the dragged numbers now, so nothing is compiled.
             if state.edits.draft.is_some() {
                 state.versions.keep_draft();
+                state.traces.drafted = None;
             }
             end_draft(state, engine);
             state.say(text);
@@ -176,16 +177,6 @@ pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written
             state.say(message);
         }
     }
-}
-
-/// Writes files back as they were before a step that wrote them, or with `again` as they were after it, on a thread of its own.
-pub(in crate::app) fn take_back(engine: &Engine, written: Arc<Written>, again: bool) {
-    engine.threads.wait(move || {
-        let done = if again { "Wrote" } else { "Took back the edit of" };
-        Some(Message::Say(
-            written.take_back(again).map_or_else(|message| message, |()| format!("{done} {}", written.names())),
-        ))
-    });
 }
 
 /// Summarizes the written edits in one line.

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::shader::{Change, StageKind, TreePath};
-use crate::threads::Message;
+use crate::threads::{Message, TextsWritten};
 use crate::write_back::{TreeFile, Written, write_whole};
 
 /// What becomes of a text.
@@ -50,21 +50,41 @@ pub(in crate::app) fn write_text(
         let text = text.ok_or(
             "`text` is missing: the tree is on disk, and its files have only the text that is written to them",
         )?;
-        let number = state.texts_sent + 1;
-        state.texts_sent = number;
-        engine.threads.wait(move || {
+        let number = state.text_writes.begin();
+        engine.threads.writer.write(move || {
             let written = write_whole(&file, &text);
-            Some(Message::TextWritten(number, file, written))
+            let done = |written| TextsWritten {
+                files: vec![file.root.join(file.path.as_str())],
+                step: Some(written),
+                told: None,
+            };
+            Message::TextWritten(number, written.map(done))
         });
         return Ok(Outcome::Writing(number));
     }
     if let Some(file) = state.source.location() {
         return Err(format!("the shader is a single file: write {} itself, and the picture follows", file.display()));
     }
-    let source = state.source.with_text(path.clone(), text);
+    state.text_writes.put_over(path.clone(), text);
+    let source = state.text_writes.over(state.source.clone());
     state.source = source.clone();
     engine.threads.worker.read_from(source, BTreeSet::from([path]));
     Ok(Outcome::Compiling)
+}
+
+/// Writes files back as they were before a step that wrote them, or with `again` as they were after it. Returns the number of the message.
+pub(in crate::app) fn take_back(state: &mut State, engine: &mut Engine, written: Arc<Written>, again: bool) -> u64 {
+    let number = state.text_writes.begin();
+    engine.threads.writer.write(move || {
+        let done = if again { "Wrote" } else { "Took back the edit of" };
+        let taken = written.take_back(again).map(|()| TextsWritten {
+            files: written.files(),
+            step: None,
+            told: Some(format!("{done} {}", written.names())),
+        });
+        Message::TextWritten(number, taken)
+    });
+    number
 }
 
 /// Takes the result of writing. The worker is told at once, so that the command waits for the picture of this text.
@@ -72,16 +92,22 @@ pub(in crate::app) fn on_text_written(
     state: &mut State,
     engine: &mut Engine,
     number: u64,
-    (file, written): (&TreeFile, Result<Written, String>),
+    written: Result<TextsWritten, String>,
 ) {
+    state.text_writes.end(number);
     match written {
-        Ok(written) => {
-            state.history.record_files(&state.session.shared_settings(), written);
-            if state.source.root() == Some(&file.root) {
-                engine.threads.worker.change(Change::Paths(BTreeSet::from([file.path.clone()])), Instant::now());
+        Ok(TextsWritten { files, step, told }) => {
+            step.into_iter().for_each(|step| state.history.record_files(&state.session.shared_settings(), step));
+            let changed: BTreeSet<TreePath> = files.iter().flat_map(|file| state.source.changed(file)).collect();
+            if !changed.is_empty() {
+                engine.threads.worker.change(Change::Paths(changed), Instant::now());
             }
             state.waiting.text_written(number, Ok(()));
+            told.into_iter().for_each(|told| state.say(told));
         }
-        Err(message) => state.waiting.text_written(number, Err(&message)),
+        Err(message) => {
+            state.waiting.text_written(number, Err(&message));
+            state.say(message);
+        }
     }
 }

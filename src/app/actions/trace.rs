@@ -55,6 +55,9 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     let request = request_of(state, engine, &subject.picture, subject.at, place);
     let with_before = before.is_some();
     let number = engine.threads.tracer.trace(request, before);
+    if state.edits.draft.is_some() {
+        state.traces.drafted = Some(subject.picture.shaders.generation);
+    }
     state.traces.ask(subject, number, with_before);
     None
 }

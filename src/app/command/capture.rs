@@ -149,8 +149,13 @@ pub(in crate::app) static CANCEL: Spec<Option<Value>> = Spec::new("cancel", |sta
         state.cancel_captures();
         Ok(Until::CapturesEnded)
     }
-    Some(id) if state.waiting.cancel_of(&id) || state.captures.cancel_of(&id) => Ok(Until::DONE),
-    Some(id) => Err(format!("no command with the id {id} can be canceled: it has ended, or it ends soon")),
+    Some(id) => {
+        let key = (state.asking, id);
+        if state.waiting.cancel_of(&key) || state.captures.cancel_of(&key) {
+            return Ok(Until::DONE);
+        }
+        Err(format!("no command with the id {} can be canceled: it has ended, or it ends soon", key.1))
+    }
 })
 .parsed(
     r#""of"?: id"#,
@@ -182,12 +187,7 @@ fn render(state: &mut State, _: &mut Engine, Picture { file, format, raw, size, 
         modes_of(&state.session, std::slice::from_ref(mode))?;
     }
     let to = Destination { file: Some(file), encoding: Some(encoding), since: Instant::now() };
-    let size = size.map(<(u32, u32)>::from).filter(|size| state.shown().is_none_or(|shown| shown.size != *size));
-    let mode = mode.filter(|mode| *mode != state.session.settings.mode);
-    Ok(match (size, mode) {
-        (None, None) => Until::Rendered(to),
-        (size, mode) => Until::Picture(Job::Picture { to, size, mode, frames: 1 }),
-    })
+    Ok(Until::Rendered(to, size.map(Into::into), mode))
 }
 
 /// Whether the names of all modes are known.

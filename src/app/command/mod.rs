@@ -61,6 +61,7 @@ pub(super) fn on_asked(state: &mut State, engine: &mut Engine, Asked { command, 
         let hint = did_you_mean(&command, described().map(|known| known.command));
         Err(format!("there is no command `{command}`.{hint} `commands` lists them all"))
     });
+    state.asking = reply.key().0;
     let outcome: Outcome = parsed.and_then(|command| command.run(state, engine));
     answer_when(state, engine, reply, outcome);
     watch_files(state, engine);

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::captures::begin_capture;
 use crate::app::engine::Engine;
-use crate::app::frames::progress::is_settled;
+use crate::app::frames::progress::{is_compiling, is_settled};
 use crate::app::state::State;
 use crate::app::state::waiting::{self, Shot, Work};
 use crate::control::Reply;
@@ -70,6 +70,9 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
     let settled = is_settled(state, engine);
     for (reply, until) in state.waiting.take() {
         match until {
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) if lacks_model(state) => {
+                reply.error(state.model.failure.clone().unwrap_or_default());
+            }
             Until::Settled(result) if settled => reply.done(result(state)),
             Until::Compared(result) if settled && state.compare.is_drawn() => reply.done(result(state)),
             Until::Found(result) => match result(state) {
@@ -78,7 +81,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                 None => state.waiting.push(reply, Until::Found(result)),
             },
             Until::Picture(job) if settled => begin_capture(state, engine, reply, job),
-            Until::Reloaded if settled || (state.has_errors() && !engine.threads.worker.is_compiling()) => {
+            Until::Reloaded if settled || (state.has_errors() && !is_compiling(state, engine)) => {
                 match state.has_errors() {
                     true => without_picture(state, reply),
                     false => reply.done(json!({ "generation": state.shown_generation() })),
@@ -89,7 +92,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
                 true => state.waiting.push(reply, Until::SHOWN),
                 false => reply.error(format!("{} was not loaded", path.display())),
             },
-            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_)
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(..) | Until::Window(_)
                 if never_shows(state, engine) =>
             {
                 without_picture(state, reply);
@@ -118,7 +121,7 @@ pub(in crate::app) fn has_unanswered(state: &State, engine: &Engine) -> bool {
 
 /// The pictures of the screen that can be taken now: its frame is final.
 pub(in crate::app) fn take_shots(state: &mut State, engine: &Engine) -> Vec<Shot> {
-    if !is_settled(state, engine) {
+    if !is_settled(state, engine) || lacks_model(state) {
         return Vec::new();
     }
     std::iter::from_fn(|| state.waiting.take_shot()).collect()
@@ -129,9 +132,14 @@ pub(in crate::app) fn wants_window(state: &State, engine: &Engine) -> bool {
     is_settled(state, engine) && state.waiting.wants_window()
 }
 
+/// Whether the model of a session without a window could not be loaded. A program would take an empty picture for the model's; a user sees why.
+fn lacks_model(state: &State) -> bool {
+    !state.has_window && state.model.failure.is_some() && !state.model.loading
+}
+
 /// Whether there are no shaders, and an edit is needed before there are.
 fn never_shows(state: &State, engine: &Engine) -> bool {
-    state.session.shaders.is_none() && !engine.threads.worker.is_compiling() && state.has_errors()
+    state.session.shaders.is_none() && !is_compiling(state, engine) && state.has_errors()
 }
 
 /// Answers with the errors of the shaders.

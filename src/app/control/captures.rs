@@ -91,7 +91,7 @@ impl Job {
 
 /// Draws on the thread of captures.
 pub(in crate::app) fn begin_capture(state: &mut State, engine: &mut Engine, reply: Reply, job: Job) {
-    let (number, canceled) = match state.captures.begin(job.title(), reply.id()) {
+    let (number, canceled) = match state.captures.begin(job.title(), reply.key()) {
         Ok(begun) => begun,
         Err(message) => return reply.error(message),
     };

@@ -83,10 +83,14 @@ pub(super) fn take_shots(
         return Ok(());
     }
     for shot in control::take_shots(state, engine) {
-        if shot.is_rendered && !is_rendered(state, screen, frame, shot.to.holds_light()) {
-            let job = Job::Picture { to: shot.to, size: None, mode: None, frames: 1 };
-            control::begin_capture(state, engine, shot.reply, job);
-            continue;
+        if let Some((size, mode)) = &shot.rendered {
+            let is_same = size.is_none_or(|size| size == frame.state.size)
+                && mode.as_ref().is_none_or(|mode| *mode == state.session.settings.mode);
+            if !is_same || !is_rendered(state, screen, frame, shot.to.holds_light()) {
+                let job = Job::Picture { to: shot.to, size: *size, mode: mode.clone(), frames: 1 };
+                control::begin_capture(state, engine, shot.reply, job);
+                continue;
+            }
         }
         match read_picture(state, engine, screen, frame) {
             Ok(Some(readback)) => control::write_shot(state, engine, shot, readback),

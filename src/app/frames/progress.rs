@@ -18,7 +18,12 @@ pub(in crate::app) fn moves(state: &State) -> bool {
 
 /// Whether an edit is being compiled, or has not been drawn. Whatever else there is to draw waits for it.
 pub(in crate::app) fn awaits_edit(state: &State, engine: &Engine) -> bool {
-    engine.threads.worker.is_compiling() || state.times_next_frame()
+    is_compiling(state, engine) || state.times_next_frame()
+}
+
+/// Whether an edit is being compiled, or written before.
+pub(in crate::app) fn is_compiling(state: &State, engine: &Engine) -> bool {
+    engine.threads.worker.is_compiling() || state.text_writes.are_under_way()
 }
 
 /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began, and took the

@@ -63,6 +63,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             }
             state.model.path = loaded.path;
             state.model.load_ms = loaded.ms;
+            state.model.failure = None;
             state.model.files = model.files.as_slice().into();
             state.session.set_model(model);
             engine.resources.set_model(&uploaded);
@@ -83,6 +84,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
                 state.recent.forget(Kind::Model, path);
             }
             state.waiting.model_failed(&message);
+            state.model.failure = state.session.model().is_none().then(|| message.clone());
             state.say(message);
             // The load that failed has ended the one that was decoding the textures of the model on screen.
             if state.model.awaits.take().is_some_and(|number| number != loaded.number) {

@@ -55,7 +55,8 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
             state.shader.location = source.location().map(Into::into);
             arrange_for(state, source.is_toy());
             engine.threads.follow_tree(&source);
-            state.source = source;
+            // Newer texts may have been put over the built-in shaders since.
+            state.source = state.text_writes.over(source);
             remember_tree(state, &reload.outcome);
             on_reload(state, engine, &reload, detect_ms);
         }
@@ -77,7 +78,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::TracedBefore(number, before) => state.traces.take_before(number, before.map(|before| *before)),
         Message::TracedAround(number, around) => state.traces.around.take(number, *around),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
-        Message::TextWritten(number, file, written) => on_text_written(state, engine, number, (&file, written)),
+        Message::TextWritten(number, written) => on_text_written(state, engine, number, written),
         Message::SourceText(path, text) => state.traces.saved.take(path, text),
         Message::Say(text) => state.say(text),
         Message::Tools(Ok(tools)) => engine.tools.made = Some(tools),

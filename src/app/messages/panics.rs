@@ -88,6 +88,12 @@ pub(in crate::app) fn on_panic(state: &mut State, engine: &mut Engine, task: Tas
             on_picture_fits(state, engine, number, Err("the picture could not be scaled".to_owned()));
             "scaling"
         }
+        TaskKind::Writer => {
+            for number in state.text_writes.end_all() {
+                state.waiting.text_written(number, Err("writing the file failed"));
+            }
+            "writing"
+        }
         TaskKind::External => {
             (state.choosing, state.compare.measuring) = (None, None);
             "waiting"

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use serde_json::Value;
-
 use crate::capture::Turn;
+use crate::control::Key;
 use crate::picture::{Encoding, holds_light};
 
 /// Most captures that are drawn or wait. Each keeps the images of its picture on the device.
@@ -63,8 +62,8 @@ impl Job {
 pub(in crate::app) struct Running {
     pub(in crate::app) number: u64,
     pub(in crate::app) title: &'static str,
-    /// The identifier of the command in its line; null without one.
-    id: Value,
+    /// Whose it is, and the identifier of its command.
+    key: Key,
     /// Pictures that are done, and of how many; 0 while that is not known.
     pub(in crate::app) done: u64,
     pub(in crate::app) of: u64,
@@ -91,20 +90,13 @@ pub(in crate::app) struct Captures {
 
 impl Captures {
     /// Adds a capture. Returns its number and what cancels it.
-    pub(in crate::app) fn begin(&mut self, title: &'static str, id: &Value) -> Result<(u64, Arc<AtomicBool>), String> {
+    pub(in crate::app) fn begin(&mut self, title: &'static str, key: Key) -> Result<(u64, Arc<AtomicBool>), String> {
         if self.running.len() >= MOST {
             return Err(format!("{MOST} captures are waiting already; send this one again when one of them has ended"));
         }
         self.last += 1;
         let canceled = Arc::new(AtomicBool::new(false));
-        self.running.push(Running {
-            number: self.last,
-            title,
-            id: id.clone(),
-            done: 0,
-            of: 0,
-            canceled: canceled.clone(),
-        });
+        self.running.push(Running { number: self.last, title, key, done: 0, of: 0, canceled: canceled.clone() });
         Ok((self.last, canceled))
     }
 
@@ -121,9 +113,9 @@ impl Captures {
         self.running.iter().filter(|running| running.number == number).for_each(Running::cancel);
     }
 
-    /// Ends the capture of the command with this identifier. Returns whether there is one.
-    pub(in crate::app) fn cancel_of(&self, id: &Value) -> bool {
-        let found = self.running.iter().filter(|running| running.id == *id);
+    /// Ends the capture of the command with this identifier. Returns whether there is one that goes on.
+    pub(in crate::app) fn cancel_of(&self, key: &Key) -> bool {
+        let found = self.running.iter().filter(|running| running.key == *key && !running.is_canceled());
         found.map(Running::cancel).count() > 0
     }
 
@@ -147,14 +139,16 @@ impl Captures {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
 
     #[test]
     fn a_capture_is_refused_while_too_many_wait() {
         let mut captures = Captures::default();
-        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture", &Value::Null).unwrap().0).collect();
-        assert!(captures.begin("Picture", &Value::Null).unwrap_err().contains("64 captures are waiting"));
+        let begun: Vec<u64> = (0..MOST).map(|_| captures.begin("Picture", (0, Value::Null)).unwrap().0).collect();
+        assert!(captures.begin("Picture", (0, Value::Null)).unwrap_err().contains("64 captures are waiting"));
         captures.ended(begun[0]);
-        assert!(captures.begin("Picture", &Value::Null).is_ok());
+        assert!(captures.begin("Picture", (0, Value::Null)).is_ok());
     }
 }

@@ -27,6 +27,7 @@ mod resting;
 pub(super) mod selection;
 pub(super) mod shaders;
 mod shown_version;
+pub(super) mod text_writes;
 pub(super) mod timing;
 pub(super) mod trace;
 pub(super) mod waiting;
@@ -76,6 +77,7 @@ use shaders::edits::{Edits, Texts};
 use shaders::stages::StageTable;
 use shaders::status::ShaderStatus;
 use shaders::versions::Versions;
+use text_writes::TextWrites;
 use timing::Timing;
 use trace::Traces;
 use waiting::Waiting;
@@ -113,6 +115,8 @@ pub(super) struct State {
     /// Commands that are not done yet.
     pub(super) waiting: Waiting<Self>,
     pub(super) captures: Captures,
+    /// The number of the client whose command is being carried out.
+    pub(super) asking: u64,
     /// The start of the program.
     pub(super) start: Instant,
     /// The time of animated shaders.
@@ -155,8 +159,7 @@ pub(super) struct State {
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) edits: Edits,
-    /// How many texts programs have sent for files of the tree.
-    pub(super) texts_sent: u64,
+    pub(super) text_writes: TextWrites,
     /// The times of the last frames.
     pub(super) timing: Timing,
     /// The stages of the shaders on screen.
@@ -209,6 +212,7 @@ impl State {
             events: Clients::default(),
             waiting: Waiting::default(),
             captures: Captures::default(),
+            asking: 0,
             start: Instant::now(),
             playback: Playback::default(),
             history: History::default(),
@@ -232,7 +236,7 @@ impl State {
             watched: WatchedFiles::default(),
             load_options: LoadOptions::default(),
             versions: Versions::default(),
-            texts_sent: 0,
+            text_writes: TextWrites::default(),
             timing: Timing::default(),
             stages: StageTable::default(),
             first_frame: None,

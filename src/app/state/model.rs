@@ -20,6 +20,8 @@ pub(in crate::app) struct ModelStatus {
     /// The models beside the one that is being loaded, which the settings get with it. `None`: those of the settings.
     pub(in crate::app) added: Option<Vec<AddedModel>>,
     pub(in crate::app) load_ms: f64,
+    /// Why there is no model: the first one could not be loaded.
+    pub(in crate::app) failure: Option<String>,
     /// Whether the warnings of the model are shown over the picture.
     pub(in crate::app) shows_warnings: bool,
     /// Whether the camera keeps its position when another model finishes loading.

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::captures::{Destination, Job};
-use crate::control::Reply;
+use crate::control::{Key, Reply};
 
 /// The answer to a command that another one has ended.
-const CANCELED: &str = "canceled";
+pub(in crate::app) const CANCELED: &str = "canceled";
 
 /// Looks for a result in the state of the window.
 type Find<S> = Box<dyn Fn(&S) -> Option<Result<Value, String>>>;
@@ -47,8 +47,8 @@ pub(in crate::app) enum Until<S> {
     Work(Work),
     /// Once the final picture is written as it is on screen.
     Screen(Destination),
-    /// Once the final picture is written as a command renders it.
-    Rendered(Destination),
+    /// Once the final picture is written as a command renders it, at this size and in this mode if they are given.
+    Rendered(Destination, Option<(u32, u32)>, Option<String>),
     /// Once the window with its panels is written.
     Window(Option<PathBuf>),
     /// The same for a picture that a thread draws.
@@ -66,7 +66,7 @@ impl<S> Until<S> {
     pub(in crate::app) const SHOWN: Self = Self::Settled(|_| Value::Null);
 
     pub(in crate::app) fn is_capture(&self) -> bool {
-        matches!(self, Self::Screen(_) | Self::Rendered(_) | Self::Window(_) | Self::Picture(_))
+        matches!(self, Self::Screen(_) | Self::Rendered(..) | Self::Window(_) | Self::Picture(_))
     }
 }
 
@@ -74,8 +74,8 @@ impl<S> Until<S> {
 pub(in crate::app) struct Shot {
     pub(in crate::app) reply: Reply,
     pub(in crate::app) to: Destination,
-    /// Whether it is to be the picture that a command renders, even if that on screen is another one.
-    pub(in crate::app) is_rendered: bool,
+    /// The size and the mode, if it is to be the picture that a command renders, even if that on screen is another one.
+    pub(in crate::app) rendered: Option<(Option<(u32, u32)>, Option<String>)>,
 }
 
 /// A picture of the window that is asked for, and where it goes.
@@ -114,7 +114,7 @@ impl<S> Waiting<S> {
     /// Whether a command waits for nothing but another frame. Messages wake the window for all others.
     pub(in crate::app) fn needs_frame(&self) -> bool {
         let needs_frame = |until: &Until<S>| {
-            matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_))
+            matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(..) | Until::Window(_))
         };
         self.list.iter().any(|(_, until)| needs_frame(until))
     }
@@ -124,7 +124,7 @@ impl<S> Waiting<S> {
         let waits = |until: &Until<S>| {
             let waits_for_more =
                 matches!(until, Until::Reloaded | Until::Compared(_) | Until::Picture(_) | Until::Found(_));
-            let waits = matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(_) | Until::Window(_));
+            let waits = matches!(until, Until::Settled(_) | Until::Screen(_) | Until::Rendered(..) | Until::Window(_));
             waits_for_more || waits
         };
         self.list.iter().any(|(_, until)| waits(until)) || self.copying.is_some()
@@ -229,8 +229,8 @@ impl<S> Waiting<S> {
     }
 
     /// Answers the command with this identifier that it is canceled. Returns whether it waits.
-    pub(in crate::app) fn cancel_of(&mut self, id: &Value) -> bool {
-        let found = self.list.iter().position(|(reply, _)| reply.id() == id);
+    pub(in crate::app) fn cancel_of(&mut self, key: &Key) -> bool {
+        let found = self.list.iter().position(|(reply, _)| reply.key() == *key);
         found.map(|index| self.list.remove(index).0.error(CANCELED)).is_some()
     }
 
@@ -247,9 +247,9 @@ impl<S> Waiting<S> {
 
     /// Removes the first picture of the screen that is asked for.
     pub(in crate::app) fn take_shot(&mut self) -> Option<Shot> {
-        match self.take_first(|until| matches!(until, Until::Screen(_) | Until::Rendered(_)))? {
-            (reply, Until::Screen(to)) => Some(Shot { reply, to, is_rendered: false }),
-            (reply, Until::Rendered(to)) => Some(Shot { reply, to, is_rendered: true }),
+        match self.take_first(|until| matches!(until, Until::Screen(_) | Until::Rendered(..)))? {
+            (reply, Until::Screen(to)) => Some(Shot { reply, to, rendered: None }),
+            (reply, Until::Rendered(to, size, mode)) => Some(Shot { reply, to, rendered: Some((size, mode)) }),
             _ => None,
         }
     }

@@ -3,6 +3,7 @@
 mod end_of_input;
 pub mod supervisor;
 
+use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -167,8 +168,12 @@ fn open(args: Args, start: Instant, folder: Option<PathBuf>, front: Front) -> Re
     // The size of the last window, unless one was given.
     let last = if has_window && args.common.size.is_none() { app::last_size() } else { None };
     let added = work.settings.added_files();
+    // Texts in memory are in the record alone.
+    let has_texts = state.loss.is_some() && source.location().is_none() && good.tree.is_none();
+    let texts = if has_texts { good.over_built_in() } else { BTreeMap::new() };
     let options = AppOptions {
         source,
+        texts,
         compiler: compiler()?,
         model: work.model,
         // After a loss the settings are those of the session.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use specula::control::remove_sockets;
+use specula::control::{MOST_BYTES, remove_sockets};
 use specula::message;
 use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
@@ -19,7 +19,7 @@ use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIA
 use crate::commands::Failure;
 
 /// Longer lines are forwarded in parts. The child refuses them anyway.
-const LONGEST_LINE: u64 = 1 << 21;
+const LONGEST_LINE: u64 = MOST_BYTES as u64 + 1;
 
 /// Exit code of a process whose main thread has panicked.
 const PANICKED: i32 = 101;

@@ -15,14 +15,14 @@ pub static RENDER: Tool = Tool {
     name: "render",
     title: "Render a picture",
     doc: "Draws the model with the present shaders and settings, and shows you the picture (PNG). Its number in the answer is for `diff`. \
-        With `save` it is also written to the output folder.",
+        With `save` it is also written to a new file in the output folder.",
     effect: Effect::Changes,
     schema: || {
         let properties = json!({
             "mode": text_argument("Debug mode, such as `d` or `shading-normal` (`modes` lists them); without it, the one that is set: \
                 `final` at the start"),
             "size": size("Width and height in pixels; without it, the size in which `probe` and `trace` count pixels"),
-            "save": text_argument("File below the output folder: .png, or .exr or .npy for raw floats"),
+            "save": text_argument("New file below the output folder: .png, or .exr or .npy for raw floats"),
         });
         (properties, &[])
     },
@@ -67,34 +67,45 @@ fn render(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     if let Some([width, height]) = size.filter(|size| size.iter().any(|side| !(1..=LARGEST).contains(side))) {
         return Err(failed(format!("`size` is {width}x{height}; a side has 1 to {LARGEST} pixels")));
     }
-    let save = save.map(|name| caller.places().output(&name).map(|path| (name, path))).transpose().map_err(failed)?;
+    let save = save.map(|name| new_file(caller, &name)).transpose().map_err(failed)?;
     let (number, path) = caller.places().new_picture();
     let drawn = caller.ask("picture", &json!({ "file": path, "mode": mode, "size": size }))?;
     let mut said = format!("Picture {number}: {} x {} pixels", drawn["width"], drawn["height"]);
-    if let Some((name, file)) = save {
-        said += &save_as(caller, &name, &file, &path, &json!({ "mode": mode, "size": size }))?;
+    if let Some(file) = save {
+        save_as(caller, &file, &path, &json!({ "mode": mode, "size": size }))?;
+        said += &format!(". Wrote {}", file.display());
     }
     Ok(vec![text(said), image(&path)?])
 }
 
-/// Writes a picture to the output folder. Returns what to say.
-fn save_as(caller: &Caller<'_>, name: &str, file: &Path, png: &Path, fields: &Value) -> Result<String, Failure> {
+/// The path of a picture in the output folder that is not there yet.
+fn new_file(caller: &Caller<'_>, name: &str) -> Result<PathBuf, String> {
+    let file = caller.places().output(name)?;
+    if !["png", "exr", "npy"].iter().any(|ending| file.extension().is_some_and(|of| of == *ending)) {
+        return Err(format!("`save` is `{name}`; it ends in .png, .exr or .npy"));
+    }
+    match file.symlink_metadata().is_ok() {
+        true => Err(format!("{} is there already, and stays as it is; choose another name", file.display())),
+        false => Ok(file),
+    }
+}
+
+/// Writes a picture to the output folder.
+fn save_as(caller: &Caller<'_>, file: &Path, png: &Path, fields: &Value) -> Result<(), Failure> {
     let cannot = |error: std::io::Error| failed(format!("cannot write {}: {error}", file.display()));
-    let was_there = file.exists();
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(cannot)?;
     }
-    match file.extension().and_then(|ending| ending.to_str()) {
-        Some("png") => drop(std::fs::copy(png, file).map_err(cannot)?),
-        Some("exr" | "npy") => {
-            let mut fields = fields.clone();
-            (fields["file"], fields["raw"]) = (json!(file), true.into());
-            caller.ask("picture", &fields)?;
-        }
-        _ => return Err(failed(format!("`save` is `{name}`; it ends in .png, .exr or .npy"))),
+    if file.extension().is_some_and(|ending| ending == "png") {
+        let mut from = std::fs::File::open(png).map_err(cannot)?;
+        let mut to = std::fs::File::create_new(file).map_err(cannot)?;
+        std::io::copy(&mut from, &mut to).map_err(cannot)?;
+    } else {
+        let mut fields = fields.clone();
+        (fields["file"], fields["raw"]) = (json!(file), true.into());
+        caller.ask("picture", &fields)?;
     }
-    let what = if was_there { "Replaced" } else { "Wrote" };
-    Ok(format!(". {what} {}", file.display()))
+    Ok(())
 }
 
 /// A PNG as content.

@@ -10,7 +10,8 @@ use super::arguments::{flag, read, text as text_argument, whole};
 use super::tool::{Caller, Content, Effect, Tool, failed, text};
 use crate::mcp::diagnostics;
 use crate::mcp::places::of_tree;
-use crate::mcp::program::Failure;
+use crate::mcp::program::{Call, Failure};
+use crate::mcp::shared::lock;
 
 pub static READ_SHADER: Tool = Tool {
     name: "read_shader",
@@ -32,7 +33,7 @@ pub static EDIT_SHADER: Tool = Tool {
     name: "edit_shader",
     title: "Edit a shader",
     doc: "Changes a file of the shader tree, on disk, and compiles it. Give `old` and `new`: `old` must be in the file exactly once; or \
-        `text`, the whole file, which makes a new one as well. The answer shows what changed, or the compiler's messages with the line and \
+        `text`, the whole file, which makes a new one as well; an old one must have been read before. The answer shows what changed, or the compiler's messages with the line and \
         a caret; the picture then stays that of the last good shaders.",
     effect: Effect::Writes,
     schema: || {
@@ -81,8 +82,10 @@ fn read_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
         return Ok(vec![text(format!("Shader tree: {tree}\n{}", files.collect::<Vec<_>>().join("\n")))]);
     };
     let all = text_of(caller, &file)?;
+    lock(&caller.shared.seen).insert(file, all.clone());
     let first = first.unwrap_or(1).max(1);
-    let lines = all.lines().skip(first - 1).take(last.map_or(usize::MAX, |last| (last + 1).saturating_sub(first)));
+    let lines =
+        all.lines().skip(first - 1).take(last.map_or(usize::MAX, |last| last.saturating_add(1).saturating_sub(first)));
     Ok(vec![text(match (first, last) {
         (1, None) => all,
         _ => lines.collect::<Vec<_>>().join("\n"),
@@ -114,9 +117,19 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
             format!("{file} of the built-in shaders, in memory (start specula mcp with --shaders DIR to keep changes)")
         }
     };
+    // Until the answer, no other edit begins.
+    let mut seen = lock(&caller.shared.seen);
     let before = if is_there { Some(text_of(caller, &file)?) } else { None };
     let after = match (old, new, whole) {
-        (None, None, Some(whole)) => whole,
+        (None, None, Some(whole)) => {
+            // What the agent has not seen may be the user's work.
+            if before.is_some() && seen.get(&file) != before.as_ref() {
+                return Err(failed(format!(
+                    "{file} is not as you have last read it, so it stays as it is: read it again with read_shader"
+                )));
+            }
+            whole
+        }
         (Some(old), Some(new), None) => {
             let text = before.as_deref().ok_or_else(|| failed(format!("the tree has no file {file}")))?;
             match text.matches(&old).count() {
@@ -138,7 +151,10 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
         (true, false) => format!("Wrote {place}:\n{}", changes.trim_end()),
         (false, _) => format!("Made {place}."),
     };
-    match caller.ask("edit", &json!({ "file": file, "text": after })) {
+    let outcome = caller.ask("edit", &json!({ "file": file, "text": after }));
+    seen.insert(file, after);
+    drop(seen);
+    match outcome {
         Ok(_) => Ok(vec![text(format!("{said}\nIt compiles, and the picture shows it."))]),
         Err(Failure::Refused { diagnostics, .. }) if !diagnostics.is_empty() => Err(Failure::Refused {
             message: format!("{said}\nIt does not compile. The picture stays that of the last good shaders.\n"),
@@ -174,11 +190,14 @@ fn check(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
 
 /// Checks the picture, and leaves the setting as it was.
 fn checks_of_picture(caller: &Caller<'_>, undefined: bool) -> Result<String, Failure> {
+    let _one_at_a_time = lock(&caller.shared.checking);
     let before = caller.ask("get", &json!({ "path": "view.checks" }))?;
-    let set = |value: &Value| caller.ask("set", &json!({ "values": { "view.checks": value } }));
-    set(&json!(if undefined { "undefined" } else { "assertions" }))?;
-    let found = caller.ask("checks", &json!({}));
-    set(&before)?;
+    let kind = if undefined { "undefined" } else { "assertions" };
+    let found =
+        caller.ask("set", &json!({ "values": { "view.checks": kind } })).and_then(|_| caller.ask("checks", &json!({})));
+    // Also if the client has canceled the call, which asks nothing more.
+    let restored = json!({ "values": { "view.checks": before } });
+    caller.shared.program.ask(&Call::new(None), "set", &restored)?;
     let found = found?;
     let line = |check: &Value| {
         let field = |name: &str| check[name].as_str().unwrap_or_default();

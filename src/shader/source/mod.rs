@@ -163,17 +163,6 @@ impl Source {
         Self { editor: Some(Arc::new(texts)), ..self.clone() }
     }
 
-    /// The tree with the text of one more file that an editor has open, or without it.
-    #[must_use]
-    pub fn with_text(&self, path: TreePath, text: Option<Arc<str>>) -> Self {
-        let mut texts = self.editor.as_deref().cloned().unwrap_or_default();
-        match text {
-            Some(text) => drop(texts.insert(path, text)),
-            None => drop(texts.remove(&path)),
-        }
-        self.with_editor(texts)
-    }
-
     /// All files, sorted, with those that only an editor has. See [`Tree::list`].
     pub fn list(&self) -> Vec<TreePath> {
         let mut files = self.tree.list();

@@ -1,9 +1,11 @@
 //! The values of a file's statements at the pixels around one.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::calls::is_related;
 use super::{Act, Trace, TracedValue};
 
 /// Most pixels in a row and in a column.
@@ -12,8 +14,19 @@ pub const SIDE: u32 = 8;
 /// A statement of a file: its line, from 1, what it does, and the variable.
 type Statement = (u32, Act, String);
 
-/// The values of a file's statements at the fragments that are seen at a square of pixels. Of a statement that runs more than once, the
-/// last value counts.
+/// The values of a statement in order, each with the calls that led to it.
+type Values = Vec<(Arc<str>, TracedValue)>;
+
+/// Which value counts of a statement that runs more than once.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Which<'a> {
+    /// Only values of this call, of those that led to it, and of those that it makes.
+    pub call: Option<&'a str>,
+    /// The time, from 1; the last one without it.
+    pub time: Option<usize>,
+}
+
+/// The values of a file's statements at the fragments that are seen at a square of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighborhood {
     /// The upper left pixel of the square.
@@ -21,7 +34,7 @@ pub struct Neighborhood {
     /// Pixels in a row, and rows.
     pub size: (u32, u32),
     /// The values by pixels, row by row.
-    pixels: Vec<BTreeMap<Statement, TracedValue>>,
+    pixels: Vec<BTreeMap<Statement, Values>>,
 }
 
 impl Neighborhood {
@@ -44,17 +57,28 @@ impl Neighborhood {
     }
 
     /// The values of a statement, row by row; `None` where it does not run.
-    pub fn values(&self, line: u32, act: Act, name: &str) -> Vec<Option<TracedValue>> {
+    pub fn values(&self, line: u32, act: Act, name: &str, which: Which<'_>) -> Vec<Option<TracedValue>> {
         let statement = (line, act, name.to_owned());
-        self.pixels.iter().map(|pixel| pixel.get(&statement).copied()).collect()
+        let chosen = |values: &Values| {
+            let of_call = |(calls, _): &&(Arc<str>, TracedValue)| which.call.is_none_or(|call| is_related(calls, call));
+            let mut values = values.iter().filter(of_call).map(|(_, value)| *value);
+            match which.time {
+                Some(time) => values.nth(time.saturating_sub(1)),
+                None => values.last(),
+            }
+        };
+        self.pixels.iter().map(|pixel| pixel.get(&statement).and_then(chosen)).collect()
     }
 
-    /// All of it for programs: `values` of each statement, row by row.
+    /// All of it for programs: the last `values` of each statement, row by row.
     pub fn json(&self) -> Value {
         let statements: BTreeMap<&Statement, ()> =
             self.pixels.iter().flat_map(|pixel| pixel.keys().map(|statement| (statement, ()))).collect();
         let statement = |(line, act, name): &Statement| {
-            let values = self.values(*line, *act, name).into_iter().map(|value| value.map(|value| value.json()));
+            let values = self
+                .values(*line, *act, name, Which::default())
+                .into_iter()
+                .map(|value| value.map(|value| value.json()));
             json!({ "line": line, "act": act, "name": name, "values": values.collect::<Vec<_>>() })
         };
         let first = [self.first.0, self.first.1];
@@ -63,15 +87,18 @@ impl Neighborhood {
     }
 }
 
-/// The last value of each statement of a file at the fragment that is seen.
-fn values(trace: &Trace, file: &str) -> BTreeMap<Statement, TracedValue> {
-    let Some(fragment) = trace.visible() else { return BTreeMap::new() };
-    let events = trace.fragments[fragment].events.iter().filter(|event| event.doing.file == file);
-    let value = |event: &super::Event| {
+/// The values of each statement of a file at the fragment that is seen.
+fn values(trace: &Trace, file: &str) -> BTreeMap<Statement, Values> {
+    let mut all: BTreeMap<Statement, Values> = BTreeMap::new();
+    let fragment = trace.visible().map(|fragment| &trace.fragments[fragment]);
+    for event in fragment.into_iter().flat_map(|fragment| &fragment.events) {
         let doing = &event.doing;
-        Some(((doing.line, doing.act, doing.name.clone()), event.value?))
-    };
-    events.filter_map(value).collect()
+        if let (Some(value), true) = (event.value, doing.file == file) {
+            let statement = (doing.line, doing.act, doing.name.clone());
+            all.entry(statement).or_default().push((event.calls.clone(), value));
+        }
+    }
+    all
 }
 
 #[cfg(test)]
@@ -90,17 +117,24 @@ mod tests {
         };
         let inner = Neighborhood::new((20, 30), (64, 48), "a.glsl", of).unwrap();
         assert_eq!((inner.first, inner.size), ((16, 26), (8, 8)));
-        let values = inner.values(3, Act::Store, "i");
+        let values = inner.values(3, Act::Store, "i", Which::default());
         assert_eq!(values[4 * 8 + 4], Some(TracedValue::float(3020.0)), "the pixel itself");
         assert_eq!(values[0], Some(TracedValue::float(2616.0)));
-        assert!(inner.values(3, Act::Return, "i").iter().all(Option::is_none));
+        let first = inner.values(3, Act::Store, "i", Which { call: None, time: Some(1) });
+        assert_eq!(first[0], Some(TracedValue::float(0.0)));
+        let other = inner.values(3, Act::Store, "i", Which { call: Some("g"), time: None });
+        assert!(other.iter().all(Option::is_none), "the values are of the call f");
+        assert!(inner.values(3, Act::Return, "i", Which::default()).iter().all(Option::is_none));
         let corner = Neighborhood::new((63, 0), (64, 48), "a.glsl", of).unwrap();
         assert_eq!(corner.first, (56, 0));
-        let values = corner.values(3, Act::Store, "i");
+        let values = corner.values(3, Act::Store, "i", Which::default());
         assert_eq!((values[7], values[6]), (None, Some(TracedValue::float(62.0))));
         let json = corner.json();
         assert_eq!((&json["statements"][0]["line"], &json["statements"][0]["values"][6]), (&json!(3), &json!(62.0)));
         let small = Neighborhood::new((1, 1), (3, 2), "a.glsl", of).unwrap();
-        assert_eq!((small.first, small.size, small.values(3, Act::Store, "i").len()), ((0, 0), (3, 2), 6));
+        assert_eq!(
+            (small.first, small.size, small.values(3, Act::Store, "i", Which::default()).len()),
+            ((0, 0), (3, 2), 6)
+        );
     }
 }

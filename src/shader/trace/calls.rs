@@ -48,6 +48,12 @@ impl Calls {
     }
 }
 
+/// Whether a path of calls is another, leads to it, or begins with it.
+pub fn is_related(path: &str, other: &str) -> bool {
+    let leads = |a: &str, b: &str| a.is_empty() || b.strip_prefix(a).is_some_and(|rest| rest.starts_with(" > "));
+    path == other || leads(path, other) || leads(other, path)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,5 +75,22 @@ mod tests {
         assert_eq!(paths, ["shade > add_light > ndf", "shade > add_light [2] > ndf", "shade"]);
         (0..9).for_each(|_| calls.leave());
         assert_eq!(&*calls.path(), "");
+    }
+
+    #[test]
+    fn a_call_has_what_leads_to_it_and_what_it_makes() {
+        let chosen = "shade > add_light [2]";
+        for (path, is) in [
+            ("", true),
+            ("shade", true),
+            (chosen, true),
+            ("shade > add_light [2] > d_ggx", true),
+            ("shade > add_light", false),
+            ("shade > add_light [2", false),
+            ("shade > add_light [21]", false),
+            ("other", false),
+        ] {
+            assert_eq!(is_related(path, chosen), is, "{path}");
+        }
     }
 }

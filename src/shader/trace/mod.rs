@@ -27,9 +27,10 @@ use serde::Serialize;
 
 use super::spirv::trace::Purpose;
 use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
-pub use around::Neighborhood;
+pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 use calls::Calls;
+pub use calls::is_related;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use log::EXTENSIONS;

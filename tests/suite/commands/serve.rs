@@ -151,13 +151,26 @@ fn edits_show_at_once_and_mistakes_keep_the_picture() {
 
     // Undone, as in the window.
     served.running.done(json!({"command": "undo"}));
-    served.running.reload(true);
+    assert_eq!(served.tree.read(NDF), text);
+    assert!(served.running.refused(json!({"command": "pass", "name": "no-such-pass"})).contains("no-such-pass"));
+    // What follows an edit at once has it, and of two the last one stays.
+    let [first, second] = [LINE[1], LINE[0]].map(|line| text.replace(LINE[0], line));
+    served.running.say(&json!({"command": "edit", "file": NDF, "text": first}).to_string());
+    assert!(served.picture("a.npy", &json!({})) == edited, "the picture is from before the edit");
+    for text in [&first, &second, &first, &second] {
+        served.running.say(&json!({"command": "edit", "file": NDF, "text": text}).to_string());
+    }
+    assert!(served.picture("a.npy", &json!({})) == picture, "another edit than the last one is drawn");
     assert_eq!(served.tree.read(NDF), text);
     assert_eq!(served.running.done(json!({"command": "check"})), json!([]));
 
     // A new file, and a text that is there already.
     served.running.done(json!({"command": "edit", "file": "user/mine.glsl", "text": "float mine() { return 1.0; }\n"}));
     assert_eq!(served.tree.read("user/mine.glsl"), "float mine() { return 1.0; }\n");
+    served.running.done(json!({"command": "undo"}));
+    assert!(!served.tree.path("user/mine.glsl").exists(), "an undo leaves a file");
+    served.running.done(json!({"command": "redo"}));
+    assert!(served.tree.path("user/mine.glsl").exists());
     served.running.done(json!({"command": "edit", "file": NDF, "text": text}));
     let files = served.running.done(json!({"command": "files"}));
     assert_eq!(files["tree"].as_str(), served.tree.root().to_str());
@@ -199,6 +212,16 @@ fn the_built_in_shaders_are_edited_in_memory() {
     assert!(picture(&mut served) != first, "the edit changes nothing");
     let fresnel = served.running.done(json!({"command": "file", "file": "brdf/fresnel.glsl"}))["text"].clone();
     served.running.done(json!({"command": "edit", "file": "brdf/fresnel.glsl", "text": fresnel}));
+    assert_eq!(served.running.done(json!({"command": "file", "file": NDF}))["text"], json!(edited));
+    // Also when a text follows another at once, and in the process that follows a crash.
+    let edit = |file: &str, text: &str| json!({"command": "edit", "file": file, "text": text}).to_string();
+    served.running.say(&edit("user/a.glsl", "// a\n"));
+    served.running.say(&edit("user/b.glsl", "// b\n"));
+    let shown = picture(&mut served);
+    assert!(shown != first, "the edit is lost");
+    kill(&served.running.worker().to_string());
+    served.running.event("restarted");
+    assert!(picture(&mut served) == shown, "a crash takes the edit back");
     assert_eq!(served.running.done(json!({"command": "file", "file": NDF}))["text"], json!(edited));
     served.running.done(json!({"command": "edit", "file": NDF, "text": null}));
     assert!(picture(&mut served) == first, "the built-in text does not come back");
@@ -259,7 +282,13 @@ fn every_command_is_answered() {
 
 #[test]
 fn a_command_is_canceled_by_its_id() {
-    let mut served = Served::start(Tree::new(), &["sphere-grid"]);
+    // Before the shaders are there, too, whose names the others wait for.
+    let mut served = Served::with_fault(Tree::new(), &["sphere-grid"], "compile-delay-ms:1000");
+    served.running.say(r#"{"id": "early", "command": "picture", "file": "a.npy"}"#);
+    served.running.say(r#"{"id": "late", "command": "set", "values": {"no_such_name": 1}}"#);
+    served.running.done(json!({"command": "cancel", "of": "early"}));
+    let late = served.running.until("the answer", |event| event["id"] == "late");
+    assert!(late["message"].as_str().unwrap().contains("no_such_name"), "{late}");
     served.running.say(r#"{"id": "slow", "command": "turntable", "file": "a.gif", "frames": 5000}"#);
     served.running.until("progress", |event| event["event"] == "progress" && event["done"] != 0);
     served.running.done(json!({"command": "cancel", "of": "slow"}));
@@ -328,6 +357,12 @@ fn a_reader_that_has_gone_ends_the_session() {
     assert!(left.is_empty(), "{left:?}");
 }
 
+/// Kills a process.
+#[track_caller]
+fn kill(process: &str) {
+    assert!(Command::new("kill").args(["-s", "KILL", process]).status().unwrap().success());
+}
+
 #[test]
 fn a_loss_costs_the_open_commands_alone() {
     let mut served = Served::with_fault(Tree::new(), &["sphere-grid"], "by-name:1");
@@ -335,8 +370,7 @@ fn a_loss_costs_the_open_commands_alone() {
     let picture = served.picture("a.npy", &json!({}));
 
     // Somebody kills the process that draws.
-    let worker = served.running.worker().to_string();
-    assert!(Command::new("kill").args(["-s", "KILL", &worker]).status().unwrap().success());
+    kill(&served.running.worker().to_string());
     let event = served.running.event("restarted");
     assert!(event["cause"].as_str().unwrap().contains("killed"), "{event}");
     assert!(served.picture("a.npy", &json!({})) == picture, "the picture did not come back");
@@ -389,4 +423,16 @@ fn a_wrong_start_is_told() {
     start(&["nothing.glb"]).expect(1, &["nothing.glb"]);
     start(&["--size", "100000x64"]).expect(2, &["--size 100000x64", "draws 1 to"]);
     start(&["--device", "abacus"]).expect(3, &["abacus"]);
+}
+
+#[test]
+fn there_is_no_picture_without_the_model_that_was_asked_for() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("bad.glb"), "glTF").unwrap();
+    let mut served = Served::start(tree, &["bad.glb"]);
+    let why = served.running.refused(json!({"command": "picture", "file": "a.npy"}));
+    assert!(why.contains("bad.glb"), "{why}");
+    served.running.done(json!({"command": "open", "model": "sphere-grid"}));
+    served.picture("a.npy", &json!({}));
+    served.quit();
 }

@@ -15,7 +15,7 @@ const ESCAPE: &str = "\u{e00c}";
 /// Whether a page has loaded nothing but what is in its file, and its scripts have no error.
 fn is_self_contained(browser: &Browser) -> bool {
     let script = "return performance.getEntriesByType('resource').map(entry => entry.name).filter(name => !name.startsWith('data:'));";
-    browser.run(script) == json!([])
+    browser.run(script) == json!([]) && browser.log() == json!([])
 }
 
 #[test]

@@ -39,7 +39,8 @@ impl Browser {
         let profile = format!("--user-data-dir={}", browser._home.path().join("profile").display());
         let window = format!("--window-size={width},{height}");
         let args = ["--headless", "--no-sandbox", "--disable-gpu", "--force-device-scale-factor=1", &profile, &window];
-        let options = json!({ "capabilities": { "alwaysMatch": { "goog:chromeOptions": { "args": args } } } });
+        let always = json!({ "goog:chromeOptions": { "args": args }, "goog:loggingPrefs": { "browser": "ALL" } });
+        let options = json!({ "capabilities": { "alwaysMatch": always } });
         browser.session = browser.ask("POST", "/session", &options)["sessionId"].as_str().unwrap().to_owned();
         browser.command("url", &json!({ "url": format!("file://{}", page.display()) }));
         browser
@@ -86,6 +87,11 @@ impl Browser {
     pub fn press(&self, key: &str) {
         let steps = [json!({ "type": "keyDown", "value": key }), json!({ "type": "keyUp", "value": key })];
         self.command("actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": steps }] }));
+    }
+
+    /// What the page has logged since the last call: errors of scripts, and what its security policy has refused.
+    pub fn log(&self) -> Value {
+        self.command("se/log", &json!({ "type": "browser" }))
     }
 
     /// Left, top, width and height of an element, in pixels of the window.

@@ -46,7 +46,9 @@ fn a_loss_costs_nothing_but_the_text_that_caused_it() {
         viewer.key("u");
         viewer.drag((60, 200), (120, 160));
         viewer.display.park_mouse();
-        viewer.until("roughness, halved and turned", |shot| *shot != fresh);
+        // The mode has no colors, and the picture before it has.
+        let is_gray = |shot: &image::RgbaImage| shot.pixels().all(|pixel| pixel[0].abs_diff(pixel[2]) < 16);
+        viewer.until("roughness, halved and turned", |shot| *shot != fresh && is_gray(shot));
         let (before, geometry) = (viewer.screenshot(), viewer.geometry());
 
         viewer.tree.write(USER, &edited(&original, function, 0.25));

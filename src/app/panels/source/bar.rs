@@ -15,13 +15,16 @@ const ONE: f32 = 0.6;
 const DECADES: f64 = 4.0;
 
 /// The explanation, for the hover text of a value.
-pub(super) const LEGEND: &str = "Bar: size of the last value, 0 to 1 up to the tick, then logarithmic up to 10,000; negative numbers in another color";
+pub(super) const LEGEND: &str = "Bar: size of the largest value, 0 to 1 up to the tick, then logarithmic up to 10,000; negative numbers in another color";
 
-/// The value that the bar of a note shows: the last one, if it has a size.
+/// The value that the bar of a note shows: the largest one, if it has a size.
 pub(super) fn value(note: &Note) -> Option<TracedValue> {
     let has_size = matches!(note.done.act, Act::Store | Act::Argument | Act::Return);
-    let last = note.done.last.last().or(note.done.first.last())?.value?;
-    (has_size && !last.is_truth()).then_some(last)
+    let size = |value: &TracedValue| {
+        value.numbers().fold(0.0_f64, |most, n| if n.is_nan() { f64::INFINITY } else { most.max(n.abs()) })
+    };
+    let values = note.done.values().filter(|value| has_size && !value.is_truth());
+    values.max_by(|a, b| size(a).total_cmp(&size(b)))
 }
 
 /// The share of the width for a number, whatever its sign.

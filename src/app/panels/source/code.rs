@@ -53,13 +53,19 @@ pub(super) fn show(
         let above = (ui.available_height() / 3.0).min(6.0 * ROW);
         area = area.vertical_scroll_offset((ROW * model.shown_at(line) as f32 - above).max(0.0));
     }
+    if let Some(line) = scroll.take_top() {
+        area = area.vertical_scroll_offset(ROW * model.shown_at(line) as f32);
+    }
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing, vec2(0.0, 0.0));
     area.show_rows(ui, ROW, model.shown.len(), |ui, range| {
         ui.set_min_width(width.max(ui.available_width()));
         scroll.first = model.line_at(range.start);
         for shown in &model.shown[range] {
             match show_row(ui, (state, path), model, shown, (&look, find, drag), commands) {
-                Some(Clicked::Edit(line)) => editor.begin(path, text, line),
+                Some(Clicked::Edit(line)) => {
+                    editor.begin(path, text, line);
+                    scroll.keep();
+                }
                 Some(Clicked::Fold(name)) => folds.toggle(path, &name),
                 None => {}
             }

@@ -198,6 +198,9 @@ impl Editor {
         if let Some(line) = scroll.take() {
             area = area.vertical_scroll_offset((ROW * line as f32 - ui.available_height() / 3.0).max(0.0));
         }
+        if let Some(line) = scroll.take_top() {
+            area = area.vertical_scroll_offset(ROW * line as f32);
+        }
         let room = vec2(look.width(model.longest), ROW * (model.lines.len() + 2) as f32).max(ui.available_size());
         area.show_viewport(ui, |ui, viewport| {
             let whole = Rect::from_min_size(ui.max_rect().min, room);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{ComboBox, RichText, ScrollArea, Ui};
+use egui::{ComboBox, Label, PopupCloseBehavior, RichText, ScrollArea, Ui};
 
 use super::edit::Editor;
 use super::fold::Folds;
@@ -19,6 +19,7 @@ use crate::app::state::shaders::edits::NO_FOLDER;
 use crate::app::state::trace::choice::{Choice, calls, most_times};
 use crate::app::state::trace::{PixelTrace, Progress};
 use crate::app::widgets::plural;
+use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, icon, small_mono};
 use crate::shader::trace::{Trace, TraceableStage};
@@ -40,26 +41,30 @@ pub(super) fn show(
     commands: &mut Commands,
 ) {
     let newest = state.traces.newest();
-    ui.horizontal_wrapped(|ui| {
+    // Two rows whose buttons stay where they are, whatever is told behind them.
+    ui.horizontal(|ui| {
         files(ui, state, shaders, model, newest.map(|newest| &**newest), commands);
         if let Some(newest) = newest.filter(|newest| newest.stages.len() > 1) {
             stages(ui, newest, commands);
         }
-        pixel(ui, state, commands);
-        progress(ui, state, newest.map(|newest| &**newest));
-        changes(ui, state, model, scroll);
-        let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
-        if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
-            choices(ui, &state.traces.choice, trace, fragment, commands);
-        }
-        edit(ui, state, model, (editor, scroll), commands);
         if !model.path().is_some_and(|path| editor.has(path)) {
             folds.menu(ui, model);
         }
         open_in_editor(ui, state, model, commands);
+        edit(ui, state, model, (editor, scroll), commands);
         if let Some(draft) = &state.edits.draft {
             show_draft(ui, state, draft, true, &mut commands.list);
         }
+    });
+    let is_unsaved = model.path().is_some_and(|path| editor.is_unsaved(path));
+    ui.horizontal(|ui| {
+        pixel(ui, state, commands);
+        let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
+        if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
+            choices(ui, &state.traces.choice, trace, fragment, commands);
+        }
+        changes(ui, state, model, scroll);
+        progress(ui, state, newest.map(|newest| &**newest), is_unsaved);
     });
     ui.add_space(2.0);
 }
@@ -77,13 +82,23 @@ fn files(
     let of_stage: Vec<TreePath> =
         newest.map(|of| of.files.iter().map(|file| TreePath::from(file.as_str())).collect()).unwrap_or_default();
     let list = ComboBox::from_id_salt("file").selected_text(small_mono(shown)).width(FILES).height(MENU).truncate();
-    let list = list.show_ui(ui, |ui| {
+    let id = ui.id().with("search of files");
+    let list = list.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show_ui(ui, |ui| {
+        let mut typed: String = ui.data(|data| data.get_temp(id).unwrap_or_default());
+        search::field(ui, &mut typed, "files", 0.0);
+        let words = Words::new(&typed);
+        ui.data_mut(|data| data.insert_temp(id, typed));
         ScrollArea::vertical().max_height(MENU).show(ui, |ui| {
             let mut file = |ui: &mut Ui, path: &TreePath, is_strong: bool| {
+                if !words.are_in(path.as_str()) {
+                    return;
+                }
                 let text = small_mono(path.as_str());
                 let text = if is_strong { text } else { text.color(QUIET) };
                 if ui.selectable_label(path.as_str() == shown, text).clicked() {
                     commands.push(SHOW_FILE.with(path.clone()));
+                    ui.data_mut(|data| data.remove_temp::<String>(id));
+                    ui.close();
                 }
             };
             if let Some(newest) = newest.filter(|_| !of_stage.is_empty()) {
@@ -143,15 +158,21 @@ fn pixel(ui: &mut Ui, state: &State, commands: &mut Commands) {
 }
 
 /// How far the trace is, and whether its color is the picture's.
-fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>) {
-    let quiet = |ui: &mut Ui, text: &str| drop(ui.label(RichText::new(text).small().color(QUIET)));
+/// `is_unsaved`: the shown text is not the one that was traced.
+fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved: bool) {
+    let quiet = |ui: &mut Ui, text: &str| {
+        drop(ui.add(Label::new(RichText::new(text).small().color(QUIET)).truncate()));
+    };
+    if is_unsaved {
+        return quiet(ui, "values of the saved text");
+    }
     match (state.traces.progress, newest) {
         // Nothing that moves: frames of a software device would hold the trace up.
         (Progress::UnderWay(_), _) => quiet(ui, "Tracing…"),
         (Progress::Outside, _) => quiet(ui, "outside of the picture"),
         (Progress::Waits, _) if state.inspection.is_pinned() => quiet(ui, "Waiting for the final picture…"),
         (Progress::Done, Some(PixelTrace { trace: Err(message), .. })) => {
-            ui.label(RichText::new(message).small().color(WARNING));
+            ui.add(Label::new(RichText::new(message).small().color(WARNING)).truncate()).on_hover_text(message);
         }
         (Progress::Done, Some(PixelTrace { trace: Ok(trace), .. })) => {
             let Some(fragment) = state.traces.fragment() else {
@@ -160,7 +181,8 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>) {
             let text = trace.proof_text(fragment);
             let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
             let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
-            ui.label(RichText::new(format!("{mark}{text}")).small().color(color)).on_hover_text(hint);
+            let text = RichText::new(format!("{mark}{text}")).small().color(color);
+            ui.add(Label::new(text).truncate()).on_hover_text(hint);
         }
         _ => {}
     }
@@ -190,7 +212,7 @@ fn edit(
     ui: &mut Ui,
     state: &State,
     model: &CodeModel,
-    (editor, scroll): (&mut Editor, &Scroll),
+    (editor, scroll): (&mut Editor, &mut Scroll),
     commands: &mut Commands,
 ) {
     let Some((path, text)) = model.path().zip(model.text()) else { return };
@@ -201,6 +223,7 @@ fn edit(
         let why_not = if state.has_folder() { of_other } else { NO_FOLDER };
         if button.on_hover_text(hint).on_disabled_hover_text(why_not).clicked() {
             editor.begin(path, text, scroll.first);
+            scroll.keep();
         }
         return;
     }
@@ -216,6 +239,7 @@ fn edit(
     };
     if ui.small_button(name).on_hover_text(hint).clicked() {
         editor.end(path);
+        scroll.keep();
     }
     if is_unsaved {
         ui.label(RichText::new("not saved").small().color(WARNING));

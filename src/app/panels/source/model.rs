@@ -8,7 +8,7 @@ use super::functions::{Fold, Function, functions};
 use crate::app::state::State;
 use crate::app::state::trace::PixelTrace;
 use crate::app::state::trace::choice::Choice;
-use crate::app::state::trace::rows::{Reach, Row};
+use crate::app::state::trace::rows::{Note, Reach, Row};
 use crate::shader::rewrite::literals_by_line;
 use crate::shader::trace::Act;
 use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
@@ -203,7 +203,9 @@ fn fold(lines: &mut [CodeLine], function: &Function, is_folded: bool) {
     first.fold = Some(Fold { name: function.name.clone(), hidden });
     if is_folded {
         let returns = body.iter().flat_map(|line| &line.row.notes).filter(|note| note.done.act == Act::Return);
-        first.row.notes.extend(returns.cloned());
+        // In front, where there is room for sure.
+        let returns: Vec<Note> = returns.cloned().collect();
+        first.row.notes.splice(0..0, returns);
         first.row.is_first_change |= body.iter().any(|line| line.row.is_first_change);
         let is_reached = body.iter().any(|line| line.row.reach == Reach::Reached);
         let is_missed = body.iter().any(|line| line.row.reach == Reach::Missed);

@@ -22,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, line: &CodeLine, note: &Note) {
         }
         Some(Err(message)) => drop(ui.label(RichText::new(message).small().color(QUIET))),
         Some(Ok(around)) => {
-            let values = around.values(traced, note.done.act, &note.done.name);
+            let values = around.values(traced, note.done.act, &note.done.name, state.traces.choice.which());
             if values.iter().any(Option::is_some) {
                 picture(ui, around, newest.of.at, &values);
             }

@@ -288,6 +288,7 @@ fn values(
         commands.sight.around |= response.hovered() && bar.is_some();
         if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
             watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
+            commands.settings.expression.evaluation = evaluation(state, path, line, note);
         }
         let response = if expression.is_some() { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
         response.on_hover_ui(|ui| hover::show(ui, state, (path, line), note, expression.as_deref()));
@@ -307,6 +308,13 @@ fn cover(ui: &Ui, area: Rect, background: Option<Color32>) {
         painter.rect_filled(part, 0.0, PANEL.color().gamma_multiply(opacity));
         background.into_iter().for_each(|color| _ = painter.rect_filled(part, 0.0, color.gamma_multiply(opacity)));
     }
+}
+
+/// The number of the evaluation that a value is of, where the user has chosen a call or a time.
+fn evaluation(state: &State, path: &TreePath, line: &CodeLine, note: &Note) -> u32 {
+    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
+    let place = trace.zip(line.row.traced);
+    place.map_or(0, |(trace, line)| state.traces.choice.evaluation(trace, path.as_str(), line, &note.done))
 }
 
 /// The expression that shows a value over the model.

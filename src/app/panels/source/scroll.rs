@@ -5,6 +5,8 @@
 pub(super) struct Scroll {
     /// The line to bring into sight.
     to: Option<usize>,
+    /// The line to bring to the upper end.
+    top: Option<usize>,
     /// The first line in sight, by its index.
     pub(super) first: usize,
     /// The file whose lines were shown, and whether with values.
@@ -21,6 +23,16 @@ impl Scroll {
     /// The same, unless another line was asked for.
     pub(super) fn offer(&mut self, line: usize) {
         self.to = self.to.or(Some(line));
+    }
+
+    /// Keeps the lines in sight where they are, while rows come or go.
+    pub(super) fn keep(&mut self) {
+        self.top = Some(self.first);
+    }
+
+    /// The line to bring to the upper end.
+    pub(super) fn take_top(&mut self) -> Option<usize> {
+        self.top.take()
     }
 
     /// The line to bring into sight.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::shader::trace::{Doing, LineOfTrace, Trace};
+use crate::shader::trace::{Doing, Done, LineOfTrace, Trace, Which, is_related};
 
 /// The choice among what happened at a pixel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -47,10 +47,28 @@ impl Choice {
     }
 }
 
-/// Whether a path of calls is another, leads to it, or begins with it.
-pub(super) fn is_related(path: &str, other: &str) -> bool {
-    let leads = |a: &str, b: &str| a.is_empty() || b.strip_prefix(a).is_some_and(|rest| rest.starts_with(" > "));
-    path == other || leads(path, other) || leads(other, path)
+impl Choice {
+    /// Which of the values of a statement counts at any pixel, as long as it has the chosen call.
+    pub(in crate::app) fn which(&self) -> Which<'_> {
+        Which { call: self.call.as_deref(), time: self.time }
+    }
+
+    /// The number of the evaluation, from 1, whose value is shown last for a statement of a line. 0 without a choice: the last one counts.
+    pub(in crate::app) fn evaluation(&self, trace: &Trace, file: &str, line: u32, done: &Done) -> u32 {
+        let Some(fragment) = self.fragment_of(trace) else { return 0 };
+        let call = self.call_of(trace, fragment);
+        if call.is_none() && self.time.is_none() {
+            return 0;
+        }
+        let is_it = |doing: &Doing| {
+            doing.file == file && doing.line == line && (doing.act, &doing.name) == (done.act, &done.name)
+        };
+        let events = trace.fragments[fragment].events.iter().filter(|event| is_it(&event.doing));
+        let chosen = (1..).zip(events).filter(|(_, event)| call.is_none_or(|call| is_related(&event.calls, call)));
+        let numbers: Vec<u32> = chosen.map(|(number, _)| number).collect();
+        let at = self.time.map_or(numbers.len(), |time| time.min(numbers.len()));
+        at.checked_sub(1).map_or(0, |at| numbers[at])
+    }
 }
 
 /// The paths of calls in a fragment, in their order.
@@ -68,26 +86,4 @@ pub(in crate::app) fn calls(trace: &Trace, fragment: usize) -> Vec<Arc<str>> {
 pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace) -> usize {
     let all = Choice { time: None, ..choice.clone() };
     all.lines(trace).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_call_has_what_leads_to_it_and_what_it_makes() {
-        let chosen = "shade > add_light [2]";
-        for (path, is) in [
-            ("", true),
-            ("shade", true),
-            (chosen, true),
-            ("shade > add_light [2] > d_ggx", true),
-            ("shade > add_light", false),
-            ("shade > add_light [2", false),
-            ("shade > add_light [21]", false),
-            ("other", false),
-        ] {
-            assert_eq!(is_related(path, chosen), is, "{path}");
-        }
-    }
 }

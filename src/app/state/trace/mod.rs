@@ -74,6 +74,8 @@ pub(in crate::app) struct Traces {
     newest: Option<Arc<PixelTrace>>,
     /// The trace of the version before, at the same pixel of the same picture.
     before: Option<Arc<PixelTrace>>,
+    /// The generation of shaders with dragged numbers that are in no file. They are no version before another.
+    pub(in crate::app) drafted: Option<u64>,
     /// Whether the thread has still to answer about the version before.
     awaits_before: bool,
     pub(in crate::app) around: Around,
@@ -193,7 +195,8 @@ impl Traces {
                 && (newest.stage.is_empty() || old.stage == newest.stage)
                 && !old.of.picture.has_same_texts(&newest.of.picture)
         };
-        let last = self.newest.take().filter(fits);
+        let is_draft = |of: &Arc<PixelTrace>| Some(of.of.picture.shaders.generation) == self.drafted;
+        let last = self.newest.take().filter(|last| fits(last) && !is_draft(last));
         self.before = last.or(self.before.take().filter(fits));
         self.newest = Some(Arc::new(newest));
         true

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::choice::{Choice, is_related};
+use super::choice::Choice;
 use crate::shader::expression::lines_before;
-use crate::shader::trace::{Act, Done, LineOfTrace, Trace};
+use crate::shader::trace::{Act, Done, LineOfTrace, Trace, is_related};
 
 /// A trace and the text of its file.
 pub(in crate::app) struct Side<'a> {
