@@ -70,7 +70,7 @@ pub(in crate::app) fn answer(state: &mut State, engine: &mut Engine) {
     let settled = is_settled(state, engine);
     for (reply, until) in state.waiting.take() {
         match until {
-            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(_) if lacks_model(state) => {
+            Until::Settled(_) | Until::Picture(_) | Until::Screen(_) | Until::Rendered(..) if lacks_model(state) => {
                 reply.error(state.model.failure.clone().unwrap_or_default());
             }
             Until::Settled(result) if settled => reply.done(result(state)),
