@@ -86,7 +86,6 @@ impl CostMeter {
         let (whole, base) = run.bound(None)?;
         let base_report = run.report(&whole, &state)?;
         let passes = passes_of(&state, &path);
-        let [stage_ms, frame_ms] = run.typical_ms(&base, &passes)?;
         let (mut measured, mut left_out) = (Vec::new(), Vec::new());
         let is_measured = |at: &usize| calls.get(at).is_some_and(|calls| calls.calls > 0);
         let count = wanted.iter().filter(|at| is_measured(at)).count();
@@ -115,6 +114,8 @@ impl CostMeter {
                 None => left_out.push((function, Lack::Endless)),
             }
         }
+        // A device is slower while it wakes up.
+        let [stage_ms, frame_ms] = run.typical_ms(&base, &passes)?;
         measured.sort_by(|a, b| b.ms().total_cmp(&a.ms()));
         Ok(StageCosts { stage: path, stage_ms, frame_ms, invocations, functions: measured, left_out })
     }
