@@ -64,7 +64,7 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), AppErro
     loop {
         messages.try_iter().for_each(|message| take(state, engine, &mut early, message));
         if knows_names(state, engine) {
-            early.drain(..).for_each(|asked| on_message(state, engine, Message::Asked(asked)));
+            early.drain(..).for_each(|asked| on_message(state, engine, Message::Asked(Box::new(asked))));
         }
         if state.quit || state.quits_by_hand {
             return Ok(());
@@ -91,7 +91,7 @@ fn run(session: &mut Ending, messages: &Receiver<Message>) -> Result<(), AppErro
 }
 
 /// Takes a message. Commands wait in `early` for the first shaders, whose names they may use; but not those that end something.
-fn take(state: &mut State, engine: &mut Engine, early: &mut Vec<Box<Asked>>, message: Message) {
+fn take(state: &mut State, engine: &mut Engine, early: &mut Vec<Asked>, message: Message) {
     match message {
         Message::Asked(asked) if asked.command == "cancel" => match canceled(early, &asked) {
             Some(command) => {
@@ -101,14 +101,14 @@ fn take(state: &mut State, engine: &mut Engine, early: &mut Vec<Box<Asked>>, mes
             None => on_message(state, engine, Message::Asked(asked)),
         },
         Message::Asked(asked) if asked.command != "quit" && (!early.is_empty() || !knows_names(state, engine)) => {
-            early.push(asked);
+            early.push(*asked);
         }
         message => on_message(state, engine, message),
     }
 }
 
 /// Removes the early command that another one cancels.
-fn canceled(early: &mut Vec<Box<Asked>>, cancel: &Asked) -> Option<Box<Asked>> {
+fn canceled(early: &mut Vec<Asked>, cancel: &Asked) -> Option<Asked> {
     let key = (cancel.reply.key().0, cancel.fields.get("of")?.clone());
     let found = early.iter().position(|asked| asked.reply.key() == key)?;
     Some(early.remove(found))

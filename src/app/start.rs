@@ -48,7 +48,7 @@ pub(super) fn start(
         events: early.events,
         start: options.start,
         recent: if has_window { Recent::restored() } else { Recent::default() },
-        last_sessions: has_window.then(|| LastSessions::restored(location.as_deref())).unwrap_or_default(),
+        last_sessions: if has_window { LastSessions::restored(location.as_deref()) } else { LastSessions::default() },
         hint: if has_window { Hint::restored() } else { Hint::default() },
         learning: if has_window { Learning::restored() } else { Learning::default() },
         follows_lights: options.follows_lights,

@@ -1,13 +1,14 @@
 //! `specula lsp`: a language server for editors.
 
-use std::io::BufReader;
+use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 use specula::control::socket_path;
 use specula::gpu::{Gpu, GpuOptions};
 use specula::headless::Headless;
-use specula::lsp::{Config, OpenTree, serve, text_of};
+use specula::lsp::{Config, OpenTree, OpenWindow, serve, text_of};
 use specula::pipeline::DiskPipelines;
 use specula::shader::Compiler;
 
@@ -47,13 +48,45 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     limits::check()?;
     let socket = args.socket.as_deref().map(socket_path).transpose().map_err(Failure::Usage)?;
     let compiler = compiler()?;
+    let open_window = window_opener(args.models.model.clone(), args.socket.clone());
     let (size, open) = (args.common.size(), opening(args, compiler.clone()));
-    let config = Config { open, size, socket };
+    let config = Config { open, size, socket, open_window };
     match serve(config, compiler, BufReader::new(std::io::stdin()), std::io::stdout()) {
         Ok(true) => Ok(()),
         Ok(false) => Err(Failure::Printed),
         Err(error) => Err(Failure::Device(format!("cannot start the language server: {error}"))),
     }
+}
+
+/// Opens windows with the model of the command line, on a socket on which the server finds them. They stay when the server ends.
+fn window_opener(model: Option<PathBuf>, socket: Option<PathBuf>) -> OpenWindow {
+    let socket = socket.unwrap_or_else(|| format!("lsp-{}", std::process::id()).into());
+    Arc::new(move |root| {
+        let program = std::env::current_exe().map_err(|error| format!("the program is not found: {error}"))?;
+        let mut command = Command::new(program);
+        command.arg("view").args(&model).arg("--shaders").arg(root).arg("--socket").arg(&socket);
+        command.args(["--events", "json"]).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // The editor's Ctrl+C is not the window's.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let cannot = |error: std::io::Error| format!("the window does not start: {error}");
+        let mut child = command.spawn().map_err(cannot)?;
+        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+        let mut events = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines()).map_while(Result::ok);
+        let is_open = events.any(|event| event.contains("\"event\":\"ready\""));
+        let mut told = stderr.into_iter().flat_map(|stderr| BufReader::new(stderr).lines()).map_while(Result::ok);
+        if !is_open {
+            let _ = child.wait();
+            return Err(told.last().unwrap_or_else(|| "the window has closed".to_owned()));
+        }
+        // What the window tells is read as long as both run.
+        let drain = move || {
+            std::thread::spawn(move || told.by_ref().for_each(drop));
+            events.for_each(drop);
+            let _ = child.wait();
+        };
+        std::thread::Builder::new().name("specula-lsp-opened".to_owned()).spawn(drain).map(drop).map_err(cannot)
+    })
 }
 
 /// Opens trees as `specula trace` does, on a device that is opened once.

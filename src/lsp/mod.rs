@@ -41,7 +41,7 @@ mod view;
 mod window;
 
 pub use pixel_trace::{OpenTree, text_of};
-pub use server::{Config, serve};
+pub use server::{Config, OpenWindow, serve};
 
 #[cfg(test)]
 mod tests;

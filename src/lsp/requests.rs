@@ -36,6 +36,9 @@ const PIN: &str = "specula.pinPixel";
 /// Ends that.
 const UNPIN: &str = "specula.unpinPixel";
 
+/// Opens a window on the tree of a file.
+const OPEN_WINDOW: &str = "specula.openWindow";
+
 /// The capabilities of the server.
 pub fn capabilities() -> Value {
     json!({
@@ -53,7 +56,7 @@ pub fn capabilities() -> Value {
         "colorProvider": true,
         "codeActionProvider": { "codeActionKinds": ["quickfix", "refactor.extract", "source.specula"] },
         "inlayHintProvider": true,
-        "executeCommandProvider": { "commands": [PIN, UNPIN, actions::SHOW] },
+        "executeCommandProvider": { "commands": [PIN, UNPIN, OPEN_WINDOW, actions::SHOW] },
         "workspace": { "workspaceFolders": { "supported": true, "changeNotifications": true } },
     })
 }
@@ -204,11 +207,7 @@ fn execute(state: &mut State, request: &RequestId, of: &ExecuteCommandParams) ->
                 let message = format!("the pixel {x},{y} is outside of the picture ({width}x{height})");
                 return Err((ErrorCode::InvalidParams, message));
             }
-            let named = of.arguments.get(2).and_then(|uri| serde_json::from_value::<Uri>(uri.clone()).ok());
-            let path = named.and_then(|uri| uri::path_of(&uri)).or_else(|| state.documents.last.clone());
-            let Some(root) = path.and_then(|path| state.root(&path)) else {
-                return Err((ErrorCode::RequestFailed, "no file of a shader tree is open".to_owned()));
-            };
+            let root = root_of(state, of.arguments.get(2))?;
             state.values.pin(Some(Pin { root: root.clone(), at: (x, y), window: None }));
             let asked = state.values.again(state.open_files(&root), BTreeSet::new(), Some(request.clone()));
             state.ask(asked);
@@ -219,6 +218,15 @@ fn execute(state: &mut State, request: &RequestId, of: &ExecuteCommandParams) ->
             state.following.is_muted = true;
             state.refresh_hints();
             now(Value::Null)
+        }
+        OPEN_WINDOW => {
+            let root = root_of(state, of.arguments.first())?;
+            let (open, events, request) = (state.open_window.clone(), state.events.clone(), request.clone());
+            // It answers once the window is there.
+            let work = move || drop(events.send(Event::Answered(request, open(&root))));
+            let started = std::thread::Builder::new().name("specula-lsp-open".to_owned()).spawn(work);
+            started.map_err(|error| (ErrorCode::InternalError, error.to_string()))?;
+            Ok(Answer::Later)
         }
         actions::SHOW => {
             let text = |at: usize| of.arguments.get(at).and_then(Value::as_str);
@@ -239,4 +247,12 @@ fn execute(state: &mut State, request: &RequestId, of: &ExecuteCommandParams) ->
         }
         unknown => Err((ErrorCode::InvalidParams, format!("there is no command `{unknown}`"))),
     }
+}
+
+/// The folder of the tree of a file that a request names, or of the file that was opened last.
+fn root_of(state: &State, named: Option<&Value>) -> Result<PathBuf, Refused> {
+    let named = named.and_then(|uri| serde_json::from_value::<Uri>(uri.clone()).ok());
+    let path = named.and_then(|uri| uri::path_of(&uri)).or_else(|| state.documents.last.clone());
+    path.and_then(|path| state.root(&path))
+        .ok_or_else(|| (ErrorCode::RequestFailed, "no file of a shader tree is open".to_owned()))
 }

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::event::Event;
 use super::notifications::notified;
 use super::requests::{Answer, answer, capabilities};
-pub use super::state::Config;
+pub use super::state::{Config, OpenWindow};
 use super::state::{State, failed};
 use super::transport::{Incoming, Outgoing, read_from};
 use super::uri::path_of;

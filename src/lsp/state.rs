@@ -38,7 +38,12 @@ pub struct Config {
     pub size: (u32, u32),
     /// The socket of the window that is asked; without it, any of the user.
     pub socket: Option<PathBuf>,
+    /// Opens a window.
+    pub open_window: OpenWindow,
 }
+
+/// Opens a window on the tree in a folder, and returns once it has a picture.
+pub type OpenWindow = Arc<dyn Fn(&Path) -> Result<(), String> + Send + Sync>;
 
 /// All of it.
 pub struct State {
@@ -56,6 +61,8 @@ pub struct State {
     pub size: (u32, u32),
     /// See [`Config`].
     pub socket: Option<PathBuf>,
+    /// See [`Config`].
+    pub open_window: OpenWindow,
     /// To the client.
     pub out: Outgoing,
     /// To the server's thread.
@@ -80,6 +87,7 @@ impl State {
             can_refresh: false,
             size: config.size,
             socket: config.socket,
+            open_window: config.open_window,
             out,
             events,
             compiler,

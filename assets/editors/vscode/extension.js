@@ -44,6 +44,16 @@ async function askPixel() {
     });
 }
 
+async function showWindow() {
+    const editor = vscode.window.activeTextEditor;
+    const uri = editor ? client.code2ProtocolConverter.asUri(editor.document.uri) : undefined;
+    try {
+        await execute('specula.openWindow', uri ? [uri] : []);
+    } catch (error) {
+        vscode.window.showErrorMessage(`Specula: ${error.message}`);
+    }
+}
+
 function execute(command, args) {
     return client.sendRequest('workspace/executeCommand', { command, arguments: args });
 }
@@ -52,6 +62,7 @@ async function activate(context) {
     const register = (name, run) => context.subscriptions.push(vscode.commands.registerCommand(name, run));
     register('specula.askPixel', askPixel);
     register('specula.hideValues', () => execute('specula.unpinPixel', []));
+    register('specula.showWindow', showWindow);
     register('specula.restart', restart);
     context.subscriptions.push(vscode.workspace.onDidChangeConfiguration((change) => {
         if (change.affectsConfiguration('specula')) restart();

@@ -63,6 +63,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &scene::FOLLOW_MOUSE,
     &source::SOURCE,
     &source::SHOW_FILE,
+    &source::SHOW_LINE,
     &source::SAVE_FILE,
     &measure::CHECK,
     &measure::FURNACE,

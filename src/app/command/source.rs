@@ -62,6 +62,22 @@ pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |st
 })
 .of_window();
 
+/// A line of a file, from 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::app) struct SourcePlace {
+    pub(in crate::app) file: TreePath,
+    pub(in crate::app) line: u32,
+}
+
+/// Shows a line in the panel Source.
+pub(in crate::app) static SHOW_LINE: Spec<SourcePlace> = Spec::act("show-line", |state, engine, place| {
+    let SourcePlace { file, line } = place;
+    state.traces.seeks = Some((file.clone(), line));
+    if state.traces.file_shown() != Some(&file) {
+        let _ = SHOW_FILE.with(file).run(state, engine);
+    }
+});
+
 /// Chooses the stage whose statements the panel Source shows, with its own file.
 pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage", |state, _, stage| {
     (state.traces.stage, state.traces.file) = (Some(stage), None);

@@ -42,8 +42,11 @@ pub(in crate::app) struct Costs {
     resting: Resting<(PictureSubject, Question)>,
     functions: Option<(PictureSubject, Answer<Arc<StageCosts>>)>,
     /// The differences of versions from the newest one, by their numbers, of one picture.
-    versions: Option<(PictureSubject, Vec<(u64, Answer<Difference>)>)>,
+    versions: Option<(PictureSubject, OfVersions)>,
 }
+
+/// Differences by the numbers of versions.
+type OfVersions = Vec<(u64, Answer<Difference>)>;
 
 impl Costs {
     /// Wants functions to be measured.

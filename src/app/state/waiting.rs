@@ -75,8 +75,11 @@ pub(in crate::app) struct Shot {
     pub(in crate::app) reply: Reply,
     pub(in crate::app) to: Destination,
     /// The size and the mode, if it is to be the picture that a command renders, even if that on screen is another one.
-    pub(in crate::app) rendered: Option<(Option<(u32, u32)>, Option<String>)>,
+    pub(in crate::app) rendered: Option<SizeAndMode>,
 }
+
+/// The size and the mode of a picture, where a command names them.
+type SizeAndMode = (Option<(u32, u32)>, Option<String>);
 
 /// A picture of the window that is asked for, and where it goes.
 pub(in crate::app) struct WindowShot {

@@ -14,7 +14,7 @@ pub(super) fn read(control: &Control, stdout: Client, is_supervised: bool) {
     control.read(std::io::stdin(), stdout, move |client| {
         // After the end of its parent, the pipe has ended, too.
         if !is_alone() {
-            client.wait_for_answers(&is_alone);
+            client.wait_for_answers(is_alone);
         }
         if is_alone() {
             supervisor::end();

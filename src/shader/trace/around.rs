@@ -64,7 +64,7 @@ impl Neighborhood {
             let mut values = values.iter().filter(of_call).map(|(_, value)| *value);
             match which.time {
                 Some(time) => values.nth(time.saturating_sub(1)),
-                None => values.last(),
+                None => values.next_back(),
             }
         };
         self.pixels.iter().map(|pixel| pixel.get(&statement).and_then(chosen)).collect()

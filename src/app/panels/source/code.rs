@@ -44,6 +44,7 @@ pub(super) fn show(
         let first = first.or_else(|| model.lines.iter().position(|line| !line.row.notes.is_empty()));
         scroll.offer(first.unwrap_or(0));
     }
+    scroll.seek(path.as_str(), state.traces.seeks.as_ref());
     if let Some(line) = scroll.take() {
         if folds.open_at(model, line) {
             // The next frame has its row.

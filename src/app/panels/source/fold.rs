@@ -32,7 +32,10 @@ impl Folds {
         let Some(path) = model.path() else { return false };
         let hides = |function: &&Function| function.lines.start < line && function.lines.contains(&line);
         let hiding = model.functions.iter().filter(hides);
-        hiding.fold(false, |is_hidden, function| self.0.remove(&(path.clone(), function.name.clone())) || is_hidden)
+        let names: Vec<(TreePath, String)> = hiding.map(|function| (path.clone(), function.name.clone())).collect();
+        let count = self.0.len();
+        names.iter().for_each(|name| drop(self.0.take(name)));
+        self.0.len() < count
     }
 
     /// Folds exactly these functions of a file.

@@ -110,3 +110,18 @@ fn the_hover_text_of_a_value_shows_it_around_the_pixel() {
     harness.run_steps(3);
     assert!(has(&harness, "8x8 pixels around it, black 0 to white 7; not computed at 8"), "{:?}", labels(&harness));
 }
+
+#[test]
+fn a_name_leads_to_its_definition_while_ctrl_is_held() {
+    let text = format!("{TEXT}float g(float x) {{\n    return f(x);\n}}\n");
+    let mut harness = window(&text, events(2.0), &[2, 3, 4, 5, 6, 8, 9]);
+    let line = harness.get_by_label("9:     return f(x);").rect();
+    assert!(harness.query_by_label("Go to f").is_none());
+    harness.hover_at(line.left_center() + vec2(80.0, 0.0));
+    harness.event(egui::Event::ModifiersChanged(egui::Modifiers::COMMAND));
+    harness.run_steps(2);
+    harness.get_by_label("Go to f").click();
+    harness.run_steps(2);
+    let asked = format!("{:?}", harness.state().asked);
+    assert!(asked.contains("show-line") && asked.contains("a.glsl") && asked.contains("line: 2"), "{asked}");
+}

@@ -4,6 +4,7 @@ mod bar;
 mod code;
 mod colors;
 mod cost;
+mod definition;
 mod edit;
 mod find;
 mod fold;

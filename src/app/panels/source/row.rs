@@ -8,6 +8,7 @@ use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, Widg
 use super::bar;
 use super::colors::{ROW, colored};
 use super::cost;
+use super::definition;
 use super::find::Find;
 use super::functions::Fold;
 use super::hover;
@@ -115,6 +116,7 @@ fn show_line(
         include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);
     }
     values(ui, (state, path), line, (sight, code_end, background), commands);
+    definition::links(ui, (state, path), line, (left, rect, look), commands);
     response.double_clicked()
 }
 

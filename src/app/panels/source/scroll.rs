@@ -1,5 +1,7 @@
 //! Where the list of lines is, and where it goes.
 
+use crate::shader::TreePath;
+
 /// The place of the list.
 #[derive(Default)]
 pub(super) struct Scroll {
@@ -7,6 +9,8 @@ pub(super) struct Scroll {
     to: Option<usize>,
     /// The line to bring to the upper end.
     top: Option<usize>,
+    /// The line that was asked for last.
+    sought: Option<(TreePath, u32)>,
     /// The first line in sight, by its index.
     pub(super) first: usize,
     /// The file whose lines were shown, and whether with values.
@@ -23,6 +27,15 @@ impl Scroll {
     /// The same, unless another line was asked for.
     pub(super) fn offer(&mut self, line: usize) {
         self.to = self.to.or(Some(line));
+    }
+
+    /// Brings the line that was asked for into sight, from 1, unless that was done.
+    pub(super) fn seek(&mut self, file: &str, asked: Option<&(TreePath, u32)>) {
+        let Some(asked) = asked.filter(|(of, _)| of.as_str() == file) else { return };
+        if self.sought.as_ref() != Some(asked) {
+            self.sought = Some(asked.clone());
+            self.to(asked.1.saturating_sub(1) as usize);
+        }
     }
 
     /// Keeps the lines in sight where they are, while rows come or go.

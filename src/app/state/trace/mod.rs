@@ -56,6 +56,8 @@ pub(in crate::app) struct Traces {
     /// The file that the user has chosen; `None` for that of the stage.
     pub(in crate::app) file: Option<TreePath>,
     pub(in crate::app) choice: Choice,
+    /// The line, from 1, to bring into sight once its file is shown.
+    pub(in crate::app) seeks: Option<(TreePath, u32)>,
     pub(in crate::app) progress: Progress,
     /// The shown file as it was saved, while it does not compile.
     pub(in crate::app) saved: SavedText,

@@ -45,6 +45,9 @@ pub(super) struct OutParameters {
     pub(super) open: HashSet<(Id, usize)>,
 }
 
+/// Parts of variables that are set, as bits.
+type SetParts = HashMap<Id, u32>;
+
 impl OutParameters {
     /// `functions`: those of the module. glslang passes copies, and stores to those of `in` and `inout` arguments before the call.
     pub(super) fn new(module: &Module, functions: &[Function]) -> Self {
@@ -303,7 +306,7 @@ impl<'a> Reader<'a> {
         &self,
         function: &Function,
         acts: &HashMap<(usize, usize), Vec<Act>>,
-    ) -> (Vec<Option<HashMap<Id, u32>>>, HashMap<Id, u32>) {
+    ) -> (Vec<Option<SetParts>>, SetParts) {
         let at = places(&function.blocks);
         let mut entries: Vec<Option<HashMap<Id, u32>>> = vec![None; function.blocks.len()];
         let mut leaves: Option<HashMap<Id, u32>> = None;

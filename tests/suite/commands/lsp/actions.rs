@@ -6,8 +6,8 @@ use std::os::unix::net::UnixStream;
 use serde_json::{Value, json};
 
 use super::client::{Client, Opened, place, uri};
-use crate::support::process::run;
-use crate::support::window::Viewer;
+use crate::support::process::{run, specula};
+use crate::support::window::{Display, Viewer};
 use crate::support::{Tree, glb};
 
 /// The actions at a place, by their titles.
@@ -134,4 +134,36 @@ fn a_running_window_shows_the_value_at_the_cursor() {
     });
     opened.client.quit();
     viewer.quit();
+}
+
+#[test]
+fn a_window_on_the_tree_is_opened_from_the_editor() {
+    let (display, tree) = (Display::new(), Tree::new());
+    let runtime = tree.beside("runtime");
+    std::fs::create_dir_all(&runtime).unwrap();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let command = || {
+        let mut command = specula(&tree.beside(""));
+        command.env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET").env("XDG_STATE_HOME", tree.beside("state"));
+        command.env("DISPLAY", display.name()).env("XDG_RUNTIME_DIR", &runtime);
+        command
+    };
+    let path = tree.path("user.glsl");
+    let open = json!({ "command": "specula.openWindow", "arguments": [uri(&path)] });
+    let mut client = Client::start_as(command(), &tree.root(), &["model.glb", "--socket", "opened"]);
+    assert!(client.refused("workspace/executeCommand", open.clone()).contains("no file of a shader tree"));
+    client.open(&path, &tree.read("user.glsl"));
+    client.ask("workspace/executeCommand", open.clone());
+    let socket = runtime.join("specula/opened.sock");
+    assert_eq!(asked(&socket, &json!({ "id": 1, "command": "pinned" }))["result"]["tree"], json!(tree.root()));
+    asked(&socket, &json!({ "id": 2, "command": "quit" }));
+    client.quit();
+    // Without a display, the reason is told.
+    let mut without = command();
+    without.env("DISPLAY", ":nothing");
+    let mut client = Client::start_as(without, &tree.root(), &["model.glb", "--socket", "other"]);
+    client.open(&path, &tree.read("user.glsl"));
+    let why = client.refused("workspace/executeCommand", open);
+    assert!(why.contains("no display"), "{why}");
+    client.quit();
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 
@@ -24,7 +24,10 @@ pub struct Client {
 impl Client {
     /// Starts a server with options, without a handshake.
     pub fn spawn(folder: &Path, options: &[&str]) -> Self {
-        let mut command = specula(folder);
+        Self::spawn_as(specula(folder), options)
+    }
+
+    fn spawn_as(mut command: Command, options: &[&str]) -> Self {
         let command =
             command.arg("lsp").args(options).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::inherit());
         let mut child = command.spawn().unwrap();
@@ -42,7 +45,12 @@ impl Client {
 
     /// Starts a server that is ready.
     pub fn start(folder: &Path, options: &[&str]) -> Self {
-        let mut client = Self::spawn(folder, options);
+        Self::start_as(specula(folder), folder, options)
+    }
+
+    /// The same of a program with an environment of its own.
+    pub fn start_as(command: Command, folder: &Path, options: &[&str]) -> Self {
+        let mut client = Self::spawn_as(command, options);
         let capabilities = json!({ "workspace": { "inlayHint": { "refreshSupport": true } } });
         let params = json!({ "processId": null, "rootUri": uri(folder), "capabilities": capabilities,
             "workspaceFolders": [{ "uri": uri(folder), "name": "tree" }] });
