@@ -151,7 +151,8 @@ fn a_window_on_the_tree_is_opened_from_the_editor() {
     let path = tree.path("user.glsl");
     let open = json!({ "command": "specula.openWindow", "arguments": [uri(&path)] });
     let mut client = Client::start_as(command(), &tree.root(), &["model.glb", "--socket", "opened"]);
-    assert!(client.refused("workspace/executeCommand", open.clone()).contains("no file of a shader tree"));
+    let of_none = json!({ "command": "specula.openWindow", "arguments": [] });
+    assert!(client.refused("workspace/executeCommand", of_none).contains("no file of a shader tree"));
     client.open(&path, &tree.read("user.glsl"));
     client.ask("workspace/executeCommand", open.clone());
     let socket = runtime.join("specula/opened.sock");
