@@ -23,11 +23,16 @@ const MOST_ON_CPU: usize = 32;
 
 /// Asks for times that are missing. Returns the time until that is to be looked at again.
 pub(in crate::app) fn update_costs(state: &mut State, engine: &mut Engine, is_safe_mode: bool) -> Option<Duration> {
-    let picture = final_picture(state, engine, None).filter(|_| !is_safe_mode);
-    let Some(picture) = picture else {
+    let Some(picture) = final_picture(state, engine, None) else {
         stop(state, engine);
         return None;
     };
+    state.costs.keep(&picture);
+    if is_safe_mode {
+        stop(state, engine);
+        state.costs.refuse(picture, "nothing is measured in safe mode");
+        return None;
+    }
     if moves(state) {
         stop(state, engine);
         state.costs.refuse(picture, "the picture moves, so its frames differ: pause it first");

@@ -35,7 +35,7 @@ fn cost(state: &mut State, _: &mut Engine, Cost { stage, function }: Cost) -> Ou
             return Err(format!("the picture has no stage {stage}.{hint}"));
         }
     }
-    state.costs.want(WantedCosts { stage, functions: function.into_iter().collect() });
+    let number = state.costs.want(WantedCosts { stage, functions: function.into_iter().collect() });
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
-    Ok(Until::Found(Box::new(|state| state.costs.answer())))
+    Ok(Until::Found(Box::new(move |state| state.costs.answer(number))))
 }

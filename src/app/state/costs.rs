@@ -41,6 +41,8 @@ pub(in crate::app) struct Costs {
     asked: Option<(PictureSubject, Question, u64)>,
     resting: Resting<(PictureSubject, Question)>,
     functions: Option<(PictureSubject, Answer<Arc<StageCosts>>)>,
+    /// Questions about functions so far.
+    count: u64,
     /// The differences of versions from the newest one, by their numbers, of one picture.
     versions: Option<(PictureSubject, OfVersions)>,
 }
@@ -49,9 +51,16 @@ pub(in crate::app) struct Costs {
 type OfVersions = Vec<(u64, Answer<Difference>)>;
 
 impl Costs {
-    /// Wants functions to be measured.
-    pub(in crate::app) fn want(&mut self, wanted: WantedCosts) {
+    /// Wants functions to be measured. Returns the number of the question.
+    pub(in crate::app) fn want(&mut self, wanted: WantedCosts) -> u64 {
         (self.wanted, self.functions) = (Some(wanted), None);
+        self.count += 1;
+        self.count
+    }
+
+    /// Drops the costs of functions in another picture than this one.
+    pub(in crate::app) fn keep(&mut self, picture: &PictureSubject) {
+        self.functions.take_if(|(of, _)| of != picture);
     }
 
     /// The next question about a picture: the user's first, then that about a version, unless it has been answered.
@@ -129,7 +138,7 @@ impl Costs {
     /// The costs of functions that begin at a line of a file, if they are those of the shaders on screen.
     pub(in crate::app) fn of_line(&self, shaders: &ShaderSet, path: &TreePath, line: u32) -> Option<&FunctionCost> {
         let (picture, Ok(costs)) = self.functions.as_ref()? else { return None };
-        let is_same = picture.shaders.texts.get(path) == shaders.texts.get(path);
+        let is_same = picture.shaders.generation == shaders.generation;
         let here = |cost: &&FunctionCost| cost.function.line == line && *cost.function.file == *path.as_str();
         costs.functions.iter().find(here).filter(|_| is_same)
     }
@@ -145,8 +154,11 @@ impl Costs {
         all.iter().find(|(number, _)| *number == version)?.1.as_ref().ok()
     }
 
-    /// The answer for a command that waits for the costs of functions.
-    pub(in crate::app) fn answer(&self) -> Option<Answer<Value>> {
+    /// The answer to the question with this number, for a command that waits for the costs of functions.
+    pub(in crate::app) fn answer(&self, number: u64) -> Option<Answer<Value>> {
+        if number != self.count {
+            return Some(Err("a newer question about costs has taken the place of this one".to_owned()));
+        }
         let (_, costs) = self.functions.as_ref()?;
         Some(costs.as_ref().map(|costs| costs.json()).map_err(Clone::clone))
     }
