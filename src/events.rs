@@ -123,7 +123,7 @@ pub enum Event<'a> {
         #[serde(skip_serializing_if = "Option::is_none")]
         error: Option<&'a str>,
     },
-    /// What functions of the shaders cost was measured.
+    /// Costs of functions of the shaders were measured.
     Costs {
         /// Shader generation.
         generation: u64,

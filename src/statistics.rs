@@ -23,7 +23,7 @@ const LEAST: f64 = 0.005;
 const PRECISE: f64 = 0.2;
 const PRECISE_SAME: f64 = 0.01;
 
-/// What is known of the difference of two times.
+/// Knowledge of the difference of two times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {

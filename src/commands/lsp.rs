@@ -79,7 +79,7 @@ fn window_opener(model: Option<PathBuf>, socket: Option<PathBuf>) -> OpenWindow 
             let _ = child.wait();
             return Err(told.last().unwrap_or_else(|| "the window has closed".to_owned()));
         }
-        // What the window tells is read as long as both run.
+        // Events and messages of the window are read as long as both run.
         let drain = move || {
             std::thread::spawn(move || told.by_ref().for_each(drop));
             events.for_each(drop);

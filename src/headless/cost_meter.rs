@@ -194,7 +194,7 @@ impl CostMeter {
     }
 }
 
-/// What the functions of a stage have returned.
+/// Results that the functions of a stage have returned.
 struct Recording {
     /// The numbers, on the device.
     results: Arc<Buffer>,

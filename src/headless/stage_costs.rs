@@ -1,4 +1,4 @@
-//! What the functions of a stage cost, for readers and programs.
+//! Costs of the functions of a stage, for readers and programs.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::pipeline::Figure;
 use crate::shader::costs::{Calls, Lack, NamedFunction};
 use crate::statistics::{Difference, Verdict};
 
-/// What a function costs.
+/// Cost of a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionCost {
     /// The function.
@@ -20,7 +20,7 @@ pub struct FunctionCost {
 }
 
 impl FunctionCost {
-    /// What it costs, in milliseconds of the frame.
+    /// Its cost, milliseconds of the frame.
     pub fn ms(&self) -> f64 {
         -self.difference.change_ms
     }
@@ -40,7 +40,7 @@ impl FunctionCost {
     }
 }
 
-/// What the functions of a stage cost.
+/// Costs of the functions of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageCosts {
     /// The stage.

@@ -15,9 +15,9 @@ const INKS: [&str; 6] = ["#2468d6", "#e06c20", "#22965c", "#b03070", "#8a6d1f", 
 /// A table of numbers in colors: white at `middle`, blue below, red above.
 #[derive(Clone, Debug)]
 pub struct Heat {
-    /// What the numbers are.
+    /// Meaning of the numbers.
     pub title: String,
-    /// What the rows and the columns are.
+    /// Meaning of the rows and of the columns.
     pub axes: [String; 2],
     /// The names of the rows.
     pub rows: Vec<String>,
@@ -69,9 +69,9 @@ pub struct Series {
 /// A chart of lines.
 #[derive(Clone, Debug)]
 pub struct Lines {
-    /// What it shows.
+    /// Its heading.
     pub title: String,
-    /// What lies along the axes, with the unit.
+    /// Name of the axis to the right, with the unit.
     pub x: String,
     /// The same, upwards.
     pub y: String,

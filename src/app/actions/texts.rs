@@ -10,7 +10,7 @@ use crate::shader::{Change, StageKind, TreePath};
 use crate::threads::{Message, TextsWritten};
 use crate::write_back::{TreeFile, Written, write_whole};
 
-/// What becomes of a text.
+/// Result of writing a text.
 pub(in crate::app) enum Outcome {
     /// It is compiled.
     Compiling,

@@ -122,7 +122,7 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     let before = if is_there { Some(text_of(caller, &file)?) } else { None };
     let after = match (old, new, whole) {
         (None, None, Some(whole)) => {
-            // What the agent has not seen may be the user's work.
+            // Text that the agent has not seen may be the user's work.
             if before.is_some() && seen.get(&file) != before.as_ref() {
                 return Err(failed(format!(
                     "{file} is not as you have last read it, so it stays as it is: read it again with read_shader"

@@ -1,4 +1,4 @@
-//! What a view gives once its frames are drawn: pictures, values of pixels, and the images that hold them.
+//! Results of a view once its frames are drawn: pictures, values of pixels, and the images that hold them.
 
 use std::sync::Arc;
 

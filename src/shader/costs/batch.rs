@@ -22,7 +22,7 @@ pub struct Batch<'a> {
     groups: u32,
 }
 
-/// What was recorded of a function.
+/// Record of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
     /// Its place among the functions of the stage.

@@ -153,7 +153,7 @@ fn edits_show_at_once_and_mistakes_keep_the_picture() {
     served.running.done(json!({"command": "undo"}));
     assert_eq!(served.tree.read(NDF), text);
     assert!(served.running.refused(json!({"command": "pass", "name": "no-such-pass"})).contains("no-such-pass"));
-    // What follows an edit at once has it, and of two the last one stays.
+    // A command that follows an edit at once has it, and of two the last one stays.
     let [first, second] = [LINE[1], LINE[0]].map(|line| text.replace(LINE[0], line));
     served.running.say(&json!({"command": "edit", "file": NDF, "text": first}).to_string());
     assert!(served.picture("a.npy", &json!({})) == edited, "the picture is from before the edit");

@@ -89,7 +89,7 @@ impl Browser {
         self.command("actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": steps }] }));
     }
 
-    /// What the page has logged since the last call: errors of scripts, and what its security policy has refused.
+    /// Messages of the page since the last call: errors of scripts, and what its security policy has refused.
     pub fn log(&self) -> Value {
         self.command("se/log", &json!({ "type": "browser" }))
     }
@@ -103,7 +103,7 @@ impl Browser {
         serde_json::from_value(self.run(&script)).unwrap()
     }
 
-    /// What the window shows.
+    /// The pixels of the window.
     pub fn picture(&self) -> RgbaImage {
         let png = self.ask("GET", &format!("/session/{}/screenshot", self.session), &Value::Null);
         let bytes = BASE64_STANDARD.decode(png.as_str().unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! What a function costs, behind the first line of its code.
+//! The cost of a function, behind the first line of its code.
 
 use egui::{Align2, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2};
 

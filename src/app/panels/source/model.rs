@@ -107,7 +107,7 @@ impl CodeModel {
         self.functions = functions(&inputs.text);
         let about = |line: &CodeLine| inputs.diagnostics.iter().any(|found| found.line == Some(line.row.line));
         for function in &self.functions {
-            // What is wrong is never hidden.
+            // Wrong lines are never hidden.
             let is_wrong = self.lines[function.lines.clone()].iter().any(about);
             fold(&mut self.lines, function, !is_wrong && inputs.folded.contains(&function.name));
         }

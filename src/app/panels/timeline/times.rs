@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, state: &State) {
         version.since.format("%H:%M"),
         difference.text()
     );
-    // What the newest version has become.
+    // Difference of the newest version.
     let color = match difference.verdict {
         Verdict::Slower => GOOD,
         Verdict::Faster => WARNING,

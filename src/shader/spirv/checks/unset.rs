@@ -15,7 +15,7 @@ use crate::shader::spirv::op::{Op, text};
 /// glslang's name for the copy of an argument.
 const ARGUMENT: &str = "param";
 
-/// What an instruction does with the parts of a variable.
+/// Effect of an instruction on the parts of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Act {
     /// Sets these parts.
@@ -26,7 +26,7 @@ pub(super) enum Act {
     Takes(Id, (Id, usize)),
 }
 
-/// What the instructions of a function do with variables that may be read before they are set.
+/// Effects of the instructions of a function on variables that may be read before they are set.
 #[derive(Debug, Default)]
 pub(super) struct Unset {
     /// By the block and the place there.
@@ -37,7 +37,7 @@ pub(super) struct Unset {
     pub(super) outs: Vec<(Id, usize)>,
 }
 
-/// What is known of the functions of a module.
+/// Knowledge of the functions of a module.
 pub(super) struct OutParameters {
     /// Callees, and the places of parameters that get a value from a caller.
     given: HashSet<(Id, usize)>,
@@ -155,7 +155,7 @@ impl<'a> Reader<'a> {
         let parameters = function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| module[*i][2]);
         for (id, at) in parameters.zip(0..) {
             let is_out = module.pointer(module.type_of(id)).is_some_and(|(class, _)| class == storage::FUNCTION);
-            // What nobody calls, or only the entry point itself, is not known.
+            // Functions that nobody calls, or only the entry point itself, are not known.
             if is_out && !known.given.contains(&(function.id, at)) {
                 all.extend(parts(id).map(|parts| (id, parts)));
             }
@@ -295,7 +295,7 @@ impl<'a> Reader<'a> {
     fn set(&self, act: Act, certain: &mut HashMap<Id, u32>) {
         match act {
             Act::Sets(id, parts) => *certain.entry(id).or_default() |= parts,
-            // What is taken may be less than what was there.
+            // The part that is taken may be less than what was there.
             Act::Takes(id, _) => _ = certain.insert(id, 0),
             Act::Reads(..) => {}
         }
@@ -346,7 +346,7 @@ fn is_line(i: Instruction) -> bool {
     matches!(i.op, Op::Line | Op::NoLine)
 }
 
-/// What is set on two paths.
+/// The parts that are set on two paths.
 fn both(a: &HashMap<Id, u32>, b: &HashMap<Id, u32>) -> HashMap<Id, u32> {
     let common = a.iter().filter_map(|(id, parts)| Some((*id, parts & b.get(id)?)));
     common.filter(|(_, parts)| *parts != 0).collect()

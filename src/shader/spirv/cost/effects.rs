@@ -1,4 +1,4 @@
-//! What functions do besides returning a value.
+//! Effects of functions besides returning a value.
 
 use foldhash::{HashMap, HashSet};
 
@@ -8,7 +8,7 @@ use crate::shader::spirv::enums::storage;
 use crate::shader::spirv::module::{Function, Id, Instruction, Module};
 use crate::shader::spirv::op::{Class, Op};
 
-/// What a function does, its callees included.
+/// Effects of a function, its callees included.
 #[derive(Clone, Debug, Default)]
 struct Effect {
     discards: bool,
