@@ -2,12 +2,12 @@
 
 use std::os::unix::fs::MetadataExt as _;
 use std::os::unix::process::ExitStatusExt as _;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use serde_json::{Value, json};
 
 use crate::support::Tree;
-use crate::support::process::{Running, finish, in_shell, run};
+use crate::support::process::{Running, finish, in_shell, run, send_signal};
 use crate::support::served::{PICTURE, Served};
 
 const NDF: &str = "brdf/ndf.glsl";
@@ -172,6 +172,16 @@ fn edits_show_at_once_and_mistakes_keep_the_picture() {
     served.running.done(json!({"command": "redo"}));
     assert!(served.tree.path("user/mine.glsl").exists());
     served.running.done(json!({"command": "edit", "file": NDF, "text": text}));
+
+    // A save of an editor since the text was read stays. Where both have changed a line, nothing is written.
+    served.tree.write(NDF, &format!("// theirs\n{text}"));
+    served.running.done(json!({"command": "edit", "file": NDF, "text": format!("{text}// mine\n"), "base": text}));
+    assert_eq!(served.tree.read(NDF), format!("// theirs\n{text}// mine\n"));
+    served.tree.write(NDF, &first);
+    let mine = text.replace(LINE[0], "float a2 = 1.0;");
+    let message = served.running.refused(json!({"command": "edit", "file": NDF, "text": mine, "base": text}));
+    assert!(message.contains("changed by another program in the same place"), "{message}");
+    assert_eq!(served.tree.read(NDF), first);
     let files = served.running.done(json!({"command": "files"}));
     assert_eq!(files["tree"].as_str(), served.tree.root().to_str());
     assert!(files["files"].as_array().unwrap().contains(&json!("user/mine.glsl")), "{files}");
@@ -219,7 +229,7 @@ fn the_built_in_shaders_are_edited_in_memory() {
     served.running.say(&edit("user/b.glsl", "// b\n"));
     let shown = picture(&mut served);
     assert!(shown != first, "the edit is lost");
-    kill(&served.running.worker().to_string());
+    send_signal(served.running.worker(), "KILL");
     served.running.event("restarted");
     assert!(picture(&mut served) == shown, "a crash takes the edit back");
     assert_eq!(served.running.done(json!({"command": "file", "file": NDF}))["text"], json!(edited));
@@ -361,12 +371,6 @@ fn a_reader_that_has_gone_ends_the_session() {
     assert!(left.is_empty(), "{left:?}");
 }
 
-/// Kills a process.
-#[track_caller]
-fn kill(process: &str) {
-    assert!(Command::new("kill").args(["-s", "KILL", process]).status().unwrap().success());
-}
-
 #[test]
 fn a_loss_costs_the_open_commands_alone() {
     let mut served = Served::with_fault(Tree::new(), &["sphere-grid"], "by-name:1");
@@ -374,7 +378,7 @@ fn a_loss_costs_the_open_commands_alone() {
     let picture = served.picture("a.npy", &json!({}));
 
     // Somebody kills the process that draws.
-    kill(&served.running.worker().to_string());
+    send_signal(served.running.worker(), "KILL");
     let event = served.running.event("restarted");
     assert!(event["cause"].as_str().unwrap().contains("killed"), "{event}");
     assert!(served.picture("a.npy", &json!({})) == picture, "the picture did not come back");

@@ -2,11 +2,11 @@
 //! made in code, and the program as a child process.
 
 pub mod browser;
-mod damage;
 pub mod glb;
 pub mod hdr;
 pub mod process;
 mod renderer;
+mod root_window;
 pub mod served;
 pub mod video;
 pub mod window;

@@ -259,8 +259,7 @@ impl Running {
     /// Sends a signal, named without SIG.
     #[track_caller]
     pub fn signal(&self, name: &str) {
-        let status = Command::new("kill").args(["-s", name, &self.child.id().to_string()]).status().unwrap();
-        assert!(status.success(), "kill -s {name}: {status}");
+        send_signal(self.child.id(), name);
     }
 
     /// The process that does the work: a window's is the child of the program's (proc(5)).
@@ -343,4 +342,11 @@ fn held_kib(smaps: &str) -> u64 {
         }
     }
     held
+}
+
+/// Sends a signal, named without SIG, to a process.
+#[track_caller]
+pub fn send_signal(process: u32, name: &str) {
+    let status = Command::new("kill").args(["-s", name, &process.to_string()]).status().unwrap();
+    assert!(status.success(), "kill -s {name} {process}: {status}");
 }

@@ -1,5 +1,5 @@
-//! `specula view` on an X server of its own (Xvfb). Keys, the mouse and sizes go through the X server by xdotool. What the window
-//! shows comes from the server's frame buffer, which Xvfb keeps in a file; the server reports each change of it.
+//! `specula view` on an X server of its own (Xvfb). Keys, the mouse and sizes go through the X server by xdotool. The server gives the
+//! pixels of the window, and reports each change of them.
 
 use std::io::{BufRead as _, BufReader, ErrorKind};
 use std::process::{Child, Command, Stdio};
@@ -7,18 +7,16 @@ use std::time::{Duration, Instant};
 
 use image::RgbaImage;
 use serde_json::Value;
-use tempfile::TempDir;
 
-use super::damage::Damage;
-use super::process::{Finished, PATIENCE, Running, finish, specula};
+use super::process::{Finished, PATIENCE, Running, finish, send_signal, specula};
+use super::root_window::RootWindow;
 use super::{Tree, open_image};
 
 /// An X server. Dropping this ends it.
 pub struct Display {
     server: Child,
     name: String,
-    frame_buffer: TempDir,
-    damage: Damage,
+    root: RootWindow,
 }
 
 impl Display {
@@ -27,11 +25,9 @@ impl Display {
         if let Err(error) = Command::new("xdotool").stdout(Stdio::null()).stderr(Stdio::null()).status() {
             missing::<()>("xdotool", "xdotool", &error);
         }
-        let frame_buffer = tempfile::tempdir().unwrap();
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-noreset", "-fbdir"]);
+        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-noreset"]);
         let mut server = command
-            .arg(frame_buffer.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -41,7 +37,7 @@ impl Display {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
         assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
         let name = format!(":{}", line.trim());
-        let display = Self { server, damage: Damage::watch(&name), name, frame_buffer };
+        let display = Self { server, root: RootWindow::watch(&name), name };
         display.park_mouse();
         display
     }
@@ -76,15 +72,7 @@ impl Display {
 
     /// The whole screen as it is now.
     pub fn screen(&self) -> RgbaImage {
-        let bytes = std::fs::read(self.frame_buffer.path().join("Xvfb_screen0")).unwrap();
-        // X11/XWDFile.h: a header of big-endian words, color table entries of 12 bytes, then rows of 4-byte BGRX pixels.
-        let word = |index: usize| u32::from_be_bytes(bytes[4 * index..][..4].try_into().unwrap());
-        let (header_bytes, width, height, row_bytes, colors) = (word(0), word(4), word(5), word(12), word(19));
-        assert_eq!((word(7), word(11)), (0, 32), "expected little-endian pixels of 32 bits");
-        let rows = bytes[(header_bytes + 12 * colors) as usize..].chunks_exact(row_bytes as usize);
-        let pixels = rows.flat_map(|row| row[..4 * width as usize].chunks_exact(4));
-        let rgba = pixels.flat_map(|bgrx| [bgrx[2], bgrx[1], bgrx[0], 255]).collect();
-        RgbaImage::from_raw(width, height, rgba).expect("all rows of the screen")
+        self.root.pixels()
     }
 }
 
@@ -300,15 +288,24 @@ impl Viewer {
         self.display.xdotool(&["mouseup", "1"]);
     }
 
-    /// Drags from one pixel of the window to another. A frame is drawn in between: a press and a release in the same frame drag
-    /// nothing.
+    /// Drags from one pixel of the window to another.
     #[track_caller]
-    pub fn drag(&mut self, from: (u32, u32), to: (u32, u32)) {
+    pub fn drag(&self, from: (u32, u32), to: (u32, u32)) {
         self.move_mouse(from);
         self.display.xdotool(&["mousedown", "1"]);
-        self.screenshot();
         self.move_mouse(to);
         self.display.xdotool(&["mouseup", "1"]);
+    }
+
+    /// Stops the window's process, and lets it go on after `act`: all keys and movements of `act` are there at once.
+    #[track_caller]
+    pub fn paused(&self, act: impl FnOnce()) {
+        let worker = self.running.worker();
+        send_signal(worker, "STOP");
+        act();
+        // The server passes events on before it answers a later request.
+        drop(self.screen());
+        send_signal(worker, "CONT");
     }
 
     /// Takes the window off the screen, as minimizing it does.
@@ -382,12 +379,12 @@ impl Viewer {
     pub fn until_screen(&self, what: &str, is: impl Fn(&RgbaImage) -> bool) -> RgbaImage {
         let deadline = Instant::now() + PATIENCE;
         loop {
-            self.display.damage.forget();
+            self.display.root.forget_changes();
             let screen = self.screen();
             if is(&screen) {
                 return screen;
             }
-            if !self.display.damage.comes_before(deadline) {
+            if !self.display.root.changes_before(deadline) {
                 panic!("{what} never appeared on the screen, kept as {}. {}", keep(&screen), self.running.story());
             }
         }
@@ -399,9 +396,9 @@ impl Viewer {
     pub fn rests(&self) {
         let deadline = Instant::now() + PATIENCE;
         loop {
-            self.display.damage.forget();
+            self.display.root.forget_changes();
             let before = self.running.ticks();
-            let is_drawn = self.display.damage.comes_before(Instant::now() + Duration::from_secs(1));
+            let is_drawn = self.display.root.changes_before(Instant::now() + Duration::from_secs(1));
             if !is_drawn && self.running.ticks() - before < 10 {
                 return;
             }

@@ -1,16 +1,11 @@
 //! A window in hostile surroundings: killed processes, signals, and output that nobody takes.
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use super::NDF;
 use crate::support::Tree;
-use crate::support::process::{Running, in_shell};
+use crate::support::process::{Running, in_shell, send_signal};
 use crate::support::window::{Display, Viewer};
-
-fn kill(process: u32, signal: &str) {
-    let status = Command::new("kill").args(["-s", signal, &process.to_string()]).status().unwrap();
-    assert!(status.success(), "kill -s {signal} {process}: {status}");
-}
 
 /// The names in the folder of sockets and of the records of sessions.
 fn left(tree: &Tree) -> Vec<String> {
@@ -31,7 +26,7 @@ fn a_killed_process_comes_back_with_its_session() {
     viewer.key("n");
     viewer.until("shading normals", |shot| *shot != first);
     let before = viewer.screenshot();
-    kill(viewer.running.worker(), "KILL");
+    send_signal(viewer.running.worker(), "KILL");
     let event = viewer.restarted();
     assert!(event["cause"].as_str().unwrap().contains("was killed (SIGKILL)"), "{event}");
     assert_eq!((&event["refused"], &event["reset"]), (&serde_json::json!([]), &serde_json::json!([])), "{event}");
@@ -63,7 +58,7 @@ fn signals_leave_no_socket_and_no_records() {
 fn a_stopped_window_ends_with_its_supervisor() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "attacked"]);
     viewer.running.event("ready");
-    kill(viewer.running.worker(), "STOP");
+    send_signal(viewer.running.worker(), "STOP");
     viewer.running.signal("KILL");
     viewer.running.end();
     assert_eq!(left(&viewer.tree), [""; 0]);

@@ -40,7 +40,7 @@ pub(super) fn choose(viewer: &Viewer, words: &str) {
 }
 
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.
-pub(super) fn drag_slider(viewer: &mut Viewer, left: u32, y: u32, value: f32) {
+pub(super) fn drag_slider(viewer: &Viewer, left: u32, y: u32, value: f32) {
     let rail = |value: f32| (left + CONTROL + (value * 100.0).round() as u32, y);
     viewer.drag(rail(0.5), rail(value));
 }

@@ -46,11 +46,12 @@ fn versions_are_timed_in_turn_while_they_are_compared() {
     let part = -difference["change_ms"].as_f64().unwrap() / difference["base_ms"].as_f64().unwrap();
     assert!(part > 0.1, "{slower}");
 
-    // Another number in the same code.
+    // Another number in the same code. One of a hundred such comparisons may find a difference, but then a small one.
     save(&mut viewer, &original.replace(MAIN, &SLOW.replace("12345.678", "54321.25")));
     let same = timed(&mut viewer, 2);
-    assert_eq!(same["difference"]["verdict"], "same", "{same}");
-    assert!(same["text"].as_str().unwrap().starts_with("no difference ("), "{same}");
+    let [change, margin, base] =
+        ["change_ms", "margin_ms", "base_ms"].map(|name| same["difference"][name].as_f64().unwrap());
+    assert!(change.abs() <= 3.0 * margin + 0.02 * base, "{same}");
 
     save(&mut viewer, &original);
     let faster = timed(&mut viewer, 3);

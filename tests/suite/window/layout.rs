@@ -132,26 +132,26 @@ fn the_palette_reaches_modes_switches_commands_and_numbers() {
 fn keys_of_one_frame_act_in_their_order() {
     let mut viewer = open(None);
     let picture = viewer.screenshot();
-    viewer.running.signal("STOP");
-    viewer.key("n");
-    choose(&viewer, "no such entry");
-    ["ctrl+p", "ctrl+p", "Escape", "F12"].iter().for_each(|key| viewer.key(key));
-    viewer.running.signal("CONT");
+    viewer.paused(|| {
+        viewer.key("n");
+        choose(&viewer, "no such entry");
+        ["ctrl+p", "ctrl+p", "Escape", "F12"].iter().for_each(|key| viewer.key(key));
+    });
     viewer.running.event("screenshot");
     viewer.until("shading normals, which no key behind theirs left", |shot| *shot != picture);
     let normals = viewer.screenshot();
-    viewer.running.signal("STOP");
-    choose(&viewer, "roughness");
-    ["n", "n", "n"].iter().for_each(|key| viewer.key(key));
-    choose(&viewer, "final");
-    viewer.key("n");
-    viewer.running.signal("CONT");
+    viewer.paused(|| {
+        choose(&viewer, "roughness");
+        ["n", "n", "n"].iter().for_each(|key| viewer.key(key));
+        choose(&viewer, "final");
+        viewer.key("n");
+    });
     viewer.until("shading normals, by a letter behind the palette", |shot| *shot == normals);
-    viewer.running.signal("STOP");
-    viewer.key("n");
-    choose(&viewer, "exposure -2");
-    ["u", "u", "ctrl+z"].iter().for_each(|key| viewer.key(key));
-    viewer.running.signal("CONT");
+    viewer.paused(|| {
+        viewer.key("n");
+        choose(&viewer, "exposure -2");
+        ["u", "u", "ctrl+z"].iter().for_each(|key| viewer.key(key));
+    });
     viewer.until("the picture, undone", |shot| *shot == picture);
     viewer.quit();
 }

@@ -47,11 +47,11 @@ fn two_clicks_around_a_key_are_no_double_click() {
     viewer.until("the whole window", |shot| shot.dimensions() == (640, 480));
     let first = viewer.screenshot();
     // All of them come at once.
-    viewer.running.signal("STOP");
-    viewer.click((320, 240));
-    viewer.key("Escape");
-    viewer.click((320, 240));
-    viewer.running.signal("CONT");
+    viewer.paused(|| {
+        viewer.click((320, 240));
+        viewer.key("Escape");
+        viewer.click((320, 240));
+    });
     let instances = [(); 3].map(|()| viewer.running.event("selected")["instance"].clone());
     assert!(instances[0].is_u64() && instances[1].is_null() && instances[2] == instances[0], "{instances:?}");
     assert!(viewer.screenshot() == first, "the camera moved");
