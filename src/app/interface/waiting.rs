@@ -1,17 +1,21 @@
-//! Keys that wait for a frame. egui takes all keys of a frame at once. A key behind one that moves the keyboard's focus (a click,
-//! Enter, Escape, Tab, the key of the palette) would still go where the focus was before: to a palette that is closed by now, say.
+//! Events that wait for a frame. egui takes all keys of a frame at once. A key behind one that moves the keyboard's focus (a click,
+//! Enter, Escape, Tab, the key of the palette) would still go where the focus was before: to a palette that is closed by now, say. A mouse
+//! button that is pressed and released within a frame drags nothing, nor does it move a slider.
 
 use egui::{Event, Key};
-use winit::event::WindowEvent;
+use winit::event::{ElementState, WindowEvent};
 
 use super::Interface;
 
 impl Interface {
-    /// Defers a key until after the next frame if egui has yet to process one that moves the focus, or a button of the mouse, and all events
-    /// that follow such a key. Returns an event that need not wait.
+    /// Defers a key or the release of a mouse button until after the next frame if egui has yet to process one that moves the focus, or a
+    /// button of the mouse, and all events that follow it. Returns an event that need not wait.
     pub(in crate::app) fn wait(&mut self, event: WindowEvent) -> Option<WindowEvent> {
         let waits = match &event {
-            WindowEvent::KeyboardInput { .. } | WindowEvent::Ime(_) | WindowEvent::ModifiersChanged(_) => {
+            WindowEvent::KeyboardInput { .. }
+            | WindowEvent::Ime(_)
+            | WindowEvent::ModifiersChanged(_)
+            | WindowEvent::MouseInput { state: ElementState::Released, .. } => {
                 !self.waiting.is_empty() || self.has_to_wait(&event)
             }
             WindowEvent::MouseInput { .. }
