@@ -196,16 +196,20 @@ class Session:
         """The text of a file of the tree, such as ``brdf/ndf.glsl``."""
         return str(self.command("file", file=file)["text"])
 
-    def edit(self, file: str, text: Optional[str]) -> None:
+    def edit(self, file: str, text: Optional[str], *, base: Optional[str] = None) -> None:
         """Changes a file of the tree, or makes it; returns when its picture is complete, with the light that it changes.
 
         Raises :class:`ShaderError` if it does not compile: the message shows the line and its caret. The file has the text then, and the
         picture is that of the last good shaders. The built-in shaders change in the memory of the session alone, and ``None`` brings back their own
         text; to keep a change, write them to a folder with ``specula new`` and give it as ``shaders``.
+
+        With ``base``, the text that was edited, changes that an editor has saved since are kept; where both changed a line, the file stays and
+        :class:`SpeculaError` is raised.
         """
         self._modes = {}
         # None is a value here.
-        self._channel.ask("edit", {"file": file, "text": text})
+        fields: Dict[str, Any] = {"file": file, "text": text}
+        self._channel.ask("edit", fields if base is None else {**fields, "base": base})
 
     def check(self) -> List[Diagnostic]:
         """Compiles all files of the tree. Returns the warnings; raises :class:`ShaderError` if there is an error."""

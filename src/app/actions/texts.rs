@@ -8,7 +8,7 @@ use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::shader::{Change, StageKind, TreePath};
 use crate::threads::{Message, TextsWritten};
-use crate::write_back::{TreeFile, Written, write_whole};
+use crate::write_back::{self, TreeFile, Written};
 
 /// Result of writing a text.
 pub(in crate::app) enum Outcome {
@@ -32,7 +32,8 @@ pub(in crate::app) fn writable(path: &str) -> Result<TreePath, String> {
     Ok(inside)
 }
 
-/// Writes a text to a file of the tree, on a thread, or puts it over the built-in shaders; `None` takes the text of these again.
+/// Writes a text to a file of the tree, on a thread, or puts it over the built-in shaders; `None` takes the text of these again. With `base`,
+/// the text from which it was made, it is merged with what other programs have written since.
 ///
 /// # Errors
 /// Why it cannot be written.
@@ -41,6 +42,7 @@ pub(in crate::app) fn write_text(
     engine: &mut Engine,
     path: TreePath,
     text: Option<Arc<str>>,
+    base: Option<String>,
 ) -> Result<Outcome, String> {
     if let Some(restored) = &state.edits.restored {
         return Err(format!("version {} is shown; show the newest one first", restored.number));
@@ -52,7 +54,10 @@ pub(in crate::app) fn write_text(
         )?;
         let number = state.text_writes.begin();
         engine.threads.writer.write(move || {
-            let written = write_whole(&file, &text);
+            let written = match base {
+                Some(base) => write_back::write_text(&file, &base, &text).map(|(_, written)| written),
+                None => write_back::write_whole(&file, &text),
+            };
             let done = |written| TextsWritten {
                 files: vec![file.root.join(file.path.as_str())],
                 step: Some(written),

@@ -18,11 +18,14 @@ use crate::shader::TreePath;
 pub(in crate::app) struct Edit {
     file: String,
     text: Option<String>,
+    /// Text from which `text` was made.
+    base: Option<String>,
 }
 
 pub(in crate::app) static EDIT: Spec<Edit> = Spec::new("edit", edit).parsed(
-    r#""file": "brdf/ndf.glsl", "text": "..." | null"#,
-    "Writes a file of the shader tree, or one that is new. Over the built-in shaders it changes no file, and null takes their own text \
+    r#""file": "brdf/ndf.glsl", "text": "..." | null, "base"?: "...""#,
+    "Writes a file of the shader tree, or one that is new. With base, the text that was edited, changes that other programs have made since \
+     are kept, or the edit is refused where both changed a line. Over the built-in shaders it changes no file, and null takes their own text \
      again. Done when the picture with it is final. Result: generation; an error lists the diagnostics, and the last good picture stays",
     |about, mut fields| {
         let file = fields::text(&mut fields, "file")?.ok_or_else(|| fields::needs(about))?;
@@ -30,7 +33,8 @@ pub(in crate::app) static EDIT: Spec<Edit> = Spec::new("edit", edit).parsed(
             return Err(fields::needs(about));
         }
         let text = fields::text(&mut fields, "text")?;
-        fields::end(about, Edit { file, text }, fields)
+        let base = fields::text(&mut fields, "base")?;
+        fields::end(about, Edit { file, text, base }, fields)
     },
 );
 
@@ -46,9 +50,9 @@ pub(in crate::app) static FILE: Spec<String> = Spec::new("file", read).parsed(
 pub(in crate::app) static FILES: Spec<()> = Spec::fallible("files", list)
     .line("The files of the shader tree. Result: tree (its folder or file; null for the built-in one), files");
 
-fn edit(state: &mut State, engine: &mut Engine, Edit { file, text }: Edit) -> Outcome {
+fn edit(state: &mut State, engine: &mut Engine, Edit { file, text, base }: Edit) -> Outcome {
     let path = writable(&file)?;
-    Ok(match write_text(state, engine, path, text.map(Into::into))? {
+    Ok(match write_text(state, engine, path, text.map(Into::into), base)? {
         texts::Outcome::Compiling => Until::Reloaded,
         texts::Outcome::Writing(number) => Until::TextWritten(number),
     })

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use specula::message;
 use specula::picture;
 use specula::report::Report;
 
@@ -17,8 +18,15 @@ pub fn check_report(path: &Path) -> Result<(), Failure> {
     picture::check_place(path).map_err(Failure::Input)
 }
 
-/// Writes the page.
+/// Writes the page of a report.
 pub fn write_report(path: &Path, report: &Report) -> Result<(), Failure> {
+    write_page(path, &report.html())
+}
+
+/// Writes a page, and says where it is.
+pub fn write_page(path: &Path, html: &str) -> Result<(), Failure> {
     let cannot = |error: std::io::Error| Failure::Input(format!("cannot write {}: {error}", path.display()));
-    picture::replace_file(path, report.html().as_bytes()).map_err(cannot)
+    picture::replace_file(path, html.as_bytes()).map_err(cannot)?;
+    message::tell(format_args!("wrote {}", path.display()));
+    Ok(())
 }

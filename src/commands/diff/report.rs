@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use specula::picture::{self, read_look};
+use specula::picture::read_look;
 use specula::picture_difference::report::{ReportPair, Shown, page};
 use specula::picture_difference::{Comparison, Limits, Picture};
 
 use crate::commands::Failure;
+use crate::commands::common::report::write_page;
 
 /// The limits as options of the command line.
 pub(super) fn options(limits: Limits) -> String {
@@ -76,7 +77,5 @@ pub(super) fn write_report(
     pairs: Vec<ReportPair>,
 ) -> Result<(), Failure> {
     let title = format!("{} and {}", a.display(), b.display());
-    let page = page(&title, &options(limits), pairs);
-    let cannot = |error: std::io::Error| Failure::Input(format!("cannot write {}: {error}", path.display()));
-    picture::replace_file(path, page.as_bytes()).map_err(cannot)
+    write_page(path, &page(&title, &options(limits), pairs))
 }

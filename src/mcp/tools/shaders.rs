@@ -151,7 +151,8 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
         (true, false) => format!("Wrote {place}:\n{}", changes.trim_end()),
         (false, _) => format!("Made {place}."),
     };
-    let outcome = caller.ask("edit", &json!({ "file": file, "text": after }));
+    // A save of the user in between stays.
+    let outcome = caller.ask("edit", &json!({ "file": file, "text": after, "base": before }));
     seen.insert(file, after);
     drop(seen);
     match outcome {
