@@ -35,10 +35,10 @@ class Session:
     """A program that renders, and keeps its device, shaders and light from call to call.
 
     ``model`` is a file (.gltf, .glb or .zip) or the name of a built-in one, ``shaders`` the folder of a shader tree or a single file,
-    ``env`` an .hdr or .exr, ``studio``, ``sky``, ``furnace``, ``model`` or ``none``, ``size`` width and height of a picture in pixels,
-    ``device`` a part of the name of a GPU. ``window=True`` opens a window that you see, too; ``window="demo"`` joins the one that
-    ``specula view --socket demo`` has opened, with its own model and settings. ``options`` are more options of ``specula render``, such as
-    ``["--lights", "none"]``; ``program`` is the path of ``specula``.
+    ``env`` an .hdr or .exr, ``studio``, ``sky``, ``furnace``, ``model`` or ``none``, ``size`` width and height of a picture in pixels
+    (640, 360 by default), ``device`` a part of the name of a GPU. ``window=True`` opens a window that you see, too, of that size if one is
+    given; ``window="demo"`` joins the one that ``specula view --socket demo`` has opened, with its own model and settings. ``options`` are
+    more options of ``specula render``, such as ``["--lights", "none"]``; ``program`` is the path of ``specula``.
 
     World space is right-handed with +Y up, in meters; angles are in degrees; pixels are counted from the upper left corner. All methods
     may be called from several threads. Ctrl+C ends a call, not the session. A session ends with its ``with`` block, by :meth:`close`, when
@@ -53,14 +53,15 @@ class Session:
         *,
         shaders: Optional[PathLike] = None,
         env: Optional[PathLike] = None,
-        size: Size = (640, 360),
+        size: Optional[Size] = None,
         device: Optional[str] = None,
         window: Union[bool, str] = False,
         options: Sequence[str] = (),
         program: Optional[PathLike] = None,
     ) -> None:
         self._scratch = Scratch()
-        self._size: Optional[Size] = (size[0], size[1])
+        width, height = size or (640, 360)
+        self._size: Optional[Size] = (width, height)
         self._program = ""
         self._modes: Dict[str, Mode] = {}
         self._checking = threading.Lock()
@@ -78,7 +79,9 @@ class Session:
             for option, value in (("--shaders", shaders), ("--env", env), ("--device", device)):
                 if value is not None:
                     arguments += [option, os.fspath(value)]
-            arguments += ["--size", f"{size[0]}x{size[1]}", *options]
+            if size or not window:
+                arguments += ["--size", f"{width}x{height}"]
+            arguments += options
             self._memory = Memory()
             self._channel = Channel.start(arguments, self._memory.files)
         self._finalizer = weakref.finalize(self, _end, self._channel, self._scratch, self._memory)

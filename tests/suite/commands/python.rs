@@ -6,6 +6,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use crate::support::process::{Finished, finish};
+use crate::support::window::Display;
 
 /// A path in the repository.
 fn in_repository(path: &str) -> PathBuf {
@@ -27,7 +28,12 @@ pub(super) fn interpreter() -> &'static Path {
 /// Runs a script of `tests/python` in `folder`. It finds the package of the repository and the program of this build.
 #[track_caller]
 pub(super) fn run_script(script: &str, folder: &Path) -> Finished {
-    let mut command = Command::new(interpreter());
+    run_script_with(Command::new(interpreter()), script, folder)
+}
+
+/// [`run_script`] by a command that starts the interpreter.
+#[track_caller]
+fn run_script_with(mut command: Command, script: &str, folder: &Path) -> Finished {
     command.arg(in_repository("tests/python").join(script)).current_dir(folder);
     command.env("PYTHONPATH", in_repository("assets/python")).env("PYTHONDONTWRITEBYTECODE", "1");
     command.env("SPECULA", env!("CARGO_BIN_EXE_specula")).env("REPOSITORY", env!("CARGO_MANIFEST_DIR"));
@@ -45,6 +51,20 @@ fn a_session_draws_edits_measures_and_survives() {
 #[test]
 fn sessions_leave_nothing_behind() {
     run_script("endings.py", tempfile::tempdir().unwrap().path());
+}
+
+#[test]
+fn a_session_with_a_window_draws_what_one_without_draws() {
+    let (folder, display) = (tempfile::tempdir().unwrap(), Display::new());
+    let mut command = Command::new(interpreter());
+    command.env("DISPLAY", display.name()).env_remove("WAYLAND_DISPLAY");
+    for (variable, inner) in [("XDG_RUNTIME_DIR", "runtime"), ("XDG_STATE_HOME", "state")] {
+        fs::create_dir(folder.path().join(inner)).unwrap();
+        command.env(variable, folder.path().join(inner));
+    }
+    run_script_with(command, "window.py", folder.path());
+    let left: Vec<_> = fs::read_dir(folder.path().join("runtime")).unwrap().collect();
+    assert!(left.is_empty(), "{left:?}");
 }
 
 #[test]
