@@ -12,6 +12,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat};
 
 use crate::recovery::SessionState;
 use crate::render::Capture;
+use crate::settings::Settings;
 pub use look::{Look, ReadError, read_checked_look, read_look};
 use part::PartFile;
 pub use part::{Halt, remove_unfinished};
@@ -86,6 +87,19 @@ pub fn numbered() -> PathBuf {
 pub fn numbered_as(stem: &str, ending: &str) -> PathBuf {
     let free = (1..).map(|n| PathBuf::from(format!("{stem}-{n}.{ending}"))).find(|path| !path.exists());
     free.unwrap_or_else(|| format!("{stem}.{ending}").into())
+}
+
+/// Writes a look file.
+///
+/// # Errors
+/// A message: the name does not end in `.toml`, or the file cannot be written.
+pub fn write_look(settings: &Settings, path: &Path) -> Result<(), String> {
+    let cannot = |why: &dyn std::fmt::Display| format!("cannot write {}: {why}", path.display());
+    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        return Err(cannot(&"the name of a look file ends in .toml"));
+    }
+    check_place(path)?;
+    part::replace(path, settings.to_toml().as_bytes()).map_err(|error| cannot(&error))
 }
 
 /// Fails before any work if no picture can be written to `path`.

@@ -12,6 +12,8 @@ const EXTENSIONS: [&str; 12] =
     ["gltf", "glb", "zip", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
 /// Extensions of models.
 const MODELS: [&str; 3] = ["gltf", "glb", "zip"];
+/// Extensions of look files and of pictures that hold a look.
+const LOOKS: [&str; 2] = ["toml", "png"];
 /// Extensions of pictures.
 const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
 /// Nobody cancels a dialog in less time than this. The portal reports a cancel and its own absence in the same way.
@@ -31,6 +33,10 @@ pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, NoDialog> {
         Dialog::Beside => {
             let files = rfd::FileDialog::new().set_title("Add a model");
             files.add_filter("Models", &MODELS).add_filter("All files", &["*"]).pick_file()
+        }
+        Dialog::Look => {
+            let files = rfd::FileDialog::new().set_title("Open a look");
+            files.add_filter("Looks", &LOOKS).add_filter("All files", &["*"]).pick_file()
         }
         Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
         Dialog::Picture => {

@@ -11,6 +11,7 @@ mod comparison_labels;
 mod context;
 mod control;
 mod dialog;
+mod drops;
 mod editor;
 mod ending;
 mod engine;
@@ -36,7 +37,6 @@ mod start;
 mod state;
 mod widgets;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -55,6 +55,7 @@ use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
 use closing::Closing;
+use drops::{Drops, Happened};
 use ending::Ending;
 use engine::Engine;
 use frames::background::Next;
@@ -135,8 +136,7 @@ struct Open {
     window: Arc<Window>,
     /// The window's title.
     title: String,
-    /// Files that were dropped together, which come one by one.
-    dropped: Vec<PathBuf>,
+    drops: Drops,
     closing: Closing,
 }
 
@@ -161,9 +161,9 @@ impl App {
         interface.init_accessibility(event_loop, self.proxy.clone());
         window.set_visible(true);
         let (state, engine) = start(&gpu, &layouts, options, early, (&self.sender, true))?;
-        let (drawing, title, dropped) = (Drawing::new(screen), String::new(), Vec::new());
+        let (drawing, title, drops) = (Drawing::new(screen), String::new(), Drops::default());
         let closing = Closing::default();
-        Ok(Open { state, engine, drawing, interface, gpu, window, title, dropped, closing })
+        Ok(Open { state, engine, drawing, interface, gpu, window, title, drops, closing })
     }
 
     /// Goes on with what is drawn between frames, until a frame is due.
@@ -224,9 +224,19 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
-        let Some(open) = self.open.as_mut().filter(|open| !open.dropped.is_empty()) else { return };
+        let Some(open) = &mut self.open else { return };
+        let mut files = Vec::new();
+        for happened in open.drops.happened() {
+            match happened {
+                Happened::Dropped(dropped) => files = dropped,
+                Happened::Repeated => drops::forget(&open.window),
+            }
+        }
+        if files.is_empty() {
+            return;
+        }
         let adds = open.interface.mouse.modifiers.shift_key();
-        let dropped = command::file::dropped(&open.state, std::mem::take(&mut open.dropped), adds);
+        let dropped = command::file::dropped(&open.state, files, adds);
         dropped.into_iter().for_each(|command| command::execute(&mut open.state, &mut open.engine, command));
         open.interface.outdate();
         open.window.request_redraw();
@@ -274,7 +284,8 @@ impl App {
                 open.drawing.is_covered = is_covered;
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open.dropped.push(path),
+            WindowEvent::HoveredFile(path) => open.drops.hover(path),
+            WindowEvent::DroppedFile(path) => open.drops.release(path),
             WindowEvent::RedrawRequested => {
                 let title = of_window(&open.state);
                 if open.title != title {

@@ -2,8 +2,11 @@
 
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
+use specula::message::tell;
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
+
+use super::output::print_diagnostics;
 
 /// Why a command ends early. `end` prints it.
 #[derive(Debug)]
@@ -30,6 +33,15 @@ impl Failure {
             Self::Usage(_) => 2,
             Self::Device(_) => 3,
             Self::Window(code) => *code,
+        }
+    }
+
+    /// Prints the reason, unless it is printed already.
+    pub fn tell(&self) {
+        match self {
+            Self::Input(message) | Self::Usage(message) | Self::Device(message) => tell(message),
+            Self::Shaders(diagnostics) => print_diagnostics(diagnostics),
+            Self::Printed | Self::Window(_) => {}
         }
     }
 }

@@ -33,7 +33,7 @@ use std::io::{ErrorKind, IsTerminal as _};
 use std::time::Instant;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use specula::message::{flush_output, lost_output, tell};
+use specula::message::{flush_output, lost_output};
 
 pub use failure::Failure;
 pub use output::{print_diagnostics, print_json, tell_left_out};
@@ -170,10 +170,6 @@ fn output_is_lost(why: &dyn Display) -> Failure {
 
 /// Prints why the program ends.
 fn end(failure: &Failure) -> u8 {
-    match failure {
-        Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => tell(message),
-        Failure::Shaders(diagnostics) => print_diagnostics(diagnostics),
-        Failure::Printed | Failure::Window(_) => {}
-    }
+    failure.tell();
     failure.exit_code()
 }

@@ -180,7 +180,7 @@ pub(in crate::app) fn chosen(dialog: Option<Dialog>, path: PathBuf) -> Command {
 }
 
 /// Shows a file dialog on a thread.
-fn choose(state: &mut State, engine: &mut Engine, dialog: Dialog) -> Outcome {
+pub(super) fn choose(state: &mut State, engine: &mut Engine, dialog: Dialog) -> Outcome {
     if state.choosing.is_some() {
         return Err("The file dialog is already open".to_owned());
     }

@@ -13,6 +13,7 @@ mod fields;
 pub(super) mod file;
 mod history;
 pub(super) mod layout;
+pub(super) mod look;
 mod measure;
 pub(super) mod modes;
 mod numbers;

@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, checks, compare, costs, file, history, layout, measure, modes, numbers, playback, program, scene,
-    settings, shaders, source, texts,
+    camera, capture, checks, compare, costs, file, history, layout, look, measure, modes, numbers, playback, program,
+    scene, settings, shaders, source, texts,
 };
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -48,6 +48,8 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &texts::FILE,
     &texts::FILES,
     &file::OPEN,
+    &look::SAVE_LOOK,
+    &look::CHOOSE_LOOK,
     &compare::COMPARE,
     &compare::TOGGLE_COMPARE,
     &compare::TOGGLE_DIFFERENCE,

@@ -157,7 +157,8 @@ pub(in crate::app) fn report(state: &mut State, event: ReloadEvent) {
     state.shader.log.finished(&event);
     state.stages.invalidate();
     // No file has changed if only another expression is watched.
-    let is_watch = event.changed.is_empty() && event.stages == [expression::STAGE];
+    let is_of_watch = |stage: &String| expression::is_watched(&stage.as_str().into());
+    let is_watch = event.changed.is_empty() && !event.stages.is_empty() && event.stages.iter().all(is_of_watch);
     // Numbers that are dragged, and an older version in place of the newest, are no saves.
     if state.has_folder() && state.edits.draft.as_ref().is_none() && state.edits.restored.is_none() {
         state.hint.saved(&event);

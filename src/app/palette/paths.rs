@@ -78,6 +78,7 @@ fn is_for(dialog: Option<Dialog>, file: &Listed) -> bool {
         || match dialog {
             None | Some(Dialog::File) => file.kind != FileKind::Other,
             Some(Dialog::Beside) => file.kind == FileKind::Model,
+            Some(Dialog::Look) => file.kind == FileKind::Look,
             Some(Dialog::Tree | Dialog::SecondTree) => file.kind == FileKind::Shader,
             Some(Dialog::Picture) => PICTURES.contains(&&*extension),
             Some(Dialog::New) => false,
@@ -94,7 +95,7 @@ fn is_for_folder(dialog: Option<Dialog>, files: &[Listed]) -> bool {
         Some(Dialog::Beside) => files.iter().filter(|file| file.kind == FileKind::Model).count() == 1,
         Some(Dialog::Tree | Dialog::SecondTree) => has("interface.glsl"),
         Some(Dialog::New) => true,
-        Some(Dialog::Picture) => false,
+        Some(Dialog::Picture | Dialog::Look) => false,
     }
 }
 

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
+use egui::{Button, DragValue, Key, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use crate::app::command::shaders::DRAFT;
 use crate::app::command::spec::Command;
@@ -15,6 +15,7 @@ use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::source_line::{SourceLine, stop, watch};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
+use crate::app::state::trace::choice;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
@@ -23,6 +24,7 @@ use crate::settings::Settings;
 use crate::shader::Expression;
 use crate::shader::expression::{MODE, Variable};
 use crate::shader::rewrite::Edit;
+use crate::shader::trace::Event;
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -32,6 +34,10 @@ pub(super) static PANEL: PanelSpec =
 
 /// Height of a menu of members, points.
 const MENU: f32 = 320.0;
+
+/// Height of the list of evaluations, and of a row of it, points.
+const EVALUATIONS: f32 = 130.0;
+const ROW: f32 = 18.0;
 
 /// Most edited lines that the panel offers.
 const MOST_LINES: usize = 8;
@@ -69,7 +75,7 @@ impl PanelUi for ExpressionState {
 
 /// Shows the panel.
 fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Commands) {
-    let Commands { settings, list, .. } = commands;
+    let Commands { settings, list, sight, .. } = commands;
     if own.known != settings.expression.at {
         own.known.clone_from(&settings.expression.at);
         own.field.clone_from(&settings.expression.at);
@@ -88,7 +94,10 @@ fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Co
     match own.shown.take() {
         Some(mut shown) => {
             line(ui, &mut shown, own);
-            offered(ui, settings, &shown, own);
+            if let Some(name) = offered(ui, settings, &shown, own) {
+                sight.source = true;
+                evaluations(ui, state, settings, (shown.path.as_str(), shown.line, &name));
+            }
             numbers(ui, state, &mut shown, list);
             own.shown = Some(shown);
         }
@@ -168,15 +177,15 @@ fn line(ui: &mut Ui, shown: &mut SourceLine, own: &mut ExpressionState) {
     ui.add(elided(text)).on_hover_text(shown.before.trim());
 }
 
-/// The variables that the line offers, and which evaluation counts.
-fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut ExpressionState) {
+/// The variables that the line offers, and which evaluation counts. Returns the watched expression, if it is one of this line.
+fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut ExpressionState) -> Option<String> {
     let watched = Expression::parse(&settings.expression.at, 0).ok();
     let watched =
         watched.filter(|watched| watched.line == shown.line && settings.mode == MODE).map(|watched| watched.text);
     let Some(variables) = &shown.variables else {
-        let text = "Values of this file cannot be shown: no fragment stage of the model or of a pass that covers its image includes it.";
+        let text = "Values of this file cannot be shown: no vertex or fragment stage of the model or of a pass that covers its image includes it.";
         ui.label(RichText::new(text).small().color(QUIET));
-        return;
+        return None;
     };
     let returns = shown.before.trim_start().starts_with("return");
     let mut chosen: Option<&str> = None;
@@ -203,7 +212,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut E
             match variables.first().and_then(struct_of) {
                 None => offer(ui),
                 Some(of) => {
-                    let list = |ui: &mut Ui| egui::ScrollArea::vertical().max_height(MENU).show(ui, &mut offer);
+                    let list = |ui: &mut Ui| ScrollArea::vertical().max_height(MENU).show(ui, &mut offer);
                     ui.menu_button(small_mono(format!("{of}.")), list).response.on_hover_text("Its members");
                 }
             }
@@ -229,6 +238,41 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut E
             ui.add(drag).on_hover_text(hint).on_disabled_hover_text(hint);
         });
     });
+    watched
+}
+
+/// Lists the evaluations of the watched expression at the pinned pixel, with their values and calls. A click chooses one.
+fn evaluations(ui: &mut Ui, state: &State, settings: &mut Settings, (file, line, name): (&str, u32, &str)) {
+    if state.inspection.pin.is_none() {
+        let hint = "Click a pixel of the picture to list its evaluations there";
+        return drop(ui.label(RichText::new(hint).small().color(QUIET)));
+    }
+    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
+    let Some((trace, fragment)) = trace.zip(state.traces.fragment()) else { return };
+    let found = choice::evaluations(trace, fragment, (file, line), name);
+    let chosen = match settings.expression.evaluation {
+        0 => found.len(),
+        number => number as usize,
+    };
+    ScrollArea::vertical().id_salt("evaluations").max_height(EVALUATIONS).show_rows(
+        ui,
+        ROW,
+        found.len(),
+        |ui, rows| {
+            for index in rows {
+                let Event { value, calls, .. } = found[index];
+                let value = value.map(|value| value.text()).unwrap_or_default();
+                let text = small_mono(format!("{:>3}  {value}  {calls}", index + 1));
+                let row = ui.add(Button::selectable(index + 1 == chosen, text).truncate());
+                if row
+                    .on_hover_text(format!("Show evaluation {} of {name} in each pixel: {calls}", index + 1))
+                    .clicked()
+                {
+                    settings.expression.evaluation = u32::try_from(index + 1).unwrap_or(0);
+                }
+            }
+        },
+    );
 }
 
 /// The numbers of the line as sliders.
@@ -325,6 +369,9 @@ mod tests {
 
     use super::*;
     use crate::app::state::shaders::difference::difference;
+    use crate::app::state::trace::sample;
+    use crate::shader::trace::Act;
+    use crate::shader::trace::sample::called;
     use crate::shader::{Diagnostic, ShaderSet, Source, TreePath, Watching};
 
     /// The panel over a window that watches an expression which does not compile.
@@ -371,6 +418,30 @@ mod tests {
         harness.get_by_role_and_label(Role::Button, "Stop").click();
         harness.run();
         assert_eq!(harness.state().0.session.settings.expression.at, "");
+    }
+
+    #[test]
+    fn a_click_chooses_an_evaluation_at_the_pinned_pixel() {
+        let texts = BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from("float a = 2.0 * x;\n"))]);
+        let shaders = Arc::new(ShaderSet { texts, ..ShaderSet::default() });
+        let mut harness = panel();
+        let (state, own) = harness.state_mut();
+        let line = SourceLine::new(&shaders, &"a.glsl".into(), 1, &shaders.texts[&TreePath::from("a.glsl")]);
+        own.shown = line.map(|line| SourceLine { variables: Some(Vec::new()), ..line });
+        watch(&mut state.session.settings, "a.glsl:1:a".to_owned());
+        state.session.shaders = Some(shaders.clone());
+        harness.run();
+        harness.get_by_label_contains("Click a pixel of the picture");
+        let state = &mut harness.state_mut().0;
+        state.inspection.pin = Some([3, 4]);
+        let events = [("f", 2.0), ("f [2]", 4.0), ("f [3]", 8.0)];
+        let events = events.map(|(calls, value)| called(calls, 1, Act::Store, "a", &[value])).to_vec();
+        sample::add(&mut state.traces, &shaders, 1, events, &[1]);
+        harness.run();
+        harness.get_by_label_contains("3  8  f [3]");
+        harness.get_by_label_contains("2  4  f [2]").click();
+        harness.run();
+        assert_eq!(harness.state().0.session.settings.expression.evaluation, 2);
     }
 
     #[test]

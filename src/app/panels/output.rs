@@ -5,6 +5,7 @@ pub(super) mod range;
 use egui::{RichText, Ui};
 
 use crate::app::command::layout::PANELS;
+use crate::app::command::look::{CHOOSE_LOOK, SAVE_LOOK, SaveLook};
 use crate::app::command::program::SAY;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
@@ -46,10 +47,19 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, shows_histogram: &mut b
         }
         true
     });
-    if ui.button("Copy as look file").on_hover_text("Copy all settings as TOML, for --look").clicked() {
-        ui.ctx().copy_text(settings.to_toml());
-        commands.push(SAY.with("Copied all settings as TOML".into()));
-    }
+    ui.horizontal_wrapped(|ui| {
+        let hint = "Write all settings to specula-look-N.toml. Open it by Ctrl+O, by a drop, or with --look";
+        if ui.button("Save look").on_hover_text(hint).clicked() {
+            commands.push(SAVE_LOOK.with(SaveLook::default()));
+        }
+        if ui.button("Open look…").on_hover_text("Take the settings of a look file or of a picture").clicked() {
+            commands.push(CHOOSE_LOOK.with(()));
+        }
+        if ui.button("Copy as look file").on_hover_text("Copy all settings as TOML, for --look").clicked() {
+            ui.ctx().copy_text(settings.to_toml());
+            commands.push(SAY.with("Copied all settings as TOML".into()));
+        }
+    });
 }
 
 fn background(ui: &mut Ui, settings: &mut Settings) {

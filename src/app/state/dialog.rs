@@ -7,6 +7,8 @@ pub(in crate::app) enum Dialog {
     File,
     /// A model to show beside those on screen.
     Beside,
+    /// A look file, or a picture with a look.
+    Look,
     /// A folder with a shader tree.
     Tree,
     /// A folder to write the shaders to.

@@ -71,7 +71,7 @@ pub(in crate::app) struct Sight {
     pub(in crate::app) timing: bool,
     /// Whether the values of the inspected pixel were.
     pub(in crate::app) inspector: bool,
-    /// Whether the code with the values of the pinned pixel was.
+    /// Whether values of a trace of the pinned pixel were: beside the code, or in the list of evaluations.
     pub(in crate::app) source: bool,
     /// Whether the mouse rests on one of these values.
     pub(in crate::app) around: bool,

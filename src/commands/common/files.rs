@@ -23,6 +23,13 @@ pub struct Models {
     added: Vec<PathBuf>,
 }
 
+impl Models {
+    /// All of them.
+    pub fn all(&self) -> Vec<PathBuf> {
+        self.model.iter().chain(&self.added).cloned().collect()
+    }
+}
+
 impl From<Option<PathBuf>> for Models {
     fn from(model: Option<PathBuf>) -> Self {
         Self { model, added: Vec::new() }

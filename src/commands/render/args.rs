@@ -40,6 +40,9 @@ pub struct Args {
     /// Whether a turntable turns the camera, the light or the model
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
     pub(super) turn: Turn,
+    /// Draw each model by itself, a folder as the models in it. The files are named by --out with {name}, which is '{name}.png' without it
+    #[arg(long, conflicts_with = "watch")]
+    pub(super) each: bool,
     /// Keep running, and render again whenever a shader or the model is saved
     #[arg(long)]
     pub(super) watch: bool,

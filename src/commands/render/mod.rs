@@ -2,15 +2,18 @@
 
 mod args;
 mod asserts;
+mod each;
 mod many;
 mod warnings;
 mod watch;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
+use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::message;
 use specula::picture;
@@ -30,16 +33,25 @@ use watch::{Changes, Watch};
 
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
+    let mut device = None;
+    if args.each {
+        return each::run(args, |args| draw(args, Instant::now(), &mut device));
+    }
+    draw(&mut args, start, &mut device)
+}
+
+/// Draws what the options name. `device` is opened once.
+fn draw(args: &mut Args, start: Instant, device: &mut Option<Arc<Gpu>>) -> Result<(), Failure> {
     args.common.take_files(&mut args.models)?;
     let mut settings = args.common.settings()?;
     let modes = Modes::of(&mut settings.mode);
-    if matches!(modes, Modes::Named(_)) && many::is_asked(&args) {
+    if matches!(modes, Modes::Named(_)) && many::is_asked(args) {
         let message = "`--mode` takes one mode here; --sheet takes a list itself, as --sheet final,d";
         return Err(Failure::Usage(message.into()));
     }
     let all = modes == Modes::All;
-    match many::is_asked(&args) {
-        true => many::check(&args)?,
+    match many::is_asked(args) {
+        true => many::check(args)?,
         false => check_out(&args.out)?,
     }
     if args.report.is_some() && args.sheet.is_none() && args.sweep.is_empty() {
@@ -54,7 +66,11 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let source = args.common.source()?;
     // Start watching before reading any file, so that no save is missed in between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
-    let gpu = args.common.gpu()?;
+    let gpu = match device {
+        Some(gpu) => gpu.clone(),
+        None => device.insert(args.common.gpu()?).clone(),
+    };
+    let args = &*args;
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
     let read = |settings: &mut Settings| {
@@ -68,7 +84,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }
-    if !first_picture(&mut headless, reload, &args, watch.as_mut(), &progress)? {
+    if !first_picture(&mut headless, reload, args, watch.as_mut(), &progress)? {
         return Ok(());
     }
     drop(progress);
@@ -77,14 +93,14 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     }
     let mut warnings = Warnings::default();
     warnings.tell(&headless.shaders().warnings);
-    match write(&mut headless, &args, &modes) {
+    match write(&mut headless, args, &modes) {
         Err(Failure::Shaders(diagnostics)) if watch.is_some() => {
-            tell(&args, &diagnostics);
+            tell(args, &diagnostics);
             message::tell("no picture yet; waiting for the next save");
         }
         result => {
             result?;
-            hint_at_frames(&headless, &args)?;
+            hint_at_frames(&headless, args)?;
             hint_at_background(&headless);
             note_limit(&headless)?;
             let is_left_out = |mode: &&Mode| all && !args.paths && mode.follows_paths();
@@ -92,17 +108,17 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         }
     }
     warn_of_bakes(&headless);
-    warn_of_not_finite(&mut headless, &args);
+    warn_of_not_finite(&mut headless, args);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
-    complete(&mut headless, &args, watch.is_some())?;
+    complete(&mut headless, args, watch.is_some())?;
     warnings.tell(&headless.shaders().warnings);
-    let mut asserted = asserts::check(&mut headless, &args);
+    let mut asserted = asserts::check(&mut headless, args);
     if let Some(mut watch) = watch {
         // A save may mend it.
         go_on(std::mem::replace(&mut asserted, Ok(())))?;
         message::tell(format_args!("wrote {}; watching, Ctrl+C ends", args.out.display()));
         while let Some(changes) = watch.next() {
-            again(&mut headless, &args, &modes, &mut watch, &changes, &mut warnings)?;
+            again(&mut headless, args, &modes, &mut watch, &changes, &mut warnings)?;
             check_validation(&gpu)?;
         }
     }

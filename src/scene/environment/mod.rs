@@ -17,6 +17,7 @@ mod projection;
 mod radiance;
 mod sky;
 mod studio;
+mod subsampled;
 mod suns;
 #[cfg(test)]
 mod tests;

@@ -10,7 +10,8 @@
 //! inserts `watch_value(EXPR);` on the line of the statement, which `syntax.rs` finds without a preprocessor.
 //! `library/watched.rs` follows the line over edits by the unchanged lines above and below it. The copy of the model's stage draws
 //! the model; that of another pass draws an image of its own, just before that pass (`//@pass ... watches=NAME`), which the mode
-//! shows. While an expression does not compile there is no such mode, and the final picture is shown in its place: the error belongs
+//! shows. In a vertex stage, a copy of that beside the copy of the fragment stage hands the value over, and pixels show it between those
+//! of their vertices. While an expression does not compile there is no such mode, and the final picture is shown in its place: the error belongs
 //! to the expression ([`Watching`]) and is no error of the tree. The stage is not part of `debug.frag`, because a wrong expression
 //! must not disable a hundred modes. A loop without end in this stage has no line in its message.
 
@@ -28,9 +29,9 @@ use crate::shader::glsl::{assigns, code};
 
 pub use follow::{follow, lines_before};
 pub use host::{can_show, hosts};
-pub use overlay::{Overlay, is_virtual};
+pub use overlay::{Overlay, is_virtual, is_watched};
 pub use scope::{Structs, Variable, members, variables};
-pub use stage::{MODE, MODE_ID, STAGE, components_of};
+pub use stage::{MODE, MODE_ID, STAGE, VERTEX, components_of};
 
 /// An expression and the place where it is watched.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! The texts that only the stage of a watched expression sees.
+//! The texts that only the stages of a watched expression see.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use super::Expression;
 use super::host::{Found, find};
 use super::place::{Placed, inserted, occurrence, place};
 use super::scope::{members, variables};
-use super::stage::{FUNCTION, LIBRARY, STAGE, stage_text};
+use super::stage::{FUNCTION, LIBRARY, STAGE, VERTEX, VERTEX_LIBRARY, stage_texts};
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::PassDesc;
 use crate::shader::diagnostic::Diagnostic;
@@ -17,15 +17,20 @@ use crate::shader::source::snapshot::Snapshot;
 
 /// Whether a file is one of those that stand for a watched expression.
 pub fn is_virtual(path: &TreePath) -> bool {
-    path.as_str() == STAGE || path.as_str() == LIBRARY
+    is_watched(path) || [LIBRARY, VERTEX_LIBRARY].contains(&path.as_str())
+}
+
+/// Whether a stage is one of a watched expression.
+pub fn is_watched(stage: &TreePath) -> bool {
+    [STAGE, VERTEX].contains(&stage.as_str())
 }
 
 /// The texts of a watched expression in one version of a tree.
 #[derive(Debug)]
 pub struct Overlay {
-    /// The stage and its library, which every reader of the tree may see.
+    /// The stages and their libraries, which every reader of the tree may see.
     pub files: BTreeMap<TreePath, Arc<str>>,
-    /// The file with the inserted call, which only the stage sees.
+    /// The file with the inserted call, which only the stages see.
     pub edited: Option<(TreePath, Arc<str>)>,
     /// Why the expression cannot be watched.
     pub error: Option<Diagnostic>,
@@ -33,8 +38,8 @@ pub struct Overlay {
     pub file: Option<TreePath>,
     /// An error at the place of the expression, without its message.
     at: Diagnostic,
-    /// The stage that the texts are made of, as displayed.
-    host: String,
+    /// The stages that the texts are made of, as displayed.
+    hosts: BTreeMap<&'static str, String>,
     text: String,
     /// The names that the line offers.
     names: Vec<String>,
@@ -53,7 +58,7 @@ impl Overlay {
             edited: None,
             error: None,
             file: None,
-            host: String::new(),
+            hosts: BTreeMap::new(),
             names: Vec::new(),
             is_outside: false,
         };
@@ -64,7 +69,7 @@ impl Overlay {
         overlay
     }
 
-    /// Makes the texts of the stage and its library.
+    /// Makes the texts of the stages and their libraries.
     fn make(
         &mut self,
         expression: &Expression,
@@ -73,12 +78,12 @@ impl Overlay {
         snapshot: &Snapshot<'_>,
     ) -> Result<BTreeMap<TreePath, Arc<str>>, Box<Diagnostic>> {
         let found = find(&expression.file, hosts, snapshot)?;
-        self.host = snapshot.display_path(&TreePath::from(found.host.stage.as_str()));
+        let host = snapshot.display_path(&TreePath::from(found.host.stage.as_str()));
+        let vertex = found.vertex.as_ref().map(|vertex| (VERTEX, snapshot.display_path(&vertex.path)));
+        self.hosts = [(STAGE, host.clone())].into_iter().chain(vertex).collect();
         self.is_outside = self.place(expression, line, &found, snapshot)? == Placed::Outside;
-        let own = self.edited.as_ref().filter(|(path, _)| path.as_str() == found.host.stage);
-        let own = own.map(|(_, text)| text.clone());
-        let files = stage_text(expression, line, &found, own, self.is_outside, snapshot);
-        files.map_err(|message| Box::new(Diagnostic::error(&self.host, message)))
+        let files = stage_texts(expression, line, &found, self.edited.as_ref(), snapshot);
+        files.map_err(|message| Box::new(Diagnostic::error(host, message)))
     }
 
     /// Finds the place of the expression and makes the text with the call.
@@ -102,7 +107,8 @@ impl Overlay {
             let whole = found.raw.len() - found.raw.trim_start().len()..found.raw.trim_end().len();
             self.at = self.at.clone().on_line(line, Some(found.raw)).under(bytes.unwrap_or(whole));
         }
-        let texts: Vec<Arc<str>> = found.files.iter().filter_map(|path| snapshot.read(path).ok()).collect();
+        let files = found.vertex.iter().flat_map(|vertex| &vertex.files).chain(&found.files);
+        let texts: Vec<Arc<str>> = files.filter_map(|path| snapshot.read(path).ok()).collect();
         let structs = members(texts.iter().map(|text| &**text));
         self.names = variables(&text, line, &structs).into_iter().map(|variable| variable.name).collect();
         let call = |expression: &str| format!("{FUNCTION}({expression});");
@@ -153,10 +159,12 @@ impl Overlay {
         vec![error]
     }
 
-    /// A diagnostic of the stage, with the file that its author knows.
+    /// A diagnostic of a stage, with the file that its author knows.
     pub fn renamed(&self, mut diagnostic: Diagnostic, snapshot: &Snapshot<'_>) -> Diagnostic {
-        if diagnostic.file == snapshot.display_path(&TreePath::from(STAGE)) {
-            diagnostic.file.clone_from(&self.host);
+        let hosts =
+            self.hosts.iter().find(|(path, _)| diagnostic.file == snapshot.display_path(&TreePath::from(**path)));
+        if let Some((_, host)) = hosts {
+            diagnostic.file.clone_from(host);
         }
         diagnostic
     }
@@ -184,8 +192,17 @@ mod tests {
     const HOST: &str = "//@pass model \"Model\" draw=model to=picture\n#version 460\n#include \"interface.glsl\"\n\
         #include \"a.glsl\"\nlayout(location = 0) out vec4 color;\nvoid main() { color = f(all_lights()); }\n";
 
+    const VERTICES: &str = "#version 460\n#include \"interface.glsl\"\n#include \"moved.glsl\"\n\
+        layout(location = 0) out vec3 normal;\nvoid main() { normal = moved(draw.vertices.at[0].normal); }\n";
+
     fn overlay(expression: &str) -> Overlay {
-        let files = [("pbr.frag", HOST), ("a.glsl", "float f(float x) {\n    return 2.0 * x;\n}\n"), ("b.glsl", "")];
+        let files = [
+            ("pbr.frag", HOST),
+            ("a.glsl", "float f(float x) {\n    return 2.0 * x;\n}\n"),
+            ("b.glsl", ""),
+            ("pbr.vert", VERTICES),
+            ("moved.glsl", "vec3 moved(vec3 n) {\n    return -n;\n}\n"),
+        ];
         let source = Source::memory(files);
         let expression = Expression::parse(expression, 0).unwrap();
         let snapshot = Snapshot::new(&source);
@@ -207,6 +224,28 @@ mod tests {
         let library = &overlay.files[&TreePath::from(LIBRARY)];
         assert!(library.starts_with("#include \"interface.glsl\"\n"));
         assert!(find_word(library, "watch_value").is_some());
+    }
+
+    #[test]
+    fn vertices_give_their_values_to_the_pixels_between_them() {
+        let of = |expression: &str| {
+            let overlay = overlay(expression);
+            assert_eq!(overlay.error, None);
+            let text = |path: &str| overlay.files.get(&TreePath::from(path)).map(|text| text.to_string());
+            (text(VERTEX), text(STAGE).unwrap(), overlay.edited)
+        };
+        let (vertex, stage, edited) = of("moved.glsl:2:n");
+        assert_eq!(&*edited.unwrap().1, "vec3 moved(vec3 n) {\n    watch_value(n); return -n;\n}\n");
+        let vertex = vertex.unwrap();
+        assert!(
+            vertex.starts_with(&VERTICES.replace("interface.glsl", VERTEX_LIBRARY).replace("main", "watched_main"))
+        );
+        assert!(vertex.contains("layout(location = 15) out vec4 watch_varying;"), "{vertex}");
+        assert!(stage.contains("layout(location = 15) in vec4 watch_varying;"), "{stage}");
+        let (vertex, _, edited) = of("pbr.vert:5:normal");
+        assert!(edited.is_some() && vertex.unwrap().contains("watch_value(normal); }"));
+        let (vertex, stage, _) = of("a.glsl:2:x");
+        assert!(vertex.is_none() && !stage.contains("watch_varying"), "the copy has the model's vertex stage");
     }
 
     #[test]

@@ -1,11 +1,12 @@
-//! The stage that computes a watched expression: a copy of the stage of its pass, with another `main`.
+//! The stages that compute a watched expression: copies of the fragment stage of its pass, and of the vertex stage where that is
+//! watched, each with another `main`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::Expression;
-use super::host::Found;
+use super::host::{Found, VertexStage};
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE, PASS_MODES};
 use crate::shader::annotation::pass::{Cull, Instances, MODEL, PassDesc, PassSize};
 use crate::shader::glsl::syntax::{functions, within};
@@ -16,8 +17,11 @@ use crate::shader::spirv::Module;
 
 /// The stage that shows the expression. No tree lists it: names of files with a dot at their start are hidden.
 pub const STAGE: &str = ".expression.frag";
-/// Path that replaces the first include of that stage.
+/// The vertex stage beside it.
+pub const VERTEX: &str = ".expression.vert";
+/// Paths that replace the first include of these stages.
 pub(super) const LIBRARY: &str = ".expression.glsl";
+pub(super) const VERTEX_LIBRARY: &str = ".expression_vertex.glsl";
 /// The slug of the mode, and the name of the pass.
 pub const MODE: &str = "expression";
 /// The number of the mode, below those of passes.
@@ -26,48 +30,30 @@ pub const MODE_ID: u32 = PASS_MODES - 1;
 pub(super) const FUNCTION: &str = "watch_value";
 /// The library that names the extensions of a stage, which must stand before any code.
 const INTERFACE: &str = "interface.glsl";
+/// The location of the value between the stages: the last that every device has.
+const VARYING: u32 = 15;
 
-/// The texts of the stage and its library. `own`: the text of the host with the call, if the expression stands in it.
-pub(super) fn stage_text(
+/// The texts of the stages and their libraries. `edited`: the file of the expression with the call, if it stands in a function.
+pub(super) fn stage_texts(
     expression: &Expression,
     line: u32,
     found: &Found,
-    own: Option<Arc<str>>,
-    is_outside: bool,
+    edited: Option<&(TreePath, Arc<str>)>,
     snapshot: &Snapshot<'_>,
 ) -> Result<BTreeMap<TreePath, Arc<str>>, String> {
-    let Found { host, files, .. } = found;
+    let Found { host, files, vertex, .. } = found;
     let path = TreePath::from(host.stage.as_str());
-    let text = snapshot.read(&path).map_err(|error| format!("{path} {error}"))?;
-    let text = own.unwrap_or(text);
+    let read = |path: &TreePath| match edited.filter(|(edited, _)| edited == path) {
+        Some((_, text)) => Ok(text.clone()),
+        None => snapshot.read(path).map_err(|error| format!("{path} {error}")),
+    };
+    let text = read(&path)?;
     let others: Vec<Arc<str>> = files.iter().filter_map(|path| snapshot.read(path).ok()).collect();
     let color = std::iter::once(&text).chain(&others).find_map(|text| color_of(text));
     let color = color.ok_or_else(|| format!("{path} has no `out vec4` color"))?;
 
     let code = Code::new(&text);
-    let main = main_of(&code.tokens);
-    let library = library(expression.evaluation);
-    let has_interface =
-        files.contains(&TreePath::from(INTERFACE)) || includes(&text).any(|include| include.name == INTERFACE);
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    let mut texts = BTreeMap::new();
-    let mut names = includes(&text).map(|include| (include.bytes, resolved(&path, include.name, snapshot)));
-    match names.next() {
-        Some((bytes, first)) => {
-            let interface = if has_interface { format!("#include \"{INTERFACE}\"\n") } else { String::new() };
-            let first = format!("#include \"{first}\"\n");
-            // The included file has the main.
-            let first = if main.is_some() { first } else { format!("#define main watched_main\n{first}#undef main\n") };
-            texts.insert(TreePath::from(LIBRARY), (interface + &library + &first).into());
-            edits.push((bytes, LIBRARY.to_owned()));
-        }
-        None => {
-            let start = code.tokens.first().map_or(0, |token| token.bytes.start);
-            edits.push((start..start, library.replace('\n', " ")));
-        }
-    }
-    edits.extend(names);
-    edits.extend(main.map(|bytes| (bytes, "watched_main".to_owned())));
     edits.extend(other_outputs(&code.tokens, &color).map(|bytes| (bytes.clone(), " ".repeat(bytes.len()))));
     if others.iter().any(|text| text.contains("chosen_lights()")) {
         let functions = functions(&code.tokens);
@@ -75,22 +61,95 @@ pub(super) fn stage_text(
         let all = inside.filter(|token| token.text == "all_lights");
         edits.extend(all.map(|token| (token.bytes.clone(), "chosen_lights".to_owned())));
     }
+    let call = edited.is_none().then(|| format!(" {FUNCTION}({});", expression.text)).unwrap_or_default();
+    let watched = vertex.as_ref().filter(|vertex| vertex.is_watched);
+    let (varying, shown) = match watched {
+        Some(_) => (
+            format!("layout(location = {VARYING}) in vec4 watch_varying;\n"),
+            // A value that only some of the vertices have is none between them.
+            " watch_reached = watch_varying.w > 0.999; watch_shown = watch_varying.xyz;",
+        ),
+        None => (String::new(), &*call),
+    };
+    let own = library(expression.evaluation);
+    let Copied { mut stage, library } = copy((&path, &text), files, edits, (LIBRARY, &own), snapshot);
+    stage += &ending(expression, line, host, &color, (&varying, shown), watched.is_some());
+    let mut texts = BTreeMap::from([(TreePath::from(STAGE), stage.into())]);
+    texts.extend(library.map(|text| (TreePath::from(LIBRARY), text.into())));
+    if let Some(VertexStage { path, files, is_watched }) = vertex {
+        let text = read(path)?;
+        let copied = copy((path, &text), files, Vec::new(), (VERTEX_LIBRARY, &own), snapshot);
+        let ending = match is_watched {
+            true => format!(
+                "\n\nlayout(location = {VARYING}) out vec4 watch_varying;\nvoid main() {{ watched_main();{call} \
+                 watch_varying = vec4(watch_shown, watch_reached ? 1.0 : 0.0); }}\n"
+            ),
+            false => "\n\nvoid main() { watched_main(); }\n".to_owned(),
+        };
+        texts.insert(TreePath::from(VERTEX), (copied.stage + &ending).into());
+        texts.extend(copied.library.map(|text| (TreePath::from(VERTEX_LIBRARY), text.into())));
+    }
+    Ok(texts)
+}
+
+/// A stage without its `main`.
+struct Copied {
+    stage: String,
+    /// The text of the library in the place of its first include, if it has one.
+    library: Option<String>,
+}
+
+/// Copies a stage with these edits: `main` becomes `watched_main`, and a library takes the place of the first include, or of the first line
+/// of code.
+fn copy(
+    (path, text): (&TreePath, &str),
+    files: &BTreeSet<TreePath>,
+    mut edits: Vec<(Range<usize>, String)>,
+    (library_path, own): (&str, &str),
+    snapshot: &Snapshot<'_>,
+) -> Copied {
+    let code = Code::new(text);
+    let main = main_of(&code.tokens);
+    let has_interface =
+        files.contains(&TreePath::from(INTERFACE)) || includes(text).any(|include| include.name == INTERFACE);
+    let mut names = includes(text).map(|include| (include.bytes, resolved(path, include.name, snapshot)));
+    let library = match names.next() {
+        Some((bytes, first)) => {
+            let interface = if has_interface { format!("#include \"{INTERFACE}\"\n") } else { String::new() };
+            let first = format!("#include \"{first}\"\n");
+            // The included file has the main.
+            let first = if main.is_some() { first } else { format!("#define main watched_main\n{first}#undef main\n") };
+            edits.push((bytes, library_path.to_owned()));
+            Some(interface + own + &first)
+        }
+        None => {
+            let start = code.tokens.first().map_or(0, |token| token.bytes.start);
+            edits.push((start..start, own.replace('\n', " ")));
+            None
+        }
+    };
+    edits.extend(names);
+    edits.extend(main.map(|bytes| (bytes, "watched_main".to_owned())));
     // The annotations of the stage itself are read from its own file.
     let annotations = code.lines().iter().filter_map(|line| Some(line.start + line.annotation?));
     edits.extend(annotations.map(|at| (at + 2..at + 3, " ".to_owned())));
     edits.sort_by_key(|(bytes, _)| std::cmp::Reverse(bytes.start));
-    let mut stage = text.to_string();
+    let mut stage = text.to_owned();
     for (bytes, new) in edits {
         stage.replace_range(bytes, &new);
     }
-    let call = if is_outside { format!(" {FUNCTION}({});", expression.text) } else { String::new() };
-    stage += &ending(expression, line, host, &color, &call);
-    texts.insert(TreePath::from(STAGE), stage.into());
-    Ok(texts)
+    Copied { stage, library }
 }
 
-/// The annotations and the `main` of the stage.
-fn ending(expression: &Expression, line: u32, host: &PassDesc, color: &str, call: &str) -> String {
+/// The annotations and the `main` of the fragment stage: declarations before it, and statements after those of the host.
+fn ending(
+    expression: &Expression,
+    line: u32,
+    host: &PassDesc,
+    color: &str,
+    (declared, call): (&str, &str),
+    is_interpolated: bool,
+) -> String {
     let plain = |text: &str| text.replace(['"', '\\'], "");
     let (file, watched) = (plain(&expression.file), plain(&expression.text));
     let which = match expression.evaluation {
@@ -98,8 +157,10 @@ fn ending(expression: &Expression, line: u32, host: &PassDesc, color: &str, call
         number => format!(", evaluation {number}"),
     };
     let name = format!("{watched} at {}:{line}{which}", file.rsplit('/').next().unwrap_or(&file));
-    let doc =
-        format!("Value of {watched} in line {line} of {file}{which}; a checkerboard where the line is not reached");
+    let between = if is_interpolated { ", interpolated between the vertices" } else { "" };
+    let doc = format!(
+        "Value of {watched} in line {line} of {file}{which}{between}; a checkerboard where the line is not reached"
+    );
     let cull = match host.cull {
         None => "",
         Some(Cull::None) => " cull=none",
@@ -111,7 +172,7 @@ fn ending(expression: &Expression, line: u32, host: &PassDesc, color: &str, call
             "\n\n//@pass {MODE} \"Watched expression\" draw=model to=picture instead={MODEL}{cull} doc=\"The value of an \
              expression of the shaders\"\n#include \"common/pixel.glsl\"\n#include \"debug/absent.glsl\"\n\
              //@mode {MODE} \"{name}\" group=\"Expression\" encode=data stage=.expression doc=\"{doc}\"\n\
-             const uint MODE_EXPRESSION = {MODE_ID}u;\n\
+             const uint MODE_EXPRESSION = {MODE_ID}u;\n{declared}\
              void main() {{ watched_main();{call} {color} = hdr_pixel(if_present(watch_reached, watch_shown), 1.0, no_data); \
              if (watch_is_bad()) {color}.rgb = watch_bad(); }}\n"
         );
@@ -129,7 +190,7 @@ fn ending(expression: &Expression, line: u32, host: &PassDesc, color: &str, call
     let rows = if host.rows_up { " rows=up" } else { "" };
     // The flags are those of common/pixel.glsl. A toy includes nothing whose names it may use.
     format!(
-        "\n\n//@pass {MODE} \"{name}\" watches={} size={size} format=rgba32f{rows}{draw} doc=\"{doc}\"\n\
+        "\n\n//@pass {MODE} \"{name}\" watches={} size={size} format=rgba32f{rows}{draw} doc=\"{doc}\"\n{declared}\
          vec4 watch_pixel() {{\n    ivec2 square = ivec2(gl_FragCoord.xy) / 16;\n    \
          vec3 absent = vec3(((square.x + square.y) & 1) == 0 ? 0.180017 : 0.260017);\n    \
          if (!watch_reached) return vec4(absent, {}.0);\n    \

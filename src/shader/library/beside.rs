@@ -6,6 +6,7 @@ use super::Library;
 use super::slot::StageSlot;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::expression::is_watched;
 use crate::shader::graph::stage_beside;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
@@ -42,7 +43,7 @@ impl Library {
         let fixed: BTreeSet<TreePath> = self.slots.iter().take(self.fixed).map(|slot| slot.path.clone()).collect();
         self.slots.retain(|slot| {
             let is_own = StageKind::of(&slot.path).is_some_and(StageKind::is_pre_rasterization);
-            !is_own || fixed.contains(&slot.path) || found.contains(&slot.path)
+            !is_own || is_watched(&slot.path) || fixed.contains(&slot.path) || found.contains(&slot.path)
         });
         self.relink |= self.slots.len() != known;
         for path in found {

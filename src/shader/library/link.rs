@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::passes::modes_of;
 use super::slot::StageSlot;
-use super::watched::is_watched;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::interface::{MODE_FINAL, StageRole};
 use crate::shader::annotation::{self, Annotations, Mode};
@@ -14,7 +13,7 @@ use crate::shader::compile::include::files_of;
 use crate::shader::contract::access::{Run, check_access};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::expression;
+use crate::shader::expression::{self, is_watched};
 use crate::shader::glsl::lines;
 use crate::shader::graph::{Graph, GraphPass, Input, PassStage, unlike_neighbors};
 use crate::shader::source::TreePath;
@@ -45,7 +44,8 @@ impl Library {
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
         // has compiled, since its parameters are its own.
-        let may_lack = |slot: &StageSlot| is_partial && !is_broken_watch(slot);
+        let is_left_out = |slot: &StageSlot| is_watched(&slot.path) && self.has_broken_watch();
+        let may_lack = |slot: &StageSlot| is_partial && !is_left_out(slot);
         let is_unseen = |slot: &&StageSlot| may_lack(slot) && slot.good.is_none() && !slot.is_good();
         let mut replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
         replacing.insert(TreePath::from(expression::STAGE));
@@ -60,13 +60,13 @@ impl Library {
         }
         for slot in &self.slots {
             match &slot.current {
+                // The error is that of the expression.
+                Some(_) if is_left_out(slot) => {}
                 Some(Ok(built)) => {
                     files.extend(&built.stage.dependencies);
                     warnings.extend(built.warnings.iter().cloned());
                     modules.insert(&slot.path, &built.stage);
                 }
-                // The error is that of the expression.
-                Some(Err(_)) if is_watched(&slot.path) => {}
                 Some(Err(broken)) if !may_lack(slot) => errors.extend(broken.diagnostics.iter().cloned()),
                 Some(Err(_)) | None => {
                     let good = slot.good.iter();
@@ -101,8 +101,8 @@ impl Library {
         let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);
         let unseen = unseen.filter(|slot| !replacing.contains(&slot.path));
         annotations.passes.extend(unseen.flat_map(|slot| annotation::passes_of(snapshot, &slot.path)));
-        let watched = known.iter().find(|(path, _)| is_watched(path)).map(|(_, stage)| &stage.spirv);
-        let components = watched.and_then(|spirv| expression::components_of(spirv));
+        let mut watched = known.iter().filter(|(path, _)| is_watched(path));
+        let components = watched.find_map(|(_, stage)| expression::components_of(&stage.spirv));
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
             let live = Box::new(|| stage.live_pass_bindings());
@@ -144,10 +144,11 @@ impl Library {
         let texts: BTreeMap<_, _> =
             dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
+        let has_broken_watch = self.has_broken_watch();
         for slot in &mut self.slots {
             match &slot.current {
+                Some(_) if has_broken_watch && is_watched(&slot.path) => slot.good = None,
                 Some(Ok(built)) => slot.good = Some(built.clone()),
-                Some(Err(_)) if is_watched(&slot.path) => slot.good = None,
                 Some(Err(_)) | None => {
                     pending.insert(slot.path.to_string());
                 }
@@ -174,11 +175,11 @@ impl Library {
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
-}
 
-/// Whether the stage is that of an expression that does not compile: nothing is left of it.
-fn is_broken_watch(slot: &StageSlot) -> bool {
-    is_watched(&slot.path) && matches!(slot.current, Some(Err(_)))
+    /// Whether a stage of the watched expression does not compile: nothing is left of them all.
+    fn has_broken_watch(&self) -> bool {
+        self.slots.iter().any(|slot| is_watched(&slot.path) && matches!(slot.current, Some(Err(_))))
+    }
 }
 
 /// The stages among `compiled`, each with what it is run for. A stage of several passes appears once for each role.

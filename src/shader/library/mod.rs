@@ -164,7 +164,7 @@ impl Library {
         let snapshot = Snapshot::new(&source);
         self.find_passes(&Change::All, &snapshot);
         let mut later = self.replacing(&snapshot);
-        later.insert(TreePath::from(expression::STAGE));
+        later.extend([expression::STAGE, expression::VERTEX].map(TreePath::from));
         if !with_all_passes {
             later.extend(self.passes_off(&snapshot));
         }
@@ -251,7 +251,9 @@ impl Library {
         let is_image = |path: &TreePath| path.extension().is_some_and(is_image_extension);
         let mut stale = Stale { moved: moved || paths.iter().any(is_image), compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
-            let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
+            // The texts of an expression follow those of its pass, which they do not include.
+            let hit =
+                expression::is_watched(&slot.path) || slot.dependencies().any(|dependency| paths.contains(dependency));
             // Always check a failed stage again: its dependencies are known only up to the error.
             if matches!(slot.current, Some(Ok(_))) && !hit {
                 continue;

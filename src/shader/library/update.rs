@@ -75,14 +75,17 @@ impl ShaderSet {
         self.watched.as_ref()?.error.as_ref()
     }
 
-    /// Whether expressions of a file can be watched: a pass that can show one includes it.
+    /// Whether expressions of a file can be watched: a pass that can show one includes it, or its vertex stage does.
     pub fn can_watch(&self, path: &TreePath) -> bool {
-        let model = self.graph.pass(MODEL).map(|model| model.pre_rasterization.vertex.as_str());
+        let model = self.graph.pass(MODEL).map(|model| &model.pre_rasterization);
+        let includes = |stage: &str| self.stages.get(stage).is_some_and(|stage| stage.dependencies.contains(path));
         self.graph.passes.iter().filter(|pass| !pass.is_compute).any(|pass| {
-            let vertex = pass.pre_rasterization.vertex.as_str();
-            let has_own = || vertex != FULL_SCREEN && Some(vertex) != model;
-            let stage = self.stages.get(&pass.desc.stage);
-            stage.is_some_and(|stage| stage.dependencies.contains(path)) && expression::can_show(&pass.desc, has_own)
+            let before = &pass.pre_rasterization;
+            let vertex = before.vertex.as_str();
+            let is_vertex_alone = before.stages().eq([vertex]);
+            let shows_vertices = || vertex != FULL_SCREEN && is_vertex_alone && includes(vertex);
+            expression::can_show(&pass.desc, || !is_vertex_alone && Some(before) != model)
+                && (includes(&pass.desc.stage) || shows_vertices())
         })
     }
 

@@ -1,12 +1,12 @@
-//! Adds the stage of the watched expression to a library, and finds the expression's line again after edits.
+//! Adds the stages of the watched expression to a library, and finds the expression's line again after edits.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::slot::StageSlot;
-use super::watched::{View, Watched, is_watched};
+use super::watched::{View, Watched};
 use super::{Change, Library};
-use crate::shader::expression::{Expression, Overlay, STAGE, Watching, follow, hosts};
+use crate::shader::expression::{Expression, Overlay, STAGE, VERTEX, Watching, follow, hosts, is_watched};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::{Read, Snapshot};
 
@@ -24,22 +24,24 @@ impl Library {
             return None;
         }
         self.watched = expression.map(|expression| Watched { line: expression.line, expression, file: None });
-        Some(Change::Paths(BTreeSet::from([TreePath::from(STAGE)])))
+        Some(Change::Paths(BTreeSet::from([STAGE, VERTEX].map(TreePath::from))))
     }
 
     /// The watched expression as the next set tells it.
     pub(super) fn watching(&self) -> Option<Watching> {
         let Watched { expression, line, .. } = self.watched.as_ref()?;
-        let slot = self.slots.iter().find(|slot| is_watched(&slot.path));
-        let broken = slot.and_then(|slot| slot.current.as_ref()?.as_ref().err());
-        let error = broken.and_then(|broken| broken.diagnostics.first().cloned());
+        let slots = self.slots.iter().filter(|slot| is_watched(&slot.path));
+        let mut broken = slots.filter_map(|slot| slot.current.as_ref()?.as_ref().err());
+        let error = broken.find_map(|broken| broken.diagnostics.first().cloned());
         Some(Watching { expression: expression.clone(), line: *line, error })
     }
 
     /// The snapshot for a stage. Finds the line of the watched expression in it.
     pub(super) fn view<'a>(&mut self, snapshot: Snapshot<'a>) -> View<'a> {
-        self.find_watched();
-        let Some(watched) = &mut self.watched else { return View { snapshot, watched: None } };
+        let Some(watched) = &mut self.watched else {
+            self.set_watched(&[]);
+            return View { snapshot, watched: None };
+        };
         if let Some((path, old)) = &watched.file
             && let Ok(new) = snapshot.read(path)
             && new != *old
@@ -57,19 +59,20 @@ impl Library {
         overlay.files.iter().for_each(|(path, text)| snapshot.put(path, read(text)));
         let edited = overlay.edited.iter().map(|(path, text)| (path.clone(), read(text))).collect();
         let seen = snapshot.over(edited);
+        let has_vertices = overlay.files.contains_key(&TreePath::from(VERTEX));
+        self.set_watched(if has_vertices { &[STAGE, VERTEX] } else { &[STAGE] });
         View { snapshot, watched: Some((seen, overlay)) }
     }
 
-    /// Adds the stage of the watched expression, or removes it.
-    fn find_watched(&mut self) {
-        let place = self.slots.iter().position(|slot| is_watched(&slot.path));
-        match (&self.watched, place) {
-            (Some(_), None) => self.slots.push(StageSlot::new(TreePath::from(STAGE))),
-            (None, Some(place)) => {
-                self.slots.remove(place);
-                self.relink = true;
+    /// Adds and removes stages, so that these are the stages of the watched expression.
+    fn set_watched(&mut self, stages: &[&str]) {
+        let known = self.slots.len();
+        self.slots.retain(|slot| !is_watched(&slot.path) || stages.contains(&slot.path.as_str()));
+        self.relink |= self.slots.len() != known;
+        for stage in stages {
+            if self.slots.iter().all(|slot| slot.path.as_str() != *stage) {
+                self.slots.push(StageSlot::new(TreePath::from(*stage)));
             }
-            _ => {}
         }
     }
 }

@@ -1,11 +1,11 @@
-//! The stage that shows a watched expression, beside the stages of the tree. Its errors cost its mode alone.
+//! The stages that show a watched expression, beside the stages of the tree. Their errors cost its mode alone.
 
 use std::sync::Arc;
 
 use super::slot::{Broken, Done};
 use crate::shader::compile::include::files_of;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::expression::{Expression, Overlay, STAGE};
+use crate::shader::expression::{Expression, Overlay, is_watched};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 
@@ -17,10 +17,10 @@ pub(super) struct Watched {
     pub file: Option<(TreePath, Arc<str>)>,
 }
 
-/// A snapshot of the tree with the stage of the watched expression.
+/// A snapshot of the tree with the stages of the watched expression.
 pub(super) struct View<'a> {
     pub snapshot: Snapshot<'a>,
-    /// Snapshot and overlay for the stage of the watched expression.
+    /// Snapshot and overlay for the stages of the watched expression.
     pub watched: Option<(Snapshot<'a>, Overlay)>,
 }
 
@@ -56,9 +56,4 @@ impl<'a> View<'a> {
         }
         done
     }
-}
-
-/// Whether a stage is that of the watched expression.
-pub(super) fn is_watched(stage: &TreePath) -> bool {
-    stage.as_str() == STAGE
 }

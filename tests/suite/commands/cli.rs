@@ -384,6 +384,33 @@ fn render_takes_a_list_of_modes() {
 }
 
 #[test]
+fn each_of_many_models_has_a_picture_of_its_own() {
+    let directory = directory();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = directory.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    };
+    let quad = |half: f32| glb::model(&glb::quad(half), &glb::gray());
+    write("models/a.glb", &quad(1.0));
+    write("models/b.glb", b"no model");
+    write("models/c.glb", &quad(0.5));
+    write("packs/d/scene.glb", &quad(1.0));
+    write("packs/e/scene.glb", &quad(1.0));
+    let render = |more: &[&str]| run(directory.path(), &[&["render", "--each"], more, &SMALL].concat());
+    // One that cannot be read does not keep the others away, and is named in the end.
+    let told = ["b.glb", "1 of 3 models have no picture: models/b.glb"];
+    render(&["models", "--out", "{name}.small.png"]).expect(1, &told);
+    let has = |file: &str| directory.path().join(file).exists();
+    assert_eq!(["a.small.png", "b.small.png", "c.small.png"].map(has), [true, false, true]);
+    render(&["models/c.glb", "packs"]).expect(0, &[]);
+    assert_eq!(["c.png", "d.png", "e.png"].map(has), [true; 3]);
+    render(&["models/c.glb", "--out", "one.png"]).expect(2, &["{name}"]);
+    render(&["models/a.glb", "packs/d", "packs/d"]).expect(2, &["the same name"]);
+    render(&[]).expect(2, &["--each needs models"]);
+}
+
+#[test]
 fn an_exr_holds_raw_floats() {
     let directory = directory();
     let mesh = glb::sphere(16, 32);

@@ -134,6 +134,40 @@ fn values_of_passes_and_of_the_tone_map_are_shown() {
 }
 
 #[test]
+fn values_of_vertices_are_shown_between_them() {
+    let tree = Tree::new();
+    let hook = "void user_vertex(inout Vertex vertex) {";
+    let code = format!(
+        "float twice(float x) {{\n    float y = 2.0 * x;\n    return y;\n}}\n\n{hook}\n    float quarter = 0.25;\n    \
+         float half_of_it = twice(quarter);\n    if (half_of_it < 0.0) {{\n        quarter = 9.0;\n    }}"
+    );
+    tree.write("user/vertex.glsl", &tree.edited("user/vertex.glsl", hook, &code));
+    let at = |file: &str, what: &str, name: &str| format!("{file}:{}:{name}", line_of(&tree.read(file), what));
+    let of_hook = |what: &str, name: &str| value(&tree, &at("user/vertex.glsl", what, name), &[]);
+    assert_eq!(first(&of_hook("float quarter", "quarter")), 0.25);
+    assert_eq!(first(&of_hook("float y", "y")), 0.5);
+    assert_eq!(first(&of_hook("return y", "y")), 0.5);
+    assert_eq!(of_hook("quarter = 9.0", "quarter"), Value::Null, "a line that no vertex reaches");
+    // Between the vertices as the fragment stage gets it.
+    let moved = value(&tree, &at("pbr.vert", "fragment = fragment_of(vertex);", "fragment.position_ws"), &[]);
+    let seen = value(&tree, &at("pbr.frag", "vec3 v = safe_normalize(", "fragment.position_ws"), &[]);
+    assert!(
+        (0..3).all(|axis| (moved[axis].as_f64().unwrap() - seen[axis].as_f64().unwrap()).abs() < 1e-5),
+        "{moved} {seen}"
+    );
+    // A pass with a vertex stage of its own, in both of its stages.
+    let ground = ["--set", "passes.ground=true"];
+    let ground_blockers = |file: &str, what: &str, name: &str| {
+        let file = format!("passes/ground/{file}");
+        value(&tree, &at(&file, what, name), &ground)
+    };
+    let height = ground_blockers("ground_blockers.vert", "float height", "vec2(3.5, height)");
+    assert_eq!(first(&height), 3.5, "{height}");
+    let color = ground_blockers("ground_blockers.frag", "color = vec4(1.0", "color");
+    assert_eq!(first(&color), 1.0, "{color}");
+}
+
+#[test]
 fn a_value_that_is_not_finite_has_a_color_of_its_own() {
     let tree = tree();
     let line = line_of(&tree.read("user.glsl"), "return sum + x");
@@ -197,7 +231,7 @@ fn what_cannot_be_watched_is_said_at_its_place() {
     let unknown = error(&format!("{NDF}:{line}:a3"));
     assert!(unknown.contains(&format!("{NDF}:{line}:")) && unknown.contains("cannot watch `a3`"), "{unknown}");
     assert!(unknown.contains("a2"), "the nearest name: {unknown}");
-    assert!(error("pbr.vert:10:x").contains("not in vertex stages"));
+    assert!(error("deform.comp:10:x").contains("not in other stages"));
     assert!(error("brdf/nfd.glsl:10:x").contains("brdf/ndf.glsl"));
     let shade = tree.read("lighting/shade.glsl");
     let whole = line_of(&shade, "Light light = light_at(i, s.position_ws);");
@@ -249,9 +283,32 @@ fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
     tree.write(NDF, &ndf);
     let (repaired, _) = ready(library.update(&paths));
     assert!(repaired.expression_error().is_none() && repaired.modes.iter().any(|mode| mode.slug == "expression"));
+    // The stage of the model, which the copy does not include.
+    let host = tree.read("pbr.frag");
+    tree.write("pbr.frag", &host.replace("hdr_pixel(radiance, coverage", "hdr_pixel(2.0 * radiance, coverage"));
+    let of_host = Change::Paths(BTreeSet::from([TreePath::from("pbr.frag")]));
+    let (_, report) = ready(library.update(&of_host));
+    let compiled: Vec<&str> = report.stages.iter().map(|(stage, _)| stage.as_str()).collect();
+    assert!(compiled.contains(&".expression.frag"), "{compiled:?}");
+    // A line of a vertex stage needs a stage more, which goes with it.
+    let vertex = specula::shader::Expression::parse("pbr.vert:20:gl_Position", 0).unwrap();
+    let change = library.watch(Some(vertex)).unwrap();
+    let (vertices, report) = ready(library.update(&change));
+    assert_eq!(vertices.expression_error(), None);
+    assert_eq!(report.stages.len(), 2, "{:?}", report.stages);
+    assert_eq!(vertices.modes.iter().find(|mode| mode.slug == "expression").map(|mode| mode.components), Some(3));
+    let wrong = specula::shader::Expression::parse("pbr.vert:20:nothing", 0).unwrap();
+    let change = library.watch(Some(wrong)).unwrap();
+    let (wrong, _) = ready(library.update(&change));
+    assert!(wrong.expression_error().is_some_and(|error| error.file.ends_with("pbr.vert")), "{wrong:?}");
+    assert!(wrong.modes.iter().all(|mode| mode.slug != "expression"));
     let change = library.watch(None).unwrap();
     let (without, _) = ready(library.update(&change));
-    assert!(without.modes.iter().all(|mode| mode.slug != "expression") && without.pending.is_empty());
+    assert!(
+        without.stages.len() == plain.stages.len()
+            && without.modes.iter().all(|mode| mode.slug != "expression")
+            && without.pending.is_empty()
+    );
     assert!(without.warnings.is_empty(), "{:?}", without.warnings);
 }
 

@@ -35,11 +35,22 @@ x11rb::atom_manager! {
 /// Drags files over the pixel `at` of the screen and drops them on the window. Returns once the window has said that it is finished.
 #[track_caller]
 pub fn drop_files(display: &str, window: u32, at: (u32, u32), files: &[&Path]) {
+    drag(display, window, files, move |source| source.drop_at(at));
+}
+
+/// Drops a file of a program that moves the mouse on before it answers, and gives the second of its answers after the drop.
+#[track_caller]
+pub fn drop_file_and_answer_late(display: &str, window: u32, at: (u32, u32), file: &Path) {
+    drag(display, window, &[file], move |source| source.drop_and_answer_late(at));
+}
+
+#[track_caller]
+fn drag(display: &str, window: u32, files: &[&Path], run: impl FnOnce(&Source) + Send + 'static) {
     let uri: String = files.iter().map(|file| format!("file://{}\r\n", file.display())).collect();
     let display = display.to_owned();
     let (sender, done) = channel();
     std::thread::spawn(move || {
-        Source::new(&display, window, uri).drop_at(at);
+        run(&Source::new(&display, window, uri));
         let _ = sender.send(());
     });
     done.recv_timeout(PATIENCE).expect("the window finishes the drop");
@@ -76,10 +87,9 @@ impl Source {
         Self { server, atoms, window, target, uri }
     }
 
-    fn drop_at(&self, (x, y): (u32, u32)) {
-        let atoms = &self.atoms;
-        self.tell(atoms.XdndEnter, [VERSION << 24, atoms.URI_LIST, 0, 0]);
-        self.tell(atoms.XdndPosition, [0, (x << 16) | y, CURRENT_TIME, atoms.XdndActionCopy]);
+    fn drop_at(&self, at: (u32, u32)) {
+        self.enter();
+        self.move_to(at);
         let (mut accepted, mut asked) = (false, false);
         // A window may ask what is dragged before the drop, as it does when it shows whether it takes it.
         while !(accepted && asked) {
@@ -88,18 +98,49 @@ impl Source {
                     self.answer(&request);
                     asked = true;
                 }
-                Event::ClientMessage(message) if message.type_ == atoms.XdndStatus => {
+                Event::ClientMessage(message) if message.type_ == self.atoms.XdndStatus => {
                     accepted = message.data.as_data32()[1] & 1 == 1;
-                    assert!(accepted, "the window refuses the drop");
+                    if !asked {
+                        self.move_to(at);
+                    }
                 }
                 _ => {}
             }
         }
-        self.tell(atoms.XdndDrop, [0, CURRENT_TIME, 0, 0]);
+        self.finish();
+    }
+
+    fn drop_and_answer_late(&self, at: (u32, u32)) {
+        self.enter();
+        let requests = [(); 2].map(|()| {
+            self.move_to(at);
+            loop {
+                if let Event::SelectionRequest(request) = self.server.wait_for_event().unwrap() {
+                    return request;
+                }
+            }
+        });
+        self.answer(&requests[0]);
+        self.finish();
+        self.answer(&requests[1]);
+        self.server.sync().unwrap();
+    }
+
+    fn enter(&self) {
+        self.tell(self.atoms.XdndEnter, [VERSION << 24, self.atoms.URI_LIST, 0, 0]);
+    }
+
+    fn move_to(&self, (x, y): (u32, u32)) {
+        self.tell(self.atoms.XdndPosition, [0, (x << 16) | y, CURRENT_TIME, self.atoms.XdndActionCopy]);
+    }
+
+    /// Drops, and returns once the window is finished.
+    fn finish(&self) {
+        self.tell(self.atoms.XdndDrop, [0, CURRENT_TIME, 0, 0]);
         loop {
             match self.server.wait_for_event().unwrap() {
                 Event::SelectionRequest(request) => self.answer(&request),
-                Event::ClientMessage(message) if message.type_ == atoms.XdndFinished => return,
+                Event::ClientMessage(message) if message.type_ == self.atoms.XdndFinished => return,
                 _ => {}
             }
         }

@@ -9,6 +9,7 @@ use image::RgbaImage;
 use serde_json::{Value, json};
 
 use super::NDF;
+use super::controls::choose;
 use crate::support::video::Video;
 use crate::support::window::Viewer;
 use crate::support::{Tree, open_image};
@@ -220,6 +221,26 @@ fn a_look_whose_shaders_are_gone_keeps_the_shaders_and_their_versions() {
     viewer.running.end_input();
     let stderr = viewer.quit();
     assert!(stderr.contains("gone: there is no such file or folder"), "{stderr}");
+}
+
+#[test]
+fn a_look_is_saved_and_opened() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({"command": "set", "values": {"view.ev": 2.5}}));
+    let look = viewer.tree.beside("mine.toml");
+    assert_eq!(viewer.running.done(json!({"command": "save-look", "file": look}))["file"].as_str(), look.to_str());
+    choose(&viewer, "save the look");
+    viewer.running.until_stderr("specula-look-1.toml");
+    viewer.running.done(json!({"command": "set", "values": {"view.ev": 0}}));
+    viewer.running.done(json!({"command": "open", "look": look}));
+    assert_eq!(viewer.running.done(json!({"command": "get", "path": "view.ev"})), 2.5);
+    let text = std::fs::read_to_string(viewer.tree.beside("specula-look-1.toml")).unwrap();
+    assert_eq!(text, std::fs::read_to_string(&look).unwrap());
+    let refused = viewer.running.refused(json!({"command": "save-look", "file": "look.png"}));
+    assert!(refused.contains("ends in .toml"), "{refused}");
+    viewer.running.end_input();
+    viewer.quit();
 }
 
 #[test]

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::controls::{WARNING, choose, count};
 use crate::support::window::Viewer;
-use crate::support::xdnd::{drop_file, drop_files};
+use crate::support::xdnd::{drop_file, drop_file_and_answer_late, drop_files};
 use crate::support::{Tree, glb, open_image};
 
 const RECENT: &str = "state/specula/recent.json";
@@ -54,6 +54,27 @@ fn a_model_is_dropped_with_its_files_and_a_damaged_one_changes_no_setting() {
     viewer.until("the dropped model", |shot| *shot != first);
     assert_eq!(viewer.running.done(json!({"command": "get", "path": "mode"})), "final");
     viewer.running.end_input();
+    viewer.quit();
+}
+
+/// While frames are slow, a file manager answers twice what it drags, and once after the drop. That answer is none of the next drag.
+#[test]
+fn a_second_drop_opens_its_own_file_whatever_the_first_said_late() {
+    let tree = Tree::new();
+    let (first, second) = (tree.beside("first.glb"), tree.beside("second.glb"));
+    std::fs::write(&first, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    std::fs::write(&second, glb::model(&glb::sphere(8, 16), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["sphere-grid"]);
+    viewer.running.event("ready");
+    let grid = viewer.screenshot();
+    let (display, window) = (viewer.display.name().to_owned(), viewer.window());
+    drop_file_and_answer_late(&display, window, (300, 200), &first);
+    viewer.until("the first model", |shot| *shot != grid);
+    let quad = viewer.screenshot();
+    drop_file(&display, window, (300, 200), &second);
+    viewer.until("the second model", |shot| *shot != grid && *shot != quad);
+    let recent: Value = serde_json::from_str(&std::fs::read_to_string(viewer.tree.beside(RECENT)).unwrap()).unwrap();
+    assert_eq!(recent["models"][0].as_str(), second.to_str());
     viewer.quit();
 }
 

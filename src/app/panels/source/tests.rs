@@ -18,17 +18,15 @@ use crate::app::gallery::Thumbnails;
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::readings::Readings;
 use crate::app::state::State;
-use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::choice::Choice;
+use crate::app::state::trace::sample;
 use crate::app::state::trace::saved::WrittenText;
-use crate::app::state::trace::subject::Subject;
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
 use crate::settings::Settings;
-use crate::shader::trace::sample::{called, event, trace};
+use crate::shader::trace::sample::{called, event};
 use crate::shader::trace::{Act, Event};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
-use crate::threads::TracedPlace;
 use crate::write_back::TreeFile;
 
 pub(super) const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
@@ -49,30 +47,9 @@ fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
 /// Takes a trace of a version of `a.glsl`.
 fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, statements: &[u32]) {
     let shaders = shaders(generation, text);
-    state.session.shaders = Some(shaders.clone());
     state.inspection.pin = Some([3, 4]);
-    let of = Subject {
-        picture: PictureSubject {
-            size: (64, 48),
-            settings: Arc::new(Settings::default()),
-            shaders,
-            revisions: Default::default(),
-            model: 1,
-            light: 1,
-            clock: Default::default(),
-        },
-        at: [3, 4],
-        stage: None,
-        file: None,
-    };
-    state.traces.ask(of, generation, false);
-    let names = TracedPlace {
-        stage: "a.frag".to_owned(),
-        stages: Vec::new(),
-        files: vec!["a.glsl".to_owned()],
-        file: "a.glsl".to_owned(),
-    };
-    assert!(state.traces.take(generation, names, Ok(trace(events, statements))));
+    sample::add(&mut state.traces, &shaders, generation, events, statements);
+    state.session.shaders = Some(shaders);
 }
 
 pub(super) fn events(a: f32) -> Vec<Event> {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::shader::trace::{Doing, Done, LineOfTrace, Trace, Which, is_related};
+use crate::shader::trace::{Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related};
 
 /// The choice among what happened at a pixel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -60,15 +60,39 @@ impl Choice {
         if call.is_none() && self.time.is_none() {
             return 0;
         }
-        let is_it = |doing: &Doing| {
-            doing.file == file && doing.line == line && (doing.act, &doing.name) == (done.act, &done.name)
-        };
-        let events = trace.fragments[fragment].events.iter().filter(|event| is_it(&event.doing));
+        let is_it = |doing: &Doing| (doing.act, &doing.name) == (done.act, &done.name);
+        let events = events_of(trace, fragment, (file, line), is_it);
         let chosen = (1..).zip(events).filter(|(_, event)| call.is_none_or(|call| is_related(&event.calls, call)));
         let numbers: Vec<u32> = chosen.map(|(number, _)| number).collect();
         let at = self.time.map_or(numbers.len(), |time| time.min(numbers.len()));
         at.checked_sub(1).map_or(0, |at| numbers[at])
     }
+}
+
+/// What the statements of a line did in a fragment for which `is_it` holds, in order.
+fn events_of<'a>(
+    trace: &'a Trace,
+    fragment: usize,
+    (file, line): (&'a str, u32),
+    is_it: impl Fn(&Doing) -> bool + 'a,
+) -> impl Iterator<Item = &'a Event> {
+    let events = trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events);
+    events.filter(move |event| event.doing.file == file && event.doing.line == line && is_it(&event.doing))
+}
+
+/// The evaluations of an expression in a fragment, in order: the values that a line gave to a variable, or returned for `return`.
+pub(in crate::app) fn evaluations<'a>(
+    trace: &'a Trace,
+    fragment: usize,
+    place: (&'a str, u32),
+    expression: &'a str,
+) -> Vec<&'a Event> {
+    let is_it = move |doing: &Doing| match doing.act {
+        Act::Store | Act::Argument => doing.name == expression,
+        Act::Return => expression == "return",
+        Act::Condition | Act::Discard => false,
+    };
+    events_of(trace, fragment, place, is_it).collect()
 }
 
 /// The paths of calls in a fragment, in their order.

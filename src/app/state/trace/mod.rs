@@ -5,6 +5,8 @@ pub(in crate::app) mod around;
 pub(in crate::app) mod choice;
 mod pixel_trace;
 pub(in crate::app) mod rows;
+#[cfg(test)]
+pub(in crate::app) mod sample;
 pub(in crate::app) mod saved;
 pub(in crate::app) mod subject;
 

@@ -2,48 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use super::choice::evaluations;
 use super::rows::Reach;
+use super::sample::{add, subject};
 use super::*;
-use crate::app::state::picture_subject::PictureSubject;
-use crate::settings::Settings;
 use crate::shader::trace::sample::{called, event, trace};
 use crate::shader::trace::{Act, Event};
 
 const OLD: &str = "float f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 const NEW: &str = "float f(float x) {\n    float b = 1.0;\n    float a = x * 4.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 
-fn subject(shaders: &Arc<ShaderSet>) -> Subject {
-    Subject {
-        picture: PictureSubject {
-            size: (64, 48),
-            settings: Arc::new(Settings::default()),
-            shaders: shaders.clone(),
-            revisions: Default::default(),
-            model: 1,
-            light: 1,
-            clock: Default::default(),
-        },
-        at: [3, 4],
-        stage: None,
-        file: None,
-    }
-}
-
 fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
     let texts = BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from(text))]);
     Arc::new(ShaderSet { generation, texts, ..ShaderSet::default() })
-}
-
-/// Takes a trace of a version.
-fn add(traces: &mut Traces, shaders: &Arc<ShaderSet>, number: u64, events: Vec<Event>, statements: &[u32]) {
-    traces.ask(subject(shaders), number, false);
-    let names = TracedPlace {
-        stage: "a.frag".to_owned(),
-        stages: Vec::new(),
-        files: vec!["a.glsl".to_owned()],
-        file: "a.glsl".to_owned(),
-    };
-    assert!(traces.take(number, names, Ok(trace(events, statements))));
 }
 
 fn old_events() -> Vec<Event> {
@@ -153,6 +124,28 @@ fn a_call_and_a_time_choose_values() {
     // A call that the next trace does not have counts no more.
     traces.choice.call = Some("other".to_owned());
     assert_eq!(texts(&traces, text)[0], "x = 1, 5 ×2");
+}
+
+#[test]
+fn evaluations_of_an_expression_are_in_the_order_of_their_calls() {
+    let events = vec![
+        called("f", 1, Act::Argument, "x", &[1.0]),
+        called("f", 2, Act::Store, "a", &[2.0]),
+        called("f", 2, Act::Store, "b", &[9.0]),
+        called("f [2]", 1, Act::Argument, "x", &[3.0]),
+        called("f [2]", 2, Act::Store, "a", &[4.0]),
+        called("f [2]", 3, Act::Condition, "", &[1.0]),
+        called("f [2]", 4, Act::Return, "", &[5.0]),
+    ];
+    let trace = trace(events, &[1, 2, 3, 4]);
+    let of = |line, name| {
+        let found = evaluations(&trace, 0, ("a.glsl", line), name);
+        found.iter().map(|event| format!("{} {}", event.calls, event.value.unwrap().text())).collect::<Vec<_>>()
+    };
+    assert_eq!(of(2, "a"), ["f 2", "f [2] 4"]);
+    assert_eq!(of(1, "x"), ["f 1", "f [2] 3"]);
+    assert_eq!(of(4, "return"), ["f [2] 5"]);
+    assert!(of(3, "").is_empty() && of(9, "a").is_empty());
 }
 
 #[test]

@@ -91,6 +91,35 @@ fn luminance_with_and_without_chroma() {
     is(color.pixels[7], [1.0, 2.0, 4.0]);
 }
 
+/// Files that OpenEXR 3.3 has written: one sample of RY and BY for four pixels, in whole and half blocks of lines.
+#[test]
+fn subsampled_chroma_is_interpolated() {
+    for bytes in SUBSAMPLED {
+        let environment = load("a.exr", bytes).unwrap();
+        assert_eq!((environment.width, environment.height), (64, 34));
+        for (at, pixel) in environment.pixels.iter().enumerate() {
+            let (x, y) = (at % 64, at / 64);
+            let luminance = 1.0 + (x / 8) as f32 * 0.25 + (y / 8) as f32 * 0.5;
+            // Beyond the last sample there is none to go on to.
+            let red = (x.min(62) as f32 / 64.0 + 2.0) * luminance;
+            let blue = (y.min(32) as f32 / 32.0 + 2.0) * luminance;
+            let green = (luminance - 0.2126 * red - 0.0722 * blue) / 0.7152;
+            let expected = [red, green, blue];
+            let is_near = |(a, b): (&f32, f32)| (a - b).abs() < 2e-3 * b.abs();
+            assert!(pixel.iter().zip(expected).all(is_near), "{x}, {y}: {pixel:?}, expected {expected:?}");
+        }
+    }
+    let mut odd = SUBSAMPLED[0].to_vec();
+    let at = odd.windows(3).position(|window| window == b"RY\0").unwrap() + 3 + 8;
+    odd[at] = 3;
+    assert!(error("a.exr", &odd).contains("size of a subsampled channel"), "{}", error("a.exr", &odd));
+}
+
+const SUBSAMPLED: [&[u8]; 2] = [
+    include_bytes!("../../../../tests/textures/chroma_zip.exr"),
+    include_bytes!("../../../../tests/textures/chroma_piz.exr"),
+];
+
 #[test]
 fn the_first_part_with_color_is_used() {
     let part = |name: &str, channels: &[&str], value: f32| {
@@ -280,6 +309,7 @@ fn damaged_files_are_errors_or_images() {
     let files =
         compressions.map(|compression| [Blocks::ScanLines, tiles].map(|blocks| encode(compression, blocks, &[])));
     let b44 = [Compression::B44, Compression::B44A].map(|compression| encode(compression, Blocks::ScanLines, &[]));
-    let files: Vec<&[u8]> = files.iter().flatten().chain(&b44).map(Vec::as_slice).collect();
+    let files = files.iter().flatten().chain(&b44).map(Vec::as_slice);
+    let files: Vec<&[u8]> = files.chain(SUBSAMPLED).collect();
     crate::damaged::each(300, &files, |bytes| drop(float_image::decode(bytes)));
 }
