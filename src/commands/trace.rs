@@ -26,8 +26,8 @@ const CODE: usize = 60;
     compute stage, for the invocation of the pixel or --invocation. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
-    In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [2]`: the second call of \
-    `add_light` by `shade`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
+    In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [light 2]`: the call about \
+    the second of `lights`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \
     a component, as n.x. NAME can be `return` or `condition`. It traces its file alone."
 )]

@@ -13,6 +13,7 @@ mod assertion;
 mod calls;
 mod invocations;
 pub mod log;
+mod lights;
 mod report;
 #[cfg(test)]
 pub(crate) mod sample;
@@ -30,10 +31,11 @@ use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 use calls::Calls;
-pub use calls::is_related;
+pub use calls::{is_related, last_call, light_of, paths_to};
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use log::EXTENSIONS;
+pub use lights::TracedLight;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
 pub use statement::Site;
@@ -157,6 +159,8 @@ pub struct Trace {
     /// The same where the traced stage draws.
     pub redrawn: [u32; 4],
     /// The text of the lines with statements that log.
+    /// The lights of the frame, which calls number from 1. Suns of the environment are not among them.
+    pub lights: Vec<TracedLight>,
     code: BTreeMap<(String, u32), String>,
 }
 
@@ -195,7 +199,7 @@ pub struct Event {
     pub doing: Doing,
     /// The value; none for a discard.
     pub value: Option<TracedValue>,
-    /// The calls that led to it, outermost first: `shade > add_light [2]`.
+    /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
     pub calls: Arc<str>,
 }
 
@@ -250,7 +254,7 @@ impl Trace {
             Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
             _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
         }
-        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(_) | Purpose::Leave);
+        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..) | Purpose::Leave);
         let places = stage.places().filter(|place| is_shown(&place.purpose));
         let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
         let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
@@ -263,6 +267,7 @@ impl Trace {
             picture: bits(picture),
             redrawn: bits(redrawn),
             code: code.collect(),
+            lights: Vec::new(),
         }
     }
 
@@ -339,7 +344,7 @@ fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
         Purpose::Condition => (Act::Condition, ""),
         Purpose::Return => (Act::Return, ""),
         Purpose::Discard => (Act::Discard, ""),
-        Purpose::Enter(_) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
+        Purpose::Enter(..) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
     };
     Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
 }
@@ -349,7 +354,7 @@ fn event(stage: &TracedStage, number: u32, bits: [u32; 4], calls: &mut Calls) ->
     let point = stage.point(number)?;
     let (path, count) = (calls.path(), point.count as usize);
     match &stage.place(point).purpose {
-        Purpose::Enter(name) => calls.enter(name),
+        Purpose::Enter(name, list) => calls.enter(name, list.map(|list| (list, bits[0]))),
         Purpose::Leave => calls.leave(),
         Purpose::Return if stage.is_last_of_place(number) => calls.leave(),
         _ => {}

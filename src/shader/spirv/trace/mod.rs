@@ -9,6 +9,7 @@ mod floats;
 mod functions;
 mod instances;
 mod statements;
+mod lights;
 
 use std::collections::BTreeSet;
 
@@ -21,6 +22,8 @@ use functions::{Functions, is_line, joins};
 pub use instances::instances;
 
 /// Longer arrays are not logged.
+pub use lights::LightList;
+use lights::LightParameters;
 const MOST_ELEMENTS: u32 = 64;
 /// Statements that store or return a value of more vectors than this log nothing: the members of a large struct are stored one by one, and
 /// each log point costs compile time.
@@ -37,8 +40,8 @@ pub enum Purpose {
     Input(String),
     /// Passes it to a function, compares, converts or samples with it.
     Use,
-    /// A function of this name begins. Without a value.
-    Enter(String),
+    /// A function of this name begins. If one of its parameters numbers a light, that number is the value.
+    Enter(String, Option<LightList>),
     /// The argument for the parameter of this name.
     Argument(String),
     /// A function ends. Without a value.
@@ -106,13 +109,14 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
     let id = module.named(&format!("{function}(")).next()?;
     let known = Functions::new(&module, function, logged, only);
     let mut functions = std::mem::take(&mut module.functions);
-    let mut tracer = Tracer::new(&mut module, id, only);
+    let mut tracer = Tracer::new(&mut module, id, only, light_parameters);
     for function in &mut functions {
         function.head.retain(|i| !is_line(*i));
         let is_silent = known.is_silent(function.id);
         let joins = joins(function);
         for block in &mut function.blocks {
             match logged {
+    let light_parameters = LightParameters::new(&module);
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
                 Logged::Floats => block.body = tracer.floats(&block.body),
                 Logged::Statements => block.body = tracer.statements(&block.body, &joins),
@@ -163,17 +167,37 @@ struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    fn new(module: &'a mut Module, function: Id, only: Option<&'a BTreeSet<String>>) -> Self {
+    fn new(
+        module: &'a mut Module,
+        function: Id,
+        only: Option<&'a BTreeSet<String>>,
+        light_parameters: LightParameters,
+    ) -> Self {
         let names = module.debug.iter().filter(|i| i.op == Op::Name).map(|i| &module[*i]);
         let names = names.map(|words| (words[1], text(&words[2..]))).collect();
         let members = module.debug.iter().filter(|i| i.op == Op::MemberName).map(|i| &module[*i]);
         let members = members.map(|words| ((words[1], words[2]), text(&words[3..]))).collect();
+    light_parameters: LightParameters,
         let void = module.declare(Op::TypeVoid, &[]);
         let uint = module.declare(Op::TypeInt, &[32, 0]);
         let vectors = [2, 3, 4].map(|count| module.declare(Op::TypeVector, &[uint, count]));
         let [zero, one] = [0, 1].map(|number| module.constant(uint, number));
         let (places, points) = (Vec::new(), Vec::new());
-        Self { module, names, members, function, void, uint, vectors, zero, one, places, points, only }
+        Self {
+            module,
+            names,
+            members,
+            function,
+            void,
+            uint,
+            vectors,
+            zero,
+            one,
+            places,
+            points,
+            only,
+            light_parameters,
+        }
     }
 
     /// The kind of the numbers of a scalar type.

@@ -92,7 +92,10 @@ impl Tracer<'_> {
         let Some(Block { body, .. }) = function.blocks.first_mut() else { return };
         let mut out = Vec::new();
         let place = |purpose| Place { file: file.clone(), line, purpose };
-        self.log_at(&mut out, place(Purpose::Enter(name.unwrap_or_default())), None);
+        let light = self.light_parameters.of(function.id);
+        let number = light.map(|(parameter, _)| self.loaded(&mut out, parameter));
+        let purpose = Purpose::Enter(name.unwrap_or_default(), light.map(|(_, list)| list));
+        self.log_at(&mut out, place(purpose), number);
         let parameters = function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| self.module[*i][2]);
         let parameters: Vec<(usize, Id)> = parameters.enumerate().collect();
         for (at, parameter) in parameters {
@@ -106,7 +109,7 @@ impl Tracer<'_> {
             if name.is_empty() || !self.is_short(of) || matches!(self.module.get_type(of), Some(Type::Struct { .. })) {
                 continue;
             }
-            let value = to.map_or(parameter, |to| self.module.emit(&mut out, Op::Load, to, &[parameter]));
+            let value = self.loaded(&mut out, parameter);
             self.log_at(&mut out, place(Purpose::Argument(name)), Some(value));
         }
         let first = body.iter().position(|i| i.op != Op::Variable).unwrap_or(body.len());
@@ -124,4 +127,10 @@ impl Tracer<'_> {
             None => self.log(out, None, (NumberKind::Bool, 0), String::new()),
         }
     }
+    /// The value of a parameter, which glslang passes by a pointer unless it is constant.
+    fn loaded(&mut self, out: &mut Vec<Instruction>, parameter: Id) -> Id {
+        let to = self.module.pointer(self.module.type_of(parameter)).map(|(_, to)| to);
+        to.map_or(parameter, |to| self.module.emit(out, Op::Load, to, &[parameter]))
+    }
+
 }
