@@ -11,6 +11,7 @@
 mod around;
 mod assertion;
 mod calls;
+mod conditions;
 mod invocations;
 pub mod log;
 mod lights;
@@ -338,10 +339,14 @@ fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
 fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
     let point = stage.point(number)?;
     let place = stage.place(point);
+    if place.line == 0 {
+        return None;
+    }
     let (act, name) = match &place.purpose {
         Purpose::Argument(name) => (Act::Argument, name.as_str()),
         Purpose::Store(name) => (Act::Store, name.as_str()),
         Purpose::Condition => (Act::Condition, ""),
+        Purpose::Constant { .. } => return None,
         Purpose::Return => (Act::Return, ""),
         Purpose::Discard => (Act::Discard, ""),
         Purpose::Enter(..) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,

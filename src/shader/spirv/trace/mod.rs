@@ -5,6 +5,7 @@
 //!
 //! `floats.rs` instruments a module to find the first value that is not finite, `statements.rs` to show what every statement does.
 
+mod branches;
 mod floats;
 mod functions;
 mod instances;
@@ -17,8 +18,9 @@ use foldhash::HashMap;
 
 use super::module::{Id, Instruction, Module, Type};
 use super::op::{Op, text};
+use branches::Branches;
 pub use functions::Logged;
-use functions::{Functions, is_line, joins};
+use functions::{Functions, is_line};
 pub use instances::instances;
 
 /// Longer arrays are not logged.
@@ -48,6 +50,12 @@ pub enum Purpose {
     Leave,
     /// Decides by it which statement is next.
     Condition,
+    /// The same, by a constant. Its line is that of the first code in the first branch, since the compiler gives a constant none. `between`:
+    /// how many other constants decide before that code.
+    Constant {
+        /// See above.
+        between: usize,
+    },
     /// Discards the pixel. Without a value.
     Discard,
 }
@@ -113,13 +121,13 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
     for function in &mut functions {
         function.head.retain(|i| !is_line(*i));
         let is_silent = known.is_silent(function.id);
-        let joins = joins(function);
+        let branches = Branches::new(function);
         for block in &mut function.blocks {
             match logged {
     let light_parameters = LightParameters::new(&module);
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
                 Logged::Floats => block.body = tracer.floats(&block.body),
-                Logged::Statements => block.body = tracer.statements(&block.body, &joins),
+                Logged::Statements => block.body = tracer.statements(&block.body, &branches),
             }
         }
         if logged == Logged::Statements && !is_silent {

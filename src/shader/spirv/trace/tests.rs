@@ -122,6 +122,24 @@ fn statements_are_logged_with_what_they_do() {
                 "10 Return",
             ],
         ),
+        // The compiler gives constants no line: that of their branch counts.
+        (
+            "float f(float x) {\n const bool ON = true;\n x += 1.0;\n if (ON)\n  x += 2.0;\n if (KIND == 1u) {\n  if (ON)\n   x += 3.0;\n \
+             }\n switch (KIND) {\n case 1u:\n  x = 2.0;\n }\n return x; }",
+            &[
+                "3 Enter(\"f\", None)",
+                "3 Argument(\"x\")",
+                "3 Store(\"x\")",
+                "5 Constant { between: 0 }",
+                "5 Store(\"x\")",
+                "8 Constant { between: 0 }",
+                "8 Constant { between: 1 }",
+                "8 Store(\"x\")",
+                "12 Constant { between: 0 }",
+                "12 Store(\"x\")",
+                "14 Return",
+            ],
+        ),
         // Specialization takes branches by it.
         ("bool f(float x) {\n return KIND == 1u; }", &[]),
     ] {
