@@ -70,7 +70,7 @@ impl LoggingStage {
         let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
         let color = shaders.stages.get(stage).and_then(|of| color_of(of));
         let listener = log::listener(kind, color)
-            .ok_or_else(|| format!("{stage} cannot be traced: only fragment, vertex and compute stages can"))?;
+            .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, Some)?;
         Ok(Self { stage, whole, listener, address })

@@ -133,7 +133,8 @@ fn stages(ui: &mut Ui, newest: &PixelTrace, commands: &mut Commands) {
         }
     });
     named(list.response, "Stage").on_hover_text(
-        "The stage whose values are shown: of the surfaces, of their vertices, or of a pass of the picture",
+        "The stage whose values are shown: of the surfaces, of their vertices, or of a pass of the picture. Stages of tessellation, \
+         geometry and meshes are not traced",
     );
 }
 
