@@ -13,8 +13,8 @@ mod assertion;
 mod calls;
 mod conditions;
 mod invocations;
-pub mod log;
 mod lights;
+pub mod log;
 mod report;
 #[cfg(test)]
 pub(crate) mod sample;
@@ -35,8 +35,8 @@ use calls::Calls;
 pub use calls::{is_related, last_call, light_of, paths_to};
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
-pub use log::EXTENSIONS;
 pub use lights::TracedLight;
+pub use log::EXTENSIONS;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
 pub use statement::Site;
@@ -159,9 +159,9 @@ pub struct Trace {
     pub picture: [u32; 4],
     /// The same where the traced stage draws.
     pub redrawn: [u32; 4],
-    /// The text of the lines with statements that log.
     /// The lights of the frame, which calls number from 1. Suns of the environment are not among them.
     pub lights: Vec<TracedLight>,
+    /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
 
@@ -267,8 +267,8 @@ impl Trace {
             target,
             picture: bits(picture),
             redrawn: bits(redrawn),
-            code: code.collect(),
             lights: Vec::new(),
+            code: code.collect(),
         }
     }
 

@@ -328,8 +328,8 @@ fn call_row(ui: &mut Ui, call: &ListedCall, light: Option<&TracedLight>, is_chos
             ui.painter().circle(area.center(), 4.0, light_color(light), Stroke::new(1.0, QUIET));
             ui.label(RichText::new(light.text()).small().color(QUIET));
         }
-    });
         named(button, &call.path).clicked()
+    });
     row.inner
 }
 

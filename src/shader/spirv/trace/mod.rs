@@ -9,8 +9,8 @@ mod branches;
 mod floats;
 mod functions;
 mod instances;
-mod statements;
 mod lights;
+mod statements;
 
 use std::collections::BTreeSet;
 
@@ -22,10 +22,10 @@ use branches::Branches;
 pub use functions::Logged;
 use functions::{Functions, is_line};
 pub use instances::instances;
-
-/// Longer arrays are not logged.
 pub use lights::LightList;
 use lights::LightParameters;
+
+/// Longer arrays are not logged.
 const MOST_ELEMENTS: u32 = 64;
 /// Statements that store or return a value of more vectors than this log nothing: the members of a large struct are stored one by one, and
 /// each log point costs compile time.
@@ -116,6 +116,7 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
     let mut module = Module::parse(words)?;
     let id = module.named(&format!("{function}(")).next()?;
     let known = Functions::new(&module, function, logged, only);
+    let light_parameters = LightParameters::new(&module);
     let mut functions = std::mem::take(&mut module.functions);
     let mut tracer = Tracer::new(&mut module, id, only, light_parameters);
     for function in &mut functions {
@@ -124,7 +125,6 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
         let branches = Branches::new(function);
         for block in &mut function.blocks {
             match logged {
-    let light_parameters = LightParameters::new(&module);
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
                 Logged::Floats => block.body = tracer.floats(&block.body),
                 Logged::Statements => block.body = tracer.statements(&block.body, &branches),
@@ -172,6 +172,7 @@ struct Tracer<'a> {
     places: Vec<Place>,
     points: Vec<LogPoint>,
     only: Option<&'a BTreeSet<String>>,
+    light_parameters: LightParameters,
 }
 
 impl<'a> Tracer<'a> {
@@ -185,7 +186,6 @@ impl<'a> Tracer<'a> {
         let names = names.map(|words| (words[1], text(&words[2..]))).collect();
         let members = module.debug.iter().filter(|i| i.op == Op::MemberName).map(|i| &module[*i]);
         let members = members.map(|words| ((words[1], words[2]), text(&words[3..]))).collect();
-    light_parameters: LightParameters,
         let void = module.declare(Op::TypeVoid, &[]);
         let uint = module.declare(Op::TypeInt, &[32, 0]);
         let vectors = [2, 3, 4].map(|count| module.declare(Op::TypeVector, &[uint, count]));

@@ -127,6 +127,12 @@ impl Tracer<'_> {
         body.splice(first..first, out);
     }
 
+    /// The value of a parameter, which glslang passes by a pointer unless it is constant.
+    fn loaded(&mut self, out: &mut Vec<Instruction>, parameter: Id) -> Id {
+        let to = self.module.pointer(self.module.type_of(parameter)).map(|(_, to)| to);
+        to.map_or(parameter, |to| self.module.emit(out, Op::Load, to, &[parameter]))
+    }
+
     /// Appends calls for a place, which has a value, or none. A value that is too long is left out.
     fn log_at(&mut self, out: &mut Vec<Instruction>, place: Place, value: Option<Id>) {
         if value.is_some_and(|value| !self.is_short(self.module.type_of(value))) {
@@ -138,10 +144,4 @@ impl Tracer<'_> {
             None => self.log(out, None, (NumberKind::Bool, 0), String::new()),
         }
     }
-    /// The value of a parameter, which glslang passes by a pointer unless it is constant.
-    fn loaded(&mut self, out: &mut Vec<Instruction>, parameter: Id) -> Id {
-        let to = self.module.pointer(self.module.type_of(parameter)).map(|(_, to)| to);
-        to.map_or(parameter, |to| self.module.emit(out, Op::Load, to, &[parameter]))
-    }
-
 }
