@@ -45,7 +45,8 @@ impl State {
 
     /// The names of the earlier picture and of the present one, with what differs; `None` if no comparison is shown.
     pub(in crate::app) fn comparison_labels(&self) -> Option<[String; 2]> {
-        let timed = self.compare.version().and_then(|version| self.costs.of_version(self.shown_generation(), version));
+        let version = self.session.shaders.as_ref().zip(self.compare.version());
+        let timed = version.and_then(|(shaders, version)| self.costs.of_version(shaders, version));
         let time = timed.map(|difference| format!(" ({})", difference.text())).unwrap_or_default();
         let earlier = self.reference_label()? + &time;
         let restored = self.edits.restored.as_ref().map(|restored| restored.number);

@@ -23,11 +23,12 @@ const CODE: usize = 60;
     `return 2`, `? true` decides about a branch or a loop, `discard`. \u{d7}3: three times, with the different values.\n\
     The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. --stage traces any other \
     stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
-    compute stage, for the invocation of the pixel or --invocation. A file of another stage than the picture's finds its stage by itself. \
+    compute stage, for the invocation of the pixel or --invocation. Stages of tessellation, geometry and meshes, and those that bake \
+    light, are not traced. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
-    In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [2]`: the second call of \
-    `add_light` by `shade`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
+    In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [light 2]`: the call about \
+    the second of `lights`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \
     a component, as n.x. NAME can be `return` or `condition`. It traces its file alone."
 )]

@@ -27,8 +27,12 @@ pub const HEMISPHERE_STAGE: &str = "measure/hemisphere.comp";
 
 /// The stages that a shader tree must have besides those of its passes.
 pub fn stages() -> Vec<&'static str> {
-    let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
-    [FULL_SCREEN, DEFORM].into_iter().chain(baked).collect()
+    [FULL_SCREEN, DEFORM].into_iter().chain(bake_stages()).collect()
+}
+
+/// The stages that bake light.
+pub(crate) fn bake_stages() -> impl Iterator<Item = &'static str> {
+    TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES)
 }
 
 /// [`stages`] and [`MEASURE_STAGES`].

@@ -22,6 +22,7 @@ mod stages;
 mod stopwatch;
 mod thumbnails;
 mod trace;
+mod traced_lights;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -9,11 +9,13 @@ use super::HeadlessError;
 use super::offscreen_view::OffscreenView;
 use super::pixel_tracer::TraceTools;
 use crate::frame::FrameState;
+use crate::frame::stages::bake_stages;
 use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
 use crate::shader::annotation::pass::{PassSize, PassTarget};
 use crate::shader::checks::{Broken, CheckBuffer, CheckedStages, Operations};
+use crate::shader::compile::asserts::has_calls;
 use crate::shader::{Diagnostic, ShaderSet, StageKind, TreePath};
 
 /// A picture whose operations were checked.
@@ -29,6 +31,8 @@ pub struct CheckedPicture {
     pub checks: usize,
     /// Stages that the device cannot let write to buffers.
     pub left_out: BTreeSet<String>,
+    /// Files with assertions that only stages have which bake light. They are not checked.
+    pub baked: BTreeSet<String>,
     /// Operations that are not checked, since a stage has too many.
     pub dropped: usize,
     /// Whether derivatives are not checked, since fragments cannot ask which neighbors run along on this device.
@@ -126,6 +130,7 @@ impl PictureChecker {
             marks,
             size: state.size,
             checks: checked.check_count(),
+            baked: asserting_bakes(request.shaders, &state),
             left_out: left_out.into_keys().collect(),
             dropped: checked.left_out(),
             without_derivatives: request.undefined && !self.gpu.quad_ballots(),
@@ -184,6 +189,18 @@ fn stages_of(state: &FrameState) -> BTreeMap<String, bool> {
         all.entry(stage).and_modify(|all_whole| *all_whole &= is_whole).or_insert(is_whole);
     }
     all
+}
+
+/// The files with assertions that stages have which bake light, and no stage of a frame.
+fn asserting_bakes(shaders: &ShaderSet, state: &FrameState) -> BTreeSet<String> {
+    let files = |path: &str| {
+        let stage = shaders.stages.get(path);
+        stage.into_iter().flat_map(|stage| stage.dependencies.iter().chain([&stage.path]))
+    };
+    let of_frame: BTreeSet<&TreePath> = stages_of(state).keys().flat_map(|path| files(path)).collect();
+    let asserts = |path: &&TreePath| shaders.texts.get(*path).is_some_and(|text| has_calls(text));
+    let baked = bake_stages().flat_map(files).filter(|path| !of_frame.contains(path));
+    baked.filter(asserts).map(TreePath::to_string).collect()
 }
 
 fn write(buffer: &Buffer, words: &[u32]) {

@@ -8,6 +8,7 @@ use super::HeadlessError;
 use super::near_pixel::NearPixel;
 use super::offscreen_view::OffscreenView;
 use super::stage_plan::{self, StagePlan};
+use super::traced_lights::traced_lights;
 use crate::frame::{Clock, FrameState, Revisions};
 use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
 use crate::pipeline::{PipelineSet, Reloader};
@@ -241,7 +242,9 @@ impl PixelTracer {
                 None => trace = Some(of_group),
             }
         }
-        trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))
+        let mut trace = trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))?;
+        trace.lights = traced_lights(&plan.state, plan.pixel.settings);
+        Ok(trace)
     }
 
     /// The stage of a frame with a log, the first of those that are kept.

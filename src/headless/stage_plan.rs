@@ -2,12 +2,12 @@
 
 use super::HeadlessError;
 use crate::frame::FrameState;
-use crate::frame::stages::DEFORM;
+use crate::frame::stages::{DEFORM, bake_stages};
 use crate::scene;
 use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
 use crate::shader::graph::RenderPhase;
 use crate::shader::trace::{Invocations, Target, TraceableStage};
-use crate::shader::{GraphPass, StageKind, TreePath};
+use crate::shader::{GraphPass, Stage, StageKind, TreePath};
 
 /// The part of a scene that is drawn for a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,10 @@ pub(super) enum Extent {
     /// All.
     All,
 }
+
+/// The stages that can be traced, for a reader.
+pub const UNTRACED: &str = "Fragment and vertex stages and the compute stages of a picture are traced; those of tessellation, geometry, tasks \
+    and meshes are not, and neither are those that bake light";
 
 /// How a stage is traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +102,11 @@ pub(super) fn choose(state: &FrameState, wanted: Option<&str>, files: &[&str]) -
     if let Some(wanted) = wanted {
         return match all.iter().any(|stage| stage.path == wanted) {
             true => Ok(wanted.to_owned()),
-            false => fails(format!("the picture has no stage {wanted} that can be traced; it has {}", list())),
+            false => fails(format!(
+                "the picture has no stage {wanted} that can be traced; it has {}.{}",
+                list(),
+                why_not(state, wanted).map(|why| format!(" {why}")).unwrap_or_default()
+            )),
         };
     }
     let has = |stage: &&TraceableStage, file: &str| {
@@ -106,10 +114,31 @@ pub(super) fn choose(state: &FrameState, wanted: Option<&str>, files: &[&str]) -
         known.is_some_and(|known| known.path.as_str() == file || known.dependencies.contains(&TreePath::from(file)))
     };
     let with_files = all.iter().find(|stage| files.iter().all(|file| has(stage, file)));
-    match with_files.or(all.first()) {
-        Some(stage) => Ok(stage.path.clone()),
-        None => fails("the picture has no stage that can be traced".to_owned()),
+    let alone = |file: &&str| !all.iter().any(|stage| has(&stage, file)) && is_untraced(state, file);
+    match (with_files.or(all.first()), files.iter().find(|file| alone(file))) {
+        (_, Some(file)) => fails(format!("{file} is not traced. {UNTRACED}")),
+        (Some(stage), None) => Ok(stage.path.clone()),
+        (None, None) => fails("the picture has no stage that can be traced".to_owned()),
     }
+}
+
+/// Why a stage of the tree is not traced.
+fn why_not(state: &FrameState, path: &str) -> Option<&'static str> {
+    let is_known = state.shaders.stages.contains_key(path);
+    (is_known && is_untraced(state, path)).then_some(UNTRACED)
+}
+
+/// Whether a file is of a stage that is not traced in any picture.
+fn is_untraced(state: &FrameState, file: &str) -> bool {
+    let path = TreePath::from(file);
+    let has = |stage: &Stage| stage.path == path || stage.dependencies.contains(&path);
+    let is_traced = |stage: &Stage| match stage.kind {
+        StageKind::Fragment | StageKind::Vertex => true,
+        StageKind::Compute => !bake_stages().any(|bake| bake == stage.path.as_str()),
+        _ => false,
+    };
+    let mut with_file = state.shaders.stages.values().filter(|stage| has(stage)).peekable();
+    with_file.peek().is_some() && with_file.all(|stage| !is_traced(stage))
 }
 
 /// The plan to trace a stage of [`traceable`] at a pixel of the picture. `invocation` names one of a compute stage.
@@ -154,7 +183,7 @@ pub(super) fn plan(
             };
             Ok(make(Invocations::Compute(of), Target::Unknown, Extent::All, true))
         }
-        _ => fails(format!("{stage} cannot be traced: only fragment, vertex and compute stages can")),
+        _ => fails(format!("{stage} is not traced. {UNTRACED}")),
     }
 }
 

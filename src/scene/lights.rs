@@ -32,6 +32,19 @@ pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light
     lights
 }
 
+/// The names of the lights that [`lights`] returns: those in the model's file, which may be empty, or the settings that have the lights.
+pub fn light_names(settings: &LightSettings, model: &Model) -> Vec<String> {
+    let mut names: Vec<String> = match settings.source {
+        LightSource::None => return Vec::new(),
+        LightSource::Orbit => (0..settings.orbit.len()).map(|index| format!("lights.orbit.{index}")).collect(),
+        LightSource::Model => model.lights.iter().map(|light| light.name.to_string()).collect(),
+    };
+    if settings.rect.enabled {
+        names.push("lights.rect".to_owned());
+    }
+    names
+}
+
 /// The lights of a model. Those that are hidden stay in their place, and are dark.
 fn of_model(model: &Model, cutoff: f32) -> Vec<Light> {
     let light = |(index, light)| match model.pose.hidden.light(index) {

@@ -48,7 +48,7 @@ pub use features::{features, packs_occlusion};
 pub use gltf::{find_model, triangles};
 pub use images::{Basis, TexelForm, TexelForms, Texels};
 pub use light_grid::LightGrid;
-pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
+pub use lights::{light_count, light_direction, light_names, lights, rectangle_corners, view_of_light};
 pub use load_options::{Caller, Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use members::{Member, Places};

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::app::engine::Engine;
 use crate::app::state::State;
+use crate::app::state::inspection::anchor::Anchor;
 use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, SearchOf, Shown};
 use crate::app::state::workspace::Sight;
 use crate::events::{Event, emit};
@@ -39,6 +40,23 @@ pub(in crate::app) fn inspect(state: &mut State, at: [u32; 2]) {
     match inspector.pin.is_some_and(is_near) {
         true => inspector.unpin(),
         false => inspector.pin = Some(at),
+    }
+}
+
+/// Moves the pin to the pixel that shows its surface in the next picture, which may be of another size.
+pub(in crate::app) fn follow_pin(state: &mut State, next: &FrameState) {
+    let Some((at, before)) = state.inspection.pin.zip(state.shown()) else { return };
+    if before.size == next.size {
+        return;
+    }
+    let known = state.inspection.anchor.as_ref().filter(|anchor| anchor.is_of(at, before)).cloned();
+    let moved = known.unwrap_or_else(|| Anchor::new(at, before)).moved(next.size, next.camera);
+    match moved {
+        Some((at, anchor)) => (state.inspection.pin, state.inspection.anchor) = (Some(at), Some(anchor)),
+        None => {
+            state.inspection.unpin();
+            state.say("The picture no longer shows the pinned place, so it was unpinned");
+        }
     }
 }
 

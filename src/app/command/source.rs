@@ -31,7 +31,7 @@ pub(in crate::app) struct Source {
 }
 
 pub(in crate::app) static SOURCE: Spec<Source> = Spec::new("source", source).takes(
-    r#""file"?: "brdf/ndf.glsl", "stage"?: "tonemap.frag", "at"?: [x,y], "fragment"?: n, "call"?: "shade > add_light [2]", "time"?: n"#,
+    r#""file"?: "brdf/ndf.glsl", "stage"?: "tonemap.frag", "at"?: [x,y], "fragment"?: n, "call"?: "shade > add_light [light 2]", "time"?: n"#,
     "Opens the panel Source at a file of the tree, pins a pixel, and traces what the file's statements do there, in a stage of the picture; \
      a fragment is counted from 0, the time of a statement that ran more than once from 1. Result: as `specula trace --json`, with `stages` of the picture, `files` of the stage, `calls`, and \
      `changed`: values that the last edit has changed",

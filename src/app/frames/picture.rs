@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::app::actions::edits::watch_expression;
 use crate::app::actions::exercises::check_exercise;
 use crate::app::actions::files::follow_added;
+use crate::app::actions::inspect::follow_pin;
 use crate::app::engine::Engine;
 use crate::app::engine::last_complete::{LastComplete, target};
 use crate::app::frames::progress::is_settled;
@@ -76,6 +77,7 @@ fn frame_of_settings(
             check_exercise(state, engine);
         }
         let shown = LastComplete { settings: state.session.shared_settings(), frame: frame.clone() };
+        follow_pin(state, &frame_state);
         state.picture.shown = Some(shown.description());
         let last = engine.shown.replace(shown);
         keep_version(state, engine, last);

@@ -136,9 +136,15 @@ impl Costs {
     }
 
     /// The costs of functions that begin at a line of a file, if they are those of the shaders on screen.
-    pub(in crate::app) fn of_line(&self, shaders: &ShaderSet, path: &TreePath, line: u32) -> Option<&FunctionCost> {
+    pub(in crate::app) fn of_line(
+        &self,
+        shaders: &Arc<ShaderSet>,
+        path: &TreePath,
+        line: u32,
+    ) -> Option<&FunctionCost> {
         let (picture, Ok(costs)) = self.functions.as_ref()? else { return None };
-        let is_same = picture.shaders.generation == shaders.generation;
+        // Numbers of generations begin anew with another tree.
+        let is_same = Arc::ptr_eq(&picture.shaders, shaders);
         let here = |cost: &&FunctionCost| cost.function.line == line && *cost.function.file == *path.as_str();
         costs.functions.iter().find(here).filter(|_| is_same)
     }
@@ -149,8 +155,8 @@ impl Costs {
     }
 
     /// By how much a version differs from the newest one, in the picture of these shaders.
-    pub(in crate::app) fn of_version(&self, generation: u64, version: u64) -> Option<&Difference> {
-        let (_, all) = self.versions.as_ref().filter(|(picture, _)| picture.shaders.generation == generation)?;
+    pub(in crate::app) fn of_version(&self, shaders: &Arc<ShaderSet>, version: u64) -> Option<&Difference> {
+        let (_, all) = self.versions.as_ref().filter(|(picture, _)| Arc::ptr_eq(&picture.shaders, shaders))?;
         all.iter().find(|(number, _)| *number == version)?.1.as_ref().ok()
     }
 
@@ -161,5 +167,40 @@ impl Costs {
         }
         let (_, costs) = self.functions.as_ref()?;
         Some(costs.as_ref().map(|costs| costs.json()).map_err(Clone::clone))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::statistics::Verdict;
+
+    #[test]
+    fn a_difference_is_of_one_set_of_shaders() {
+        // Another tree, or the same one after a restart, has a generation of the same number.
+        let [tree, other] = [(); 2].map(|()| Arc::new(ShaderSet { generation: 2, ..ShaderSet::default() }));
+        let picture = PictureSubject {
+            size: (64, 48),
+            settings: Arc::new(Settings::default()),
+            shaders: tree.clone(),
+            revisions: Default::default(),
+            model: 1,
+            light: 1,
+            clock: Default::default(),
+        };
+        let difference = Difference {
+            base_ms: 1.0,
+            change_ms: 0.5,
+            margin_ms: 0.1,
+            confidence: 0.99,
+            pairs: 8,
+            verdict: Verdict::Slower,
+        };
+        let mut costs = Costs::default();
+        costs.ask(picture, Question::Version(1), 7);
+        assert_eq!(costs.take_version(7, Ok(difference)), Some(1));
+        assert_eq!(costs.of_version(&tree, 1), Some(&difference));
+        assert_eq!((costs.of_version(&other, 1), costs.of_version(&tree, 2)), (None, None));
     }
 }

@@ -11,7 +11,9 @@
 mod around;
 mod assertion;
 mod calls;
+mod conditions;
 mod invocations;
+mod lights;
 pub mod log;
 mod report;
 #[cfg(test)]
@@ -30,9 +32,10 @@ use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 use calls::Calls;
-pub use calls::is_related;
+pub use calls::{is_related, last_call, light_of, paths_to};
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
+pub use lights::TracedLight;
 pub use log::EXTENSIONS;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
@@ -67,7 +70,7 @@ impl LoggingStage {
         let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
         let color = shaders.stages.get(stage).and_then(|of| color_of(of));
         let listener = log::listener(kind, color)
-            .ok_or_else(|| format!("{stage} cannot be traced: only fragment, vertex and compute stages can"))?;
+            .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, Some)?;
         Ok(Self { stage, whole, listener, address })
@@ -156,6 +159,8 @@ pub struct Trace {
     pub picture: [u32; 4],
     /// The same where the traced stage draws.
     pub redrawn: [u32; 4],
+    /// The lights of the frame, which calls number from 1. Suns of the environment are not among them.
+    pub lights: Vec<TracedLight>,
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
@@ -195,7 +200,7 @@ pub struct Event {
     pub doing: Doing,
     /// The value; none for a discard.
     pub value: Option<TracedValue>,
-    /// The calls that led to it, outermost first: `shade > add_light [2]`.
+    /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
     pub calls: Arc<str>,
 }
 
@@ -250,7 +255,7 @@ impl Trace {
             Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
             _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
         }
-        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(_) | Purpose::Leave);
+        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..) | Purpose::Leave);
         let places = stage.places().filter(|place| is_shown(&place.purpose));
         let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
         let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
@@ -262,6 +267,7 @@ impl Trace {
             target,
             picture: bits(picture),
             redrawn: bits(redrawn),
+            lights: Vec::new(),
             code: code.collect(),
         }
     }
@@ -333,13 +339,17 @@ fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
 fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
     let point = stage.point(number)?;
     let place = stage.place(point);
+    if place.line == 0 {
+        return None;
+    }
     let (act, name) = match &place.purpose {
         Purpose::Argument(name) => (Act::Argument, name.as_str()),
         Purpose::Store(name) => (Act::Store, name.as_str()),
         Purpose::Condition => (Act::Condition, ""),
+        Purpose::Constant { .. } => return None,
         Purpose::Return => (Act::Return, ""),
         Purpose::Discard => (Act::Discard, ""),
-        Purpose::Enter(_) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
+        Purpose::Enter(..) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
     };
     Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
 }
@@ -349,7 +359,7 @@ fn event(stage: &TracedStage, number: u32, bits: [u32; 4], calls: &mut Calls) ->
     let point = stage.point(number)?;
     let (path, count) = (calls.path(), point.count as usize);
     match &stage.place(point).purpose {
-        Purpose::Enter(name) => calls.enter(name),
+        Purpose::Enter(name, list) => calls.enter(name, list.map(|list| (list, bits[0]))),
         Purpose::Leave => calls.leave(),
         Purpose::Return if stage.is_last_of_place(number) => calls.leave(),
         _ => {}

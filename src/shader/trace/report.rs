@@ -135,6 +135,7 @@ impl Trace {
             "redrawn": floats(self.redrawn) });
         json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
             "stage": self.stage, "fragment": fragment, "proof": proof,
+            "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
             "not_reached": self.not_reached(fragment) })
     }

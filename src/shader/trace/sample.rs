@@ -30,6 +30,7 @@ pub(crate) fn trace(events: Vec<Event>, statements: &[u32]) -> Trace {
         target: Target::Picture,
         picture: [0; 4],
         redrawn: [0; 4],
+        lights: Vec::new(),
         code: code.collect(),
     }
 }

@@ -1,9 +1,9 @@
 //! A stage that logs what it computes, in a set of shaders that is otherwise the same.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::ops::RangeInclusive;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::conditions::line_of_condition;
 use super::statement::{self, Site};
 use crate::shader::contract::Texts;
 use crate::shader::glsl::syntax::{Function, functions};
@@ -106,24 +106,32 @@ impl ListeningStage {
         let lacks = || format!("the values of {} cannot be traced", stage.path);
         let mut traced = trace(&self.words, listener.function, listener.logged, only).ok_or_else(lacks)?;
         let words = finish(std::mem::take(&mut traced.words)).ok_or_else(lacks)?;
-        self.move_arguments(&mut traced.places);
+        self.move_places(&mut traced.places);
         let mut shaders = ShaderSet::clone(shaders);
         shaders.stages.insert(stage.path.to_string(), Arc::new(stage.with_module(words)));
         Ok(TracedStage { shaders: Arc::new(shaders), texts: self.texts.clone(), traced })
     }
 
-    /// Moves arguments to the headers of their functions.
-    fn move_arguments(&self, places: &mut [Place]) {
-        let mut headers: HashMap<String, Vec<RangeInclusive<u32>>> = HashMap::new();
-        for place in places.iter_mut().filter(|place| matches!(place.purpose, Purpose::Argument(_))) {
-            let functions = headers.entry(place.file.clone()).or_insert_with_key(|file| {
-                let text = self.texts.text(file);
-                let code = Code::new(&text);
-                let lines = |of: &Function| code.number_at(of.head.start)..=code.number_at(of.body.bytes.end);
-                functions(&code.tokens).iter().map(lines).collect()
-            });
-            let around = functions.iter().find(|lines| lines.contains(&place.line));
-            place.line = around.map_or(place.line, |lines| *lines.start());
+    /// Moves arguments to the headers of their functions, and constant conditions to their statements.
+    fn move_places(&self, places: &mut [Place]) {
+        let moves = |place: &Place| matches!(place.purpose, Purpose::Argument(_) | Purpose::Constant { .. });
+        let files: BTreeSet<String> =
+            places.iter().filter(|place| moves(place)).map(|place| place.file.clone()).collect();
+        for file in files {
+            let text = self.texts.text(&file);
+            let code = Code::new(&text);
+            let functions = functions(&code.tokens);
+            let lines = |of: &Function| code.number_at(of.head.start)..=code.number_at(of.body.bytes.end);
+            for place in places.iter_mut().filter(|place| place.file == file) {
+                if let Purpose::Constant { between } = place.purpose {
+                    // Without a statement, nobody could find the place.
+                    place.line = line_of_condition(&functions, &code, place.line, between).unwrap_or(0);
+                    place.purpose = Purpose::Condition;
+                } else if matches!(place.purpose, Purpose::Argument(_)) {
+                    let around = functions.iter().map(lines).find(|lines| lines.contains(&place.line));
+                    place.line = around.map_or(place.line, |lines| *lines.start());
+                }
+            }
         }
     }
 }

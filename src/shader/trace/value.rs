@@ -62,6 +62,12 @@ impl TracedValue {
         self.numbers().all(f64::is_finite)
     }
 
+    /// The bits of the floats in hexadecimal, as `3f800000`; empty for other numbers.
+    pub fn float_bits(&self) -> String {
+        let of_float = self.bits[..self.count].iter().filter(|_| matches!(self.kind, NumberKind::Float));
+        of_float.map(|bits| format!("{bits:08x}")).collect::<Vec<_>>().join(" ")
+    }
+
     /// One of the numbers, from 0.
     pub(super) fn component(&self, index: usize) -> Option<Self> {
         self.bits[..self.count].get(index).map(|bits| Self::new(self.kind, &[*bits]))
@@ -135,6 +141,8 @@ mod tests {
             assert_eq!(value.text(), text);
         }
         assert_eq!(float(&[0.1, f32::NAN]).json(), json!([0.1_f32, "NaN"]));
+        assert_eq!(float(&[1.0, -0.0]).float_bits(), "3f800000 80000000");
+        assert_eq!(TracedValue::new(NumberKind::Int, &[3]).float_bits(), "");
         assert_eq!(float(&[1.0, 2.0]).type_name() + &TracedValue::new(NumberKind::Bool, &[0]).type_name(), "vec2bool");
     }
 }

@@ -1,5 +1,7 @@
 //! `specula check MODEL`: assertions that fail, and operations whose result GLSL leaves open, with their lines, operands and places.
 
+mod stages;
+
 use std::path::Path;
 
 use serde_json::{Value, json};

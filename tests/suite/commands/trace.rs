@@ -104,7 +104,8 @@ fn terms_of_the_brdf_are_those_of_the_cpu() {
     let eye = vector(&probe["camera"]["eye"]);
     let v = unit(std::array::from_fn(|at| eye[at] - position[at]));
     let mut expected: Vec<[f64; 6]> = Vec::new();
-    for light in probe["lights"].as_array().unwrap() {
+    let mut shining = Vec::new();
+    for (number, light) in (1..).zip(probe["lights"].as_array().unwrap()) {
         let l = match light["position"].as_array() {
             Some(_) => std::array::from_fn(|at| vector(&light["position"])[at] - position[at]),
             None => vector(&light["direction"]).map(|x| -x),
@@ -115,6 +116,7 @@ fn terms_of_the_brdf_are_those_of_the_cpu() {
         if n_dot_l <= 0.0 {
             continue;
         }
+        shining.push(format!("shade > add_light [light {number}] > evaluate_brdf > d_specular > d_ggx"));
         let a2 = 0.6_f64.powi(4);
         let spread = n_dot_h * n_dot_h * a2 + (1.0 - n_dot_h * n_dot_h);
         let root = |c: f64| (c * c * (1.0 - a2) + a2).sqrt();
@@ -139,13 +141,18 @@ fn terms_of_the_brdf_are_those_of_the_cpu() {
         let same = traced.len() == cpu.len() && traced.iter().zip(&cpu).all(|(a, b)| near(*a, *b, 1e-3));
         assert!(same, "{what}: {traced:?}, but the CPU computes {cpu:?}");
     }
-    // The calls tell the lights apart.
-    let calls = found["lines"].to_string();
-    assert!(
-        ["shade > add_light > evaluate_brdf", "shade > add_light [2] > evaluate_brdf"]
-            .iter()
-            .all(|call| calls.contains(call))
-    );
+    // The calls name their lights.
+    let calls = |of: &Value| of["calls"].as_str().unwrap().to_owned();
+    let of_ggx = found["lines"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|line| line["file"] == "brdf/ndf.glsl" && line["code"].as_str().unwrap().starts_with("float spread"));
+    let times = of_ggx.unwrap()["done"][0]["first"].as_array().unwrap();
+    assert_eq!(times.iter().map(calls).collect::<Vec<_>>(), shining);
+    let named: Vec<&Value> = found["lights"].as_array().unwrap().iter().map(|light| &light["name"]).collect();
+    assert_eq!(named, ["lights.orbit.0", "lights.orbit.1", "lights.orbit.2"]);
+    assert_eq!(found["lights"][1]["intensity"], probe["lights"][1]["intensity"]);
     // Beckmann's lines are in the stage and not reached.
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/brdf/ndf.glsl")).unwrap();
     let missed = not_reached(&found, "brdf/ndf.glsl");

@@ -89,6 +89,26 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     }
     let refused = viewer.running.refused(json!({ "command": "source", "stage": "tonemap.frg" }));
     assert!(refused.contains("Did you mean `tonemap.frag`?"), "{refused}");
+
+    // In a picture of another size, the pin is on the same surface: the framing camera has moved, and the pixel with it.
+    let place = |viewer: &mut Viewer, at: &Value| {
+        let values = viewer.running.done(json!({ "command": "probe", "at": at, "modes": ["position"] }));
+        let position = values["modes"]["position"].as_array().unwrap_or_else(|| panic!("{values}")).clone();
+        position.iter().map(|number| number.as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let at = json!([x + width / 20, y - height / 10]);
+    viewer.running.done(ask(json!({ "at": at })));
+    let before = place(&mut viewer, &at);
+    viewer.resize(760, 620);
+    let smaller = viewer.screenshot().dimensions();
+    assert!(smaller.0 < width && smaller.1 < height, "{smaller:?} {width} {height}");
+    let pinned = viewer.running.done(json!({ "command": "pinned" }))["pixel"].clone();
+    assert_ne!(pinned, at);
+    let after = place(&mut viewer, &pinned);
+    let apart = before.iter().zip(&after).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    assert!(apart < 0.03, "{before:?} at {at}, {after:?} at {pinned}");
+    let found = viewer.running.done(ask(json!({})));
+    assert_eq!((&found["pixel"], &found["proof"]["equal"]), (&pinned, &true.into()), "{found}");
     viewer.quit();
 }
 

@@ -1,25 +1,25 @@
 //! The cost of a function, behind the first line of its code.
 
-use egui::{Align2, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2};
+use egui::{Rect, Sense, Ui, WidgetInfo, WidgetType};
 
 use crate::app::state::State;
-use crate::app::widgets::theme::{QUIET, small_font};
+use crate::headless::FunctionCost;
 use crate::shader::TreePath;
 
-/// Points between the code and the cost.
-const GAP: f32 = 16.0;
-
-/// Shows the cost of the function that begins at a line. `code_end`: where the code of the line ends.
-pub(super) fn show(ui: &mut Ui, state: &State, (path, line): (&TreePath, u32), rect: Rect, code_end: f32) {
-    let shaders = state.session.shaders.as_ref();
-    let Some(cost) = shaders.and_then(|shaders| state.costs.of_line(shaders, path, line)) else { return };
+/// The cost of the function that begins at a line, in words.
+pub(super) fn text_of<'a>(state: &'a State, path: &TreePath, line: u32) -> Option<(&'a FunctionCost, String)> {
+    let shaders = state.session.shaders.as_ref()?;
+    let cost = state.costs.of_line(shaders, path, line)?;
     let share = cost.ms() / state.costs.frame_ms().unwrap_or(f64::INFINITY).max(1e-9);
     let text = match cost.is_significant() {
         true => format!("{} · {:.1} % of the frame", cost.text(), 100.0 * share),
         false => cost.text(),
     };
-    let at = pos2(code_end + GAP, rect.center().y);
-    let place = ui.painter().text(at, Align2::LEFT_CENTER, &text, small_font(), QUIET.color());
+    Some((cost, text))
+}
+
+/// Shows the cost of the function that begins at a line. `place`: where its text stands.
+pub(super) fn show(ui: &mut Ui, (cost, text): (&FunctionCost, &str), line: u32, place: Rect) {
     let response = ui.interact(place, ui.id().with(("cost", line)), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("costs {text}")));
     let figures = cost.figures.iter().filter(|figure| figure.change().is_some());

@@ -44,31 +44,37 @@ pub(super) fn links(
     }
 }
 
-/// The file and the line, from 1, in which a name is declared that stands in a line: a local one of its function, one of its file, or one
-/// of another file. `None` for what GLSL has built in.
-fn definition(shaders: &ShaderSet, (path, line): (&TreePath, u32), name: &str) -> Option<(TreePath, u32)> {
+/// The file and the line, from 1, in which a name is declared that stands in a line.
+fn definition(shaders: &ShaderSet, place: (&TreePath, u32), name: &str) -> Option<(TreePath, u32)> {
+    let (file, symbol) = symbol_of(shaders, place, name)?;
+    let line = shaders.texts.get(&file)?.get(..symbol.bytes.start)?.matches('\n').count() as u32 + 1;
+    Some((file, line))
+}
+
+/// The declaration of a name that stands in a line, and its file: a local one of its function, one of its file, or one of another file.
+/// `None` for what GLSL has built in.
+pub(super) fn symbol_of(shaders: &ShaderSet, (path, line): (&TreePath, u32), name: &str) -> Option<(TreePath, Symbol)> {
     let text = shaders.texts.get(path)?;
     let here: usize = text.split_inclusive('\n').take(line as usize - 1).map(str::len).sum();
     let end = here + text[here..].find('\n').unwrap_or(text.len() - here);
     let own = Symbols::of(text);
-    let line_of = |text: &str, symbol: &Symbol| text[..symbol.bytes.start].matches('\n').count() as u32 + 1;
     // The last declaration before the end of the line, whose scope has the line.
     let is_local = |symbol: &&Symbol| {
         symbol.name == name && symbol.scope.as_ref().is_some_and(|scope| scope.contains(&here) || scope.contains(&end))
     };
     if let Some(local) = own.all.iter().filter(is_local).rfind(|symbol| symbol.bytes.start < end) {
-        return Some((path.clone(), line_of(text, local)));
+        return Some((path.clone(), local.clone()));
     }
-    let of_file = |symbols: &Symbols, text: &str| {
+    let of_file = |symbols: &Symbols| {
         let mut found: Vec<&Symbol> =
             symbols.all.iter().filter(|symbol| symbol.is_global() && symbol.name == name).collect();
         // A declaration without its body comes last.
         found.sort_by_key(|symbol| symbol.kind == SymbolKind::Function && !symbol.has_body);
-        found.first().map(|symbol| line_of(text, symbol))
+        found.first().map(|symbol| (*symbol).clone())
     };
-    of_file(&own, text).map(|line| (path.clone(), line)).or_else(|| {
+    of_file(&own).map(|symbol| (path.clone(), symbol)).or_else(|| {
         let others = shaders.texts.iter().filter(|(other, text)| *other != path && text.contains(name));
-        others.into_iter().find_map(|(other, text)| Some((other.clone(), of_file(&Symbols::of(text), text)?)))
+        others.into_iter().find_map(|(other, text)| Some((other.clone(), of_file(&Symbols::of(text))?)))
     })
 }
 

@@ -112,6 +112,49 @@ fn the_hover_text_of_a_value_shows_it_around_the_pixel() {
 }
 
 #[test]
+fn the_hover_text_of_a_value_has_what_the_author_wrote_about_it() {
+    let text = TEXT.replace("float a = x * 2.0;", "float a = x * 2.0; // twice the size");
+    let mut harness = window(&text, events(2.0), &[2, 3, 4, 5, 6]);
+    harness.get_by_label("a = 2").hover();
+    harness.run_steps(40);
+    for part in ["float a", "twice the size", "40000000", "a.glsl:3"] {
+        assert!(has(&harness, part), "no {part} in {:?}", labels(&harness));
+    }
+}
+
+/// The rectangles in which texts that begin so are seen.
+fn seen(harness: &Harness<'_, Window>, start: &str) -> Vec<egui::Rect> {
+    let text = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
+        egui::Shape::Text(text) if text.galley.text().starts_with(start) => {
+            Some(text.galley.rect.translate(text.pos.to_vec2()).intersect(clipped.clip_rect))
+        }
+        _ => None,
+    };
+    harness.output().shapes.iter().filter_map(text).collect()
+}
+
+#[test]
+fn values_never_cover_code() {
+    let long = format!("float f(float x) {{ // {}", "a head that is longer than the panel ".repeat(5));
+    let store = format!("    float a = x * 2.0;{} // end", " ".repeat(60));
+    let text = TEXT.replace("float f(float x) {", &long).replace("    float a = x * 2.0;", &store);
+    let mut all = events(2.0);
+    all.extend((0..9).map(|at| event(2, Act::Argument, &format!("argument_{at}"), &[at as f32, 0.123_456, 7.0])));
+    let harness = window(&text, all, &[2, 3, 4, 5, 6]);
+    for (code, values) in
+        [("float f(float x)", "x = 1"), ("    float a = x * 2.0;", "a = 2"), ("    if (a", "not taken")]
+    {
+        let (code, values) = (seen(&harness, code), seen(&harness, values));
+        let [code, value] = [&code, &values].map(|all| *all.first().expect("it is seen"));
+        assert!(code.width() > 60.0 && code.right() < value.left(), "{code} {value}");
+    }
+    let arguments: Vec<egui::Rect> = (0..9).flat_map(|at| seen(&harness, &format!("argument_{at}"))).collect();
+    assert!(arguments.len() < 9 && arguments.iter().all(|argument| argument.right() < 900.0), "{arguments:?}");
+    // The whole line is told where it is cut.
+    assert_eq!(seen(&harness, "…").len(), 1, "the long head alone is cut");
+}
+
+#[test]
 fn a_name_leads_to_its_definition_while_ctrl_is_held() {
     let text = format!("{TEXT}float g(float x) {{\n    return f(x);\n}}\n");
     let mut harness = window(&text, events(2.0), &[2, 3, 4, 5, 6, 8, 9]);

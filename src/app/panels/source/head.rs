@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{ComboBox, Label, PopupCloseBehavior, RichText, ScrollArea, Ui};
+use egui::{Color32, ComboBox, Label, PopupCloseBehavior, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
 
 use super::edit::Editor;
 use super::fold::Folds;
@@ -16,13 +16,13 @@ use crate::app::editor::Place;
 use crate::app::panels::draft::show_draft;
 use crate::app::state::State;
 use crate::app::state::shaders::edits::NO_FOLDER;
-use crate::app::state::trace::choice::{Choice, calls, most_times};
+use crate::app::state::trace::choice::{Choice, ListedCall, calls, listed_calls, most_times};
 use crate::app::state::trace::{PixelTrace, Progress};
 use crate::app::widgets::plural;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, icon, small_mono};
-use crate::shader::trace::{Trace, TraceableStage};
+use crate::shader::trace::{Trace, TraceableStage, TracedLight, last_call};
 use crate::shader::{ShaderSet, TreePath};
 
 /// Width of the list of files, points.
@@ -31,6 +31,8 @@ const FILES: f32 = 176.0;
 const STAGES: f32 = 130.0;
 /// Height of the list of files, points.
 const MENU: f32 = 380.0;
+/// Points by which a call stands to the right of its caller.
+const INDENT: f32 = 12.0;
 
 /// Shows the rows above the code.
 pub(super) fn show(
@@ -131,7 +133,8 @@ fn stages(ui: &mut Ui, newest: &PixelTrace, commands: &mut Commands) {
         }
     });
     named(list.response, "Stage").on_hover_text(
-        "The stage whose values are shown: of the surfaces, of their vertices, or of a pass of the picture",
+        "The stage whose values are shown: of the surfaces, of their vertices, or of a pass of the picture. Stages of tessellation, \
+         geometry and meshes are not traced",
     );
 }
 
@@ -272,7 +275,7 @@ fn choices(ui: &mut Ui, now: &Choice, trace: &Trace, fragment: usize, commands: 
         choose_fragment(ui, &mut choice, trace, fragment);
     }
     if has[1] {
-        choose_call(ui, &mut choice, &calls);
+        choose_call(ui, &mut choice, calls.len(), (trace, fragment));
     }
     if has[2] {
         choose_time(ui, &mut choice, times);
@@ -295,19 +298,46 @@ fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: us
     named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there");
 }
 
-fn choose_call(ui: &mut Ui, choice: &mut Choice, calls: &[std::sync::Arc<str>]) {
-    let all = format!("All {}", plural(calls.len(), "call"));
-    let shown = choice.call.clone().unwrap_or_else(|| all.clone());
-    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(150.0).truncate();
-    let list = list.show_ui(ui, |ui| {
-        ui.set_min_width(360.0);
-        ui.selectable_value(&mut choice.call, None, all);
-        for call in calls {
-            ui.selectable_value(&mut choice.call, Some(call.to_string()), small_mono(&**call));
+/// `count`: calls with statements of the file.
+fn choose_call(ui: &mut Ui, choice: &mut Choice, count: usize, (trace, fragment): (&Trace, usize)) {
+    let all = format!("All {}", plural(count, "call"));
+    let now = choice.call.clone();
+    let shown = now.as_deref().map_or(all.as_str(), |call| last_call(call).0);
+    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(150.0).height(MENU);
+    let list = list.truncate().show_ui(ui, |ui| {
+        ui.set_min_width(MENU);
+        ui.selectable_value(&mut choice.call, None, &all);
+        for call in listed_calls(trace, fragment) {
+            let light = call.light.and_then(|light| trace.lights.get(light));
+            if call_row(ui, &call, light, now.as_deref() == Some(&call.path)) {
+                choice.call = Some(call.path);
+            }
         }
     });
-    named(list.response, "Call")
-        .on_hover_text("One call: the values of what led to it, of itself, and of what it calls");
+    let hint = "One call: the values of what led to it, of itself, and of what it calls";
+    named(list.response, "Call").on_hover_text(now.map_or(hint.to_owned(), |call| format!("{call}\n{hint}")));
+}
+
+/// A call in the list, indented below its caller, with the light that it is about. Returns whether it was clicked.
+fn call_row(ui: &mut Ui, call: &ListedCall, light: Option<&TracedLight>, is_chosen: bool) -> bool {
+    let row = ui.horizontal(|ui| {
+        ui.add_space(INDENT * call.depth as f32);
+        let button = ui.selectable_label(is_chosen, small_mono(&call.name));
+        if let Some(light) = light {
+            let (area, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
+            ui.painter().circle(area.center(), 4.0, light_color(light), Stroke::new(1.0, QUIET));
+            ui.label(RichText::new(light.text()).small().color(QUIET));
+        }
+        named(button, &call.path).clicked()
+    });
+    row.inner
+}
+
+/// The color of a light on the display, as bright as it can be.
+fn light_color(light: &TracedLight) -> Color32 {
+    let most = light.intensity.into_iter().fold(f32::MIN_POSITIVE, f32::max);
+    let [r, g, b] = light.intensity.map(|channel| ((channel / most).clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);
+    Color32::from_rgb(r, g, b)
 }
 
 fn choose_time(ui: &mut Ui, choice: &mut Choice, times: usize) {

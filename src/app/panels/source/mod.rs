@@ -4,6 +4,7 @@ mod bar;
 mod code;
 mod colors;
 mod cost;
+mod declared;
 mod definition;
 mod edit;
 mod find;
@@ -19,8 +20,10 @@ mod neighborhood;
 mod number;
 mod row;
 mod scroll;
+mod tail;
 #[cfg(test)]
 mod tests;
+mod values;
 
 use egui::{RichText, Ui};
 

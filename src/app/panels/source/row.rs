@@ -2,38 +2,30 @@
 
 use std::ops::Range;
 
-use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, CursorIcon, Rect, Sense, Shape, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
-use super::bar;
 use super::colors::{ROW, colored};
-use super::cost;
 use super::definition;
 use super::find::Find;
 use super::functions::Fold;
-use super::hover;
 use super::look::Look;
 use super::model::{CodeLine, CodeModel, Shown};
 use super::number::NumberDrag;
+use super::tail::Tail;
+use super::values::{GAP, Values};
 use crate::app::command::source::SHOW_FILE;
 use crate::app::commands::Commands;
-use crate::app::source_line::watch;
 use crate::app::state::State;
-use crate::app::state::trace::rows::{Note, Reach};
-use crate::app::widgets::plural;
+use crate::app::state::trace::rows::Reach;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{
-    ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, PANEL, QUIET, TEXT, WARNING, small_font, small_mono_font,
+    ACCENT, CODE_VALUE, ERROR, PANEL, QUIET, TEXT, WARNING, small_font, small_mono, small_mono_font,
 };
-use crate::shader::trace::Act;
 use crate::shader::{Severity, TreePath};
 
-/// Largest share of the row in sight that values cover while code lies below them.
-const MOST_VALUES: f32 = 0.6;
-/// Points between code and values, and between two values.
-const GAP: f32 = 14.0;
-/// Points between a bar and its value.
-const BAR_GAP: f32 = 5.0;
+/// Share of the row in sight that values and what stands before them take at most where the code would need it, too.
+const MOST_VALUES: f32 = 0.55;
 /// Opacity of lines that the pixel does not reach.
 const MISSED: f32 = 0.42;
 
@@ -104,28 +96,36 @@ fn show_line(
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("{}: {}", row.line, line.text)));
     let opacity = if row.reach == Reach::Missed { MISSED } else { 1.0 };
     let left = rect.left() + look.gutter;
-    ui.painter().add(found(line, find, (left, rect), look));
     let galley = ui.painter().layout_job(colored(&line.text, &line.parts, opacity, None));
     let code_end = left + galley.size().x;
+    let tail = Tail::new(ui, state, (path, line));
+    let least = MOST_VALUES * sight.width() - tail.width;
+    let values = Values::new(ui, line, (sight, code_end + tail.width), least);
+    // Code and values never overlap: the end of the code is left out.
+    let end = code_end.min(values.start - GAP - tail.width);
+    let whole = ui.clip_rect();
+    if end < code_end {
+        ui.set_clip_rect(whole.intersect(rect.with_max_x(end - look.letter)));
+    }
+    ui.painter().add(found(line, find, (left, rect), look));
     ui.painter().galley(pos2(left, rect.center().y - galley.size().y / 2.0), galley, TEXT.color());
     drag.show(ui, (state, path), line, (left, rect, look), commands);
-    let code_end = hidden(ui, line, (code_end, rect));
-    cost::show(ui, state, (path, row.line), rect, code_end);
-    gutter(ui, line, sight, background, look);
     if let Some(include) = &line.include {
-        include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=code_end, rect.y_range()), commands);
+        include_link(ui, row.line, include, Rect::from_x_y_ranges(left..=end, rect.y_range()), commands);
     }
-    values(ui, (state, path), line, (sight, code_end, background), commands);
     definition::links(ui, (state, path), line, (left, rect, look), commands);
-    response.double_clicked()
-}
-
-/// Says how many lines of a folded function are hidden. Returns where the line ends then.
-fn hidden(ui: &Ui, line: &CodeLine, (end, rect): (f32, Rect)) -> f32 {
-    let Some(fold) = line.fold.as_ref().filter(|fold| fold.hidden > 0) else { return end };
-    let place = pos2(end + GAP / 2.0, rect.center().y);
-    let text = format!("… {}", plural(fold.hidden, "line"));
-    ui.painter().text(place, Align2::LEFT_CENTER, text, small_font(), QUIET.color()).right()
+    ui.set_clip_rect(whole);
+    if end < code_end {
+        ui.painter().text(pos2(end, rect.center().y), Align2::RIGHT_CENTER, "…", small_mono_font(), QUIET.color());
+    }
+    tail.show(ui, row.line, pos2(end, rect.center().y));
+    gutter(ui, line, sight, background, look);
+    values.show(ui, (state, path), (line, sight), commands);
+    let is_clicked = response.double_clicked();
+    if end < code_end {
+        response.on_hover_text(small_mono(line.text.trim()));
+    }
+    is_clicked
 }
 
 /// The triangle that folds a function. Returns whether it was clicked.
@@ -179,7 +179,8 @@ pub(super) fn beside(
             }
             ui.painter().galley(at, galley, color);
         }
-        None => values(ui, of, line, (sight, end, background), commands),
+        // What is typed is never cut.
+        None => Values::new(ui, line, (sight, end), 0.0).show(ui, of, (line, sight), commands),
     }
     let behind = background.map_or(Shape::Noop, |color| Shape::rect_filled(sight, 0.0, color));
     Shape::Vec(vec![behind, found(line, find, (left, sight), look)])
@@ -236,69 +237,7 @@ fn include_link(ui: &mut Ui, line: u32, include: &TreePath, rect: Rect, commands
     response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(format!("Click to show {include} here"));
 }
 
-/// The values of a line, at the right end of what is in sight.
-fn values(
-    ui: &mut Ui,
-    (state, path): (&State, &TreePath),
-    line: &CodeLine,
-    (sight, code_end, background): (Rect, f32, Option<Color32>),
-    commands: &mut Commands,
-) {
-    if line.row.notes.is_empty() {
-        return;
-    }
-    let right = sight.right() - 8.0;
-    let free = right - code_end - GAP;
-    let most = free.max(MOST_VALUES * sight.width());
-    let mut galleys = Vec::new();
-    let mut total = 0.0;
-    for note in &line.row.notes {
-        let gap = if galleys.is_empty() { 0.0 } else { GAP };
-        let room = most - total - gap;
-        if room < 3.0 * GAP && !galleys.is_empty() {
-            break;
-        }
-        let bar = bar::value(note);
-        let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
-        let mut job = job_of(note);
-        job.wrap = TextWrapping::truncate_at_width(room - of_bar);
-        let galley = ui.painter().layout_job(job);
-        total += gap + of_bar + galley.size().x;
-        galleys.push((note, galley, bar));
-    }
-    let start = right - total;
-    if start < code_end + GAP {
-        cover(ui, sight.with_min_x(start - GAP), background);
-    }
-    let mut x = start;
-    for (index, (note, galley, bar)) in galleys.into_iter().enumerate() {
-        let (size, begin) = (galley.size(), x);
-        if bar.is_some() {
-            x += bar::WIDTH + BAR_GAP;
-        }
-        let area = Rect::from_x_y_ranges(begin..=x + size.x, sight.y_range()).expand2(vec2(3.0, 0.0));
-        let expression =
-            expression(note).filter(|_| state.session.shaders.as_ref().is_some_and(|of| of.can_watch(path)));
-        let sense = if expression.is_some() { Sense::click() } else { Sense::hover() };
-        let response = ui.interact(area, ui.id().with(("note", line.row.line, index)), sense);
-        spoken::button(&response, &note.text());
-        if response.hovered() {
-            ui.painter().rect_filled(area, 3.0, ui.visuals().widgets.inactive.weak_bg_fill);
-        }
-        bar.into_iter().for_each(|value| bar::draw(ui.painter(), (begin, sight.center().y), value));
-        ui.painter().galley(pos2(x, sight.center().y - size.y / 2.0), galley, CODE_VALUE.color());
-        commands.sight.around |= response.hovered() && bar.is_some();
-        if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
-            watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
-            commands.settings.expression.evaluation = evaluation(state, path, line, note);
-        }
-        let response = if expression.is_some() { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
-        response.on_hover_ui(|ui| hover::show(ui, state, (path, line), note, expression.as_deref()));
-        x += size.x + GAP;
-    }
-}
-
-/// Covers the code below the values, with a soft edge.
+/// Covers the code below a message, with a soft edge.
 fn cover(ui: &Ui, area: Rect, background: Option<Color32>) {
     let painter = ui.painter();
     for (at, opacity) in [(0.0, 0.35), (4.0, 0.6), (8.0, 1.0)] {
@@ -310,43 +249,4 @@ fn cover(ui: &Ui, area: Rect, background: Option<Color32>) {
         painter.rect_filled(part, 0.0, PANEL.color().gamma_multiply(opacity));
         background.into_iter().for_each(|color| _ = painter.rect_filled(part, 0.0, color.gamma_multiply(opacity)));
     }
-}
-
-/// The number of the evaluation that a value is of, where the user has chosen a call or a time.
-fn evaluation(state: &State, path: &TreePath, line: &CodeLine, note: &Note) -> u32 {
-    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
-    let place = trace.zip(line.row.traced);
-    place.map_or(0, |(trace, line)| state.traces.choice.evaluation(trace, path.as_str(), line, &note.done))
-}
-
-/// The expression that shows a value over the model.
-fn expression(note: &Note) -> Option<String> {
-    let name = &note.done.name;
-    match note.done.act {
-        Act::Store | Act::Argument if !name.is_empty() && !name.contains("[ ]") => Some(name.clone()),
-        Act::Return if name.is_empty() => Some("return".to_owned()),
-        _ => None,
-    }
-}
-
-fn job_of(note: &Note) -> LayoutJob {
-    let mut job = LayoutJob::default();
-    let mut add = |text: &str, color: Color32| {
-        let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
-        job.append(text, 0.0, format);
-    };
-    let is_branch = matches!(note.done.act, Act::Condition | Act::Discard);
-    add(&note.label, QUIET.color());
-    if let Some(before) = &note.before {
-        add(before, QUIET.color());
-        add(" → ", QUIET.color());
-    }
-    let color = match (note.is_bad, note.before.is_some(), is_branch) {
-        (true, ..) => ERROR,
-        (_, true, _) => ACCENT,
-        (.., true) => CODE_KEYWORD,
-        _ => CODE_VALUE,
-    };
-    add(&note.values, color.color());
-    job
 }

@@ -24,8 +24,8 @@ use crate::app::state::trace::saved::WrittenText;
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
 use crate::settings::Settings;
-use crate::shader::trace::sample::{called, event};
-use crate::shader::trace::{Act, Event};
+use crate::shader::trace::sample::{called, event, trace};
+use crate::shader::trace::{Act, Event, Trace, TracedLight};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::write_back::TreeFile;
 
@@ -45,10 +45,10 @@ fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
 }
 
 /// Takes a trace of a version of `a.glsl`.
-fn add(state: &mut State, generation: u64, text: &str, events: Vec<Event>, statements: &[u32]) {
+fn add(state: &mut State, generation: u64, text: &str, trace: Trace) {
     let shaders = shaders(generation, text);
     state.inspection.pin = Some([3, 4]);
-    sample::add(&mut state.traces, &shaders, generation, events, statements);
+    sample::add_trace(&mut state.traces, &shaders, generation, trace);
     state.session.shaders = Some(shaders);
 }
 
@@ -62,8 +62,12 @@ pub(super) fn events(a: f32) -> Vec<Event> {
 }
 
 pub(super) fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harness<'static, Window> {
+    window_of(text, trace(events, statements))
+}
+
+fn window_of(text: &str, trace: Trace) -> Harness<'static, Window> {
     let mut state = State::new(Settings::of_window(), Source::embedded());
-    add(&mut state, 1, text, events, statements);
+    add(&mut state, 1, text, trace);
     let window = Window { state, panel: SourceState::default(), asked: Vec::new() };
     let mut has_theme = false;
     let show = move |ui: &mut egui::Ui, window: &mut Window| {
@@ -105,7 +109,7 @@ fn values_stand_beside_the_code_and_change_with_a_save() {
     }
     assert!(labels(&harness).iter().any(|label| label.contains("equal to the picture")), "{:?}", labels(&harness));
     let edited = TEXT.replace("2.0", "4.0");
-    add(&mut harness.state_mut().state, 2, &edited, events(4.0), &[2, 3, 4, 5, 6]);
+    add(&mut harness.state_mut().state, 2, &edited, trace(events(4.0), &[2, 3, 4, 5, 6]));
     harness.run_steps(3);
     for text in ["x = 1 → 2", "a = 2 → 4", "not taken", "return 2 → 4"] {
         harness.get_by_label(text);
@@ -167,6 +171,42 @@ fn a_call_is_chosen_where_there_are_more() {
     harness.run_steps(2);
     let chosen = Choice { call: Some("main > f [2]".to_owned()), ..Choice::default() };
     assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
+}
+
+#[test]
+fn calls_stand_below_their_callers_with_their_lights() {
+    let paths =
+        ["shade > add_light [light 1] > d_ggx", "shade > add_light [light 2] > d_ggx", "shade > d_ggx", "other"];
+    let light =
+        |name: &str, intensity: [f32; 3]| TracedLight { name: name.into(), kind: "point", intensity, unit: "cd" };
+    let mut trace = trace(paths.map(|calls| called(calls, 3, Act::Store, "a", &[2.0])).to_vec(), &[3]);
+    trace.lights = vec![light("lamp", [12.0, 6.0, 0.0]), light("", [3.0; 3])];
+    let mut harness = window_of(TEXT, trace);
+    harness.get_by_label("Call").click();
+    harness.run_steps(2);
+    harness.get_by_label("lamp, point, 12 cd");
+    harness.get_by_label("point, 3 cd");
+    let rows = [
+        "shade",
+        "shade > add_light [light 1]",
+        "shade > add_light [light 1] > d_ggx",
+        "shade > add_light [light 2]",
+        "shade > add_light [light 2] > d_ggx",
+        "shade > d_ggx",
+        "other",
+    ];
+    let places = rows.map(|row| harness.get_by_label(row).rect().left_top());
+    assert!(places.is_sorted_by(|a, b| a.y < b.y), "{places:?}");
+    let columns = places.map(|place| place.x);
+    assert!(columns[0] < columns[1] && columns[1] < columns[2] && columns[1] == columns[5] && columns[0] == columns[6]);
+    // A call without statements of the file leads to some.
+    harness.get_by_label("shade > add_light [light 2]").click();
+    harness.run_steps(2);
+    let chosen = Choice { call: Some("shade > add_light [light 2]".to_owned()), ..Choice::default() };
+    assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen.clone())]);
+    harness.state_mut().state.traces.choice = chosen;
+    harness.run_steps(2);
+    harness.get_by_label("a = 2");
 }
 
 /// Opens a tree whose shaders are in use.

@@ -15,7 +15,8 @@ pub(super) fn show(ui: &mut Ui, state: &State) {
     let generation = state.shown_generation();
     let chosen = state.compare.version().or_else(|| state.versions.before(generation).map(|version| version.number));
     let Some(version) = chosen.and_then(|number| state.versions.get(number)) else { return };
-    let Some(difference) = state.costs.of_version(generation, version.number) else { return };
+    let shaders = state.session.shaders.as_ref();
+    let Some(difference) = shaders.and_then(|of| state.costs.of_version(of, version.number)) else { return };
     let (older_ms, newest_ms) = (difference.base_ms + difference.change_ms, difference.base_ms);
     let text = format!(
         "{} ({}): {}. {older_ms:.2} ms, now {newest_ms:.2} ms",

@@ -1,6 +1,7 @@
 //! The inspector: the pinned pixel, its value in every mode, and the curves of its material. The panel shows it, the screen reads it from
 //! the device, and the viewer measures the curves.
 
+pub(in crate::app) mod anchor;
 pub(in crate::app) mod directions;
 pub(in crate::app) mod text;
 
@@ -16,6 +17,7 @@ use crate::settings::Settings;
 use crate::shader::not_finite::NotFinite;
 use crate::shader::{Mode, PixelValue};
 
+use anchor::Anchor;
 use directions::Directions;
 
 /// Page that the inspector panel shows.
@@ -45,6 +47,8 @@ impl Page {
 pub(in crate::app) struct Inspection {
     /// The pixel that the user has clicked.
     pub(in crate::app) pin: Option<[u32; 2]>,
+    /// The surface on which the pin stays, once the picture has changed its size.
+    pub(in crate::app) anchor: Option<Anchor>,
     /// Whether the message that the panel reads pixels was shown.
     pub(in crate::app) was_mentioned: bool,
     /// Whether the pixel under the mouse is shown while none is pinned.

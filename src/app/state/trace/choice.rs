@@ -3,14 +3,16 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::shader::trace::{Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related};
+use crate::shader::trace::{
+    Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related, last_call, light_of, paths_to,
+};
 
 /// The choice among what happened at a pixel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(in crate::app) struct Choice {
     /// From 0 for the nearest; `None` for the one that is seen.
     pub(in crate::app) fragment: Option<usize>,
-    /// The path of a call, as `shade > add_light [2]`: it, the calls that led to it, and those that it makes. `None` for all.
+    /// The path of a call, as `shade > add_light [light 2]`: it, the calls that led to it, and those that it makes. `None` for all.
     pub(in crate::app) call: Option<String>,
     /// Of a statement that ran more than once, the time that counts, from 1. `None` for all.
     pub(in crate::app) time: Option<usize>,
@@ -25,7 +27,7 @@ impl Choice {
     /// The chosen call, if the fragment has it.
     pub(in crate::app) fn call_of(&self, trace: &Trace, fragment: usize) -> Option<&str> {
         let call = self.call.as_deref()?;
-        calls(trace, fragment).iter().any(|of| **of == *call).then_some(call)
+        calls(trace, fragment).iter().any(|of| paths_to(of).any(|path| path == call)).then_some(call)
     }
 
     /// The lines of the chosen fragment, call and time.
@@ -104,6 +106,36 @@ pub(in crate::app) fn calls(trace: &Trace, fragment: usize) -> Vec<Arc<str>> {
         }
     }
     found
+}
+
+/// A call in the list of those of a fragment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::app) struct ListedCall {
+    pub(in crate::app) path: String,
+    /// Calls that led to it.
+    pub(in crate::app) depth: usize,
+    /// Its function, with the number of the call or of its light.
+    pub(in crate::app) name: String,
+    /// The index of the light that it is about.
+    pub(in crate::app) light: Option<usize>,
+}
+
+/// The calls in a fragment and those that led to them, in the order of execution: each behind the one that made it.
+pub(in crate::app) fn listed_calls(trace: &Trace, fragment: usize) -> Vec<ListedCall> {
+    let mut listed: Vec<ListedCall> = Vec::new();
+    for path in calls(trace, fragment).iter().flat_map(|path| paths_to(path)) {
+        if listed.iter().any(|known| known.path == path) {
+            continue;
+        }
+        let (name, depth) = last_call(path);
+        let light = light_of(name).and_then(|number| number.checked_sub(1));
+        let call = ListedCall { path: path.to_owned(), depth, name: name.to_owned(), light };
+        let caller = depth.checked_sub(1).and_then(|depth| paths_to(path).nth(depth));
+        let is_within = |known: &ListedCall| caller.is_none_or(|caller| paths_to(&known.path).any(|of| of == caller));
+        let end = listed.iter().rposition(is_within).map_or(0, |at| at + 1);
+        listed.insert(end, call);
+    }
+    listed
 }
 
 /// How often the statement ran that ran most often in the chosen call.

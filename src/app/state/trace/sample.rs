@@ -7,8 +7,8 @@ use super::subject::Subject;
 use crate::app::state::picture_subject::PictureSubject;
 use crate::settings::Settings;
 use crate::shader::ShaderSet;
-use crate::shader::trace::Event;
 use crate::shader::trace::sample::trace;
+use crate::shader::trace::{Event, Trace};
 use crate::threads::TracedPlace;
 
 /// The pixel at 3, 4 of a picture with these shaders.
@@ -29,7 +29,7 @@ pub(in crate::app) fn subject(shaders: &Arc<ShaderSet>) -> Subject {
     }
 }
 
-/// Takes a trace of a version of `a.glsl`.
+/// Takes a trace of a version of `a.glsl`, with these events.
 pub(in crate::app) fn add(
     traces: &mut Traces,
     shaders: &Arc<ShaderSet>,
@@ -37,6 +37,11 @@ pub(in crate::app) fn add(
     events: Vec<Event>,
     statements: &[u32],
 ) {
+    add_trace(traces, shaders, number, trace(events, statements));
+}
+
+/// Takes a trace of a version of `a.glsl`.
+pub(in crate::app) fn add_trace(traces: &mut Traces, shaders: &Arc<ShaderSet>, number: u64, trace: Trace) {
     traces.ask(subject(shaders), number, false);
     let names = TracedPlace {
         stage: "a.frag".to_owned(),
@@ -44,5 +49,5 @@ pub(in crate::app) fn add(
         files: vec!["a.glsl".to_owned()],
         file: "a.glsl".to_owned(),
     };
-    assert!(traces.take(number, names, Ok(trace(events, statements))));
+    assert!(traces.take(number, names, Ok(trace)));
 }

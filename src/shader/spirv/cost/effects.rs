@@ -1,11 +1,13 @@
 //! Effects of functions besides returning a value.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use foldhash::{HashMap, HashSet};
 
 use super::lack::Lack;
-use super::parameters::parameters;
+use super::parameters::{WrittenPart, parameters};
 use crate::shader::spirv::enums::storage;
-use crate::shader::spirv::module::{Function, Id, Instruction, Module};
+use crate::shader::spirv::module::{Function, Id, Instruction, Module, Type};
 use crate::shader::spirv::op::{Class, Op};
 
 /// Effects of a function, its callees included.
@@ -18,7 +20,15 @@ struct Effect {
     /// Variables of the whole stage that it writes.
     variables: Vec<Id>,
     /// Its parameters that it writes, by their places.
-    written: HashSet<usize>,
+    written: BTreeMap<usize, Members>,
+}
+
+/// The written part of a parameter.
+#[derive(Clone, Debug)]
+enum Members {
+    All,
+    /// Members of the struct.
+    Some(BTreeSet<u32>),
 }
 
 /// The effects of all functions that the entry point reaches.
@@ -39,13 +49,18 @@ impl Effects {
         all
     }
 
-    /// The parameters that a function only writes: no caller gives them a value.
-    pub(super) fn outs(&self, function: Id) -> Vec<usize> {
+    /// The parts of its parameters that a function writes. One that no caller gives a value is written as a whole.
+    pub(super) fn written(&self, function: Id) -> Vec<WrittenPart> {
         let written = self.of.get(&function).map(|effect| &effect.written);
-        let mut outs: Vec<usize> = written.into_iter().flatten().copied().collect();
-        outs.retain(|at| !self.given.contains(&(function, *at)));
-        outs.sort_unstable();
-        outs
+        let parts = written.into_iter().flatten().flat_map(|(parameter, members)| {
+            let (parameter, is_given) = (*parameter, self.given.contains(&(function, *parameter)));
+            let part = |member| WrittenPart { parameter, member, is_given };
+            match members {
+                Members::Some(members) if is_given => members.iter().map(|member| part(Some(*member))).collect(),
+                _ => vec![part(None)],
+            }
+        });
+        parts.collect()
     }
 
     /// Why a function cannot be replaced.
@@ -95,7 +110,7 @@ impl Effects {
                 let more = of.variables.iter().filter(|id| !effect.variables.contains(id)).copied();
                 let more: Vec<Id> = more.collect();
                 effect.variables.extend(more);
-                let written = of.written.iter().filter_map(|at| arguments.get(*at).copied());
+                let written = of.written.keys().filter_map(|at| arguments.get(*at).copied());
                 written.for_each(|pointer| writes(module, pointer, places, effect));
             }
             // `modf` and `frexp` write by a pointer, which glslang does not use: it takes their variants that return a struct.
@@ -107,12 +122,19 @@ impl Effects {
 
 /// Notes a write by a pointer.
 fn writes(module: &Module, pointer: Id, places: &HashMap<Id, usize>, effect: &mut Effect) {
-    let mut root = pointer;
+    let (mut root, mut member) = (pointer, None);
     while let Some(i) = module.definition(root).filter(|i| matches!(i.op, Op::AccessChain | Op::InBoundsAccessChain)) {
         root = module[i][3];
+        let kind = module.pointer(module.type_of(root)).and_then(|(_, to)| module.get_type(to));
+        member =
+            module[i].get(4).filter(|_| matches!(kind, Some(Type::Struct { .. }))).and_then(|at| module.number(*at));
     }
     if let Some(at) = places.get(&root) {
-        effect.written.insert(*at);
+        let members = effect.written.entry(*at).or_insert_with(|| Members::Some(BTreeSet::new()));
+        match (&mut *members, member) {
+            (Members::Some(all), Some(member)) => _ = all.insert(member),
+            _ => *members = Members::All,
+        }
         return;
     }
     match module.pointer(module.type_of(root)).map(|(class, _)| class) {

@@ -19,10 +19,10 @@ use super::op::{Class, Op, text};
 use super::reach::file_of;
 use effects::Effects;
 pub use lack::Lack;
-use parameters::{parameters, value_type};
+use parameters::{WrittenPart, parameters, value_type};
 pub use replace::{recording, without};
 
-/// Most numbers that a function may return, with its `out` parameters.
+/// Most numbers that a function may return, with what it writes to its parameters.
 const MOST_NUMBERS: usize = 64;
 /// Words of SPIR-V that read four numbers and make values of them, at most.
 const READING: usize = 48;
@@ -56,8 +56,11 @@ pub struct StageFunction {
     pub lack: Option<Lack>,
     /// How many numbers it returns.
     pub numbers: usize,
-    /// The parameters that it only writes.
-    outs: Vec<usize>,
+    /// The parts of its parameters that it writes.
+    written: Vec<WrittenPart>,
+    /// The parts that are too large to be recorded. Without the function they keep the values of the caller, combined with a number of the
+    /// buffer that is 0, so that no compiler knows them.
+    kept: Vec<WrittenPart>,
 }
 
 impl StageFunction {
@@ -145,14 +148,24 @@ fn describe(module: &Module, function: &Function, effects: &Effects, names: &Has
     let name = names.get(&function.id).map(|name| name.split('(').next().unwrap_or_default()).unwrap_or_default();
     let parameters: Vec<Id> = parameters(module, function).map(|id| value_type(module, module.type_of(id))).collect();
     let types: Vec<String> = parameters.iter().map(|kind| type_name(module, *kind, names)).collect();
-    let outs = effects.outs(function.id);
     let returned = Some(function.returns(module)).filter(|kind| module.defined(Op::TypeVoid, *kind).is_none());
-    let returned: Vec<Id> = outs.iter().filter_map(|at| parameters.get(*at).copied()).chain(returned).collect();
-    let numbers: Option<usize> = returned.iter().map(|kind| numbers::count(module, *kind)).sum();
-    let is_small = numbers.is_some_and(|count| count <= MOST_NUMBERS);
+    let count_of = |part: &WrittenPart| numbers::count(module, part.kind(module, &parameters)?);
+    let count = |parts: &[WrittenPart]| {
+        let returned = returned.map(|kind| numbers::count(module, kind));
+        parts.iter().map(count_of).chain(returned).sum::<Option<usize>>()
+    };
+    let (mut written, mut kept) = (effects.written(function.id), Vec::new());
+    // Without the function, other types keep the values of the caller.
+    written.retain(|part| !part.is_given || count_of(part).is_some());
+    let mut numbers = count(&written);
+    if numbers.is_some_and(|numbers| numbers > MOST_NUMBERS) {
+        (kept, written) = written.into_iter().partition(|part| part.is_given);
+        numbers = count(&written).map(|numbers| numbers + usize::from(!kept.is_empty()));
+    }
+    let is_small = numbers.is_some_and(|numbers| numbers <= MOST_NUMBERS);
     let lack = effects.lack(function.id, names).or_else(|| (!is_small).then_some(Lack::Returns));
     let signature = format!("{name}({})", types.join(", "));
-    StageFunction { id: function.id, signature, file, line, lack, numbers: numbers.unwrap_or(0), outs }
+    StageFunction { id: function.id, signature, file, line, lack, numbers: numbers.unwrap_or(0), written, kept }
 }
 
 /// A type as GLSL names it.

@@ -2,7 +2,7 @@
 
 use foldhash::HashSet;
 
-use super::parameters::{parameters, value_type};
+use super::parameters::{WrittenPart, parameters, value_type};
 use super::{Names, StageFunction, by_id, groups, numbers};
 use crate::shader::spirv::fold::drop_results;
 use crate::shader::spirv::module::{Block, Id, Instruction, Module};
@@ -20,13 +20,13 @@ pub fn recording(words: &[u32], functions: &[StageFunction], names: &Names<'_>) 
     let mut all = std::mem::take(&mut module.functions);
     for function in &mut all {
         let Some((at, of)) = known.get(&function.id).filter(|(_, of)| of.lack.is_none()) else { continue };
-        let kept: Vec<Id> = of.outs.iter().filter_map(|out| parameters(&module, function).nth(*out)).collect();
+        let parameters: Vec<Id> = parameters(&module, function).collect();
         for block in &mut function.blocks {
             let Some(end) = block.end().filter(|end| matches!(end.op, Op::Return | Op::ReturnValue)) else { continue };
             let mut out: Vec<Instruction> = block.body[..block.body.len() - 1].to_vec();
             let returned = (end.op == Op::ReturnValue).then(|| module[end][1]);
             count(&mut module, &mut out, counts[at + 1]);
-            keep(&mut module, &mut out, &values[first[*at] as usize..], &kept, returned);
+            keep(&mut module, &mut out, &values[first[*at] as usize..], (of, &parameters), returned);
             out.push(end);
             block.body = out;
         }
@@ -44,12 +44,12 @@ pub fn without(words: &[u32], function: Option<(&StageFunction, u32)>, names: &N
         let place = module.functions.iter().position(|known| known.id == of.id)?;
         let mut taken = module.functions.remove(place);
         taken.head.retain(|i| !is_line(*i));
-        let outs: Vec<Id> = of.outs.iter().filter_map(|out| parameters(&module, &taken).nth(*out)).collect();
+        let parameters: Vec<Id> = parameters(&module, &taken).collect();
         let label = taken.blocks.first().map(|block| block.label)?;
         let returned = taken.returns(&module);
         let body = taken.body().filter_map(|i| module.result(i));
         let removed = taken.blocks.iter().skip(1).map(|block| block.label).chain(body).collect();
-        let body = stub(&mut module, (read, first), &outs, returned, of.numbers);
+        let body = stub(&mut module, (read, first), (of, &parameters), returned);
         taken.blocks = vec![Block { label, body }];
         module.functions.insert(place, taken);
         drop_uncalled(&mut module, removed);
@@ -57,22 +57,28 @@ pub fn without(words: &[u32], function: Option<(&StageFunction, u32)>, names: &N
     Some(without_lines(module))
 }
 
-/// Reads the numbers, stores those of the `out` parameters and returns the others.
-fn stub(module: &mut Module, (read, first): (Id, u32), outs: &[Id], returned: Id, count: usize) -> Vec<Instruction> {
+/// Reads the numbers, stores those of the parameters that the function writes and returns the others.
+fn stub(
+    module: &mut Module,
+    (read, first): (Id, u32),
+    (of, parameters): (&StageFunction, &[Id]),
+    returned: Id,
+) -> Vec<Instruction> {
     let mut out = Vec::new();
     let uint = module.declare(Op::TypeInt, &[32, 0]);
     let uvec4 = module.declare(Op::TypeVector, &[uint, 4]);
     let mut bits = Vec::new();
-    for group in 0..count.div_ceil(4) as u32 {
+    for group in 0..of.numbers.div_ceil(4) as u32 {
         let index = module.constant(uint, first + group);
         let four = module.emit(&mut out, Op::FunctionCall, uvec4, &[read, index]);
         bits.extend((0..4).map(|at| module.emit(&mut out, Op::CompositeExtract, uint, &[four, at])));
     }
     let mut bits = bits.into_iter();
-    for pointer in outs {
-        let kind = value_type(module, module.type_of(*pointer));
+    for part in &of.written {
+        let Some(pointer) = part.pointer(module, &mut out, parameters) else { continue };
+        let kind = value_type(module, module.type_of(pointer));
         let value = numbers::join(module, &mut out, kind, &mut bits);
-        let store = module.make(Op::Store, &[*pointer, value]);
+        let store = module.make(Op::Store, &[pointer, value]);
         out.push(store);
     }
     let end = match module.defined(Op::TypeVoid, returned).is_some() {
@@ -82,8 +88,25 @@ fn stub(module: &mut Module, (read, first): (Id, u32), outs: &[Id], returned: Id
             module.make(Op::ReturnValue, &[value])
         }
     };
+    if let Some(zero) = bits.next().filter(|_| !of.kept.is_empty()) {
+        of.kept.iter().for_each(|part| hide(module, &mut out, part, parameters, zero));
+    }
     out.push(end);
     out
+}
+
+/// Combines the numbers of a part of a parameter with one that is 0, which no compiler knows.
+fn hide(module: &mut Module, out: &mut Vec<Instruction>, part: &WrittenPart, parameters: &[Id], zero: Id) {
+    let Some(pointer) = part.pointer(module, out, parameters) else { return };
+    let kind = value_type(module, module.type_of(pointer));
+    let value = module.emit(out, Op::Load, kind, &[pointer]);
+    let mut bits = Vec::new();
+    numbers::split(module, out, value, &mut bits);
+    let uint = module.declare(Op::TypeInt, &[32, 0]);
+    let hidden: Vec<Id> = bits.into_iter().map(|bits| module.emit(out, Op::BitwiseXor, uint, &[bits, zero])).collect();
+    let value = numbers::join(module, out, kind, &mut hidden.into_iter());
+    let store = module.make(Op::Store, &[pointer, value]);
+    out.push(store);
 }
 
 /// Drops the functions that nothing calls any more, and names and decorations of what is gone.
@@ -110,19 +133,29 @@ fn count(module: &mut Module, out: &mut Vec<Instruction>, variable: Id) {
     out.push(store);
 }
 
-/// Keeps the values of `out` parameters and the returned one in variables of four numbers each.
-fn keep(module: &mut Module, out: &mut Vec<Instruction>, variables: &[Id], outs: &[Id], returned: Option<Id>) {
+/// Keeps what a function has written to its parameters, and what it returns, in variables of four numbers each.
+fn keep(
+    module: &mut Module,
+    out: &mut Vec<Instruction>,
+    variables: &[Id],
+    (of, parameters): (&StageFunction, &[Id]),
+    returned: Option<Id>,
+) {
     let uint = module.declare(Op::TypeInt, &[32, 0]);
     let uvec4 = module.declare(Op::TypeVector, &[uint, 4]);
     let zero = module.constant(uint, 0);
     let mut bits = Vec::new();
-    for out_parameter in outs {
-        let kind = value_type(module, module.type_of(*out_parameter));
-        let value = module.emit(out, Op::Load, kind, &[*out_parameter]);
+    for part in &of.written {
+        let Some(pointer) = part.pointer(module, out, parameters) else { continue };
+        let kind = value_type(module, module.type_of(pointer));
+        let value = module.emit(out, Op::Load, kind, &[pointer]);
         numbers::split(module, out, value, &mut bits);
     }
     if let Some(value) = returned {
         numbers::split(module, out, value, &mut bits);
+    }
+    if !of.kept.is_empty() {
+        bits.push(zero);
     }
     for (variable, four) in variables.iter().zip(bits.chunks(4)) {
         let mut four = four.to_vec();

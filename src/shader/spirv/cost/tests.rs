@@ -14,6 +14,11 @@ const NAMES: Names<'_> = Names {
     values: "specula_cost_values_",
 };
 
+/// Numbers of extended instructions.
+const SIN: u32 = 13;
+const COS: u32 = 14;
+const TAN: u32 = 15;
+
 /// The module of a fragment stage with these functions, whose `author` is its main function.
 fn compiled(functions: &str) -> Vec<u32> {
     let all = |name: &str, with: &str| (0..16).map(|at| format!("{name}{at}")).collect::<Vec<_>>().join(with);
@@ -47,6 +52,10 @@ const FUNCTIONS: &str = "
     bool is_second() { return KIND == 2u; }
     float never(float x) { return x * 3.0; }
     void paint(vec3 x) { color.rgb = x; }
+    struct Known { int a; int b; mat2 c; };
+    void touch(inout Known k, float x) { k.a = int(x * x); k.c[1] = vec2(x); }
+    struct Large { ivec4 all[20]; int other; };
+    void fill(inout Large large, float x) { large.all[2] = ivec4(x * x); }
     void author() {
         float y, z = 2.0;
         mat2 m = both(at.xy, y, z);
@@ -54,6 +63,14 @@ const FUNCTIONS: &str = "
         stop(at.w);
         float all = m[0].x + y + z + p.a + float(p.b.x) + float(p.c) + random() + calls_log(at.x);
         if (is_second()) all += never(all);
+        Known k = Known(0, 2, mat2(0.0));
+        touch(k, at.x);
+        if (k.a == 3) all += sin(all);
+        if (k.b == 3) all += cos(all);
+        Large large;
+        large.all[2] = ivec4(0);
+        fill(large, at.x);
+        if (large.all[2].y == 3) all += tan(all);
         paint(vec3(all));
     }";
 
@@ -67,10 +84,16 @@ fn functions_are_described() {
     let functions = functions(&words, &NAMES).unwrap();
     let of = |name: &str| named(&functions, name);
     let both = of("both");
+    let part = |parameter, member, is_given| WrittenPart { parameter, member, is_given };
+    let written = [part(1, None, false), part(2, None, true)];
     assert_eq!(
-        (both.signature.as_str(), both.numbers, both.outs.as_slice()),
-        ("both(vec2, float, float)", 5, &[1][..])
+        (both.signature.as_str(), both.numbers, both.written.as_slice()),
+        ("both(vec2, float, float)", 6, &written[..])
     );
+    let touch = of("touch");
+    assert_eq!((touch.numbers, touch.written), (5, vec![part(0, Some(0), true), part(0, Some(2), true)]));
+    let (fill, kept) = (of("fill"), vec![part(0, Some(0), true)]);
+    assert_eq!((fill.numbers, fill.written, fill.kept), (1, Vec::new(), kept));
     assert_eq!((of("pair").numbers, of("pair").lack), (4, None));
     assert_eq!(of("random").lack, Some(Lack::WritesVariable("seed".to_owned())));
     assert_eq!(of("paint").lack, Some(Lack::WritesVariable("color".to_owned())));
@@ -106,5 +129,22 @@ fn modules_are_valid_and_have_lost_one_function() {
         let module = Module::parse(&stub).unwrap();
         let function = module.functions.iter().find(|function| function.id == of.id).unwrap();
         assert!(function.blocks.len() == 1 && function.calls(&module).count() == of.numbers.div_ceil(4), "{of:?}");
+    }
+}
+
+/// Without a function that writes to a variable of the caller, the compiler must not compute what depends on that variable.
+#[test]
+fn values_of_a_caller_do_not_decide_what_follows() {
+    let words = compiled(FUNCTIONS);
+    let functions = functions(&words, &NAMES).unwrap();
+    let (first, _) = groups(&functions);
+    for (name, operation, other) in [("touch", SIN, Some(COS)), ("fill", TAN, None)] {
+        let (of, first) = functions.iter().zip(&first).find(|(of, _)| of.signature.starts_with(name)).unwrap();
+        let stub = optimize(specialize(&without(&words, Some((of, *first)), &NAMES).unwrap(), &[]));
+        let module = Module::parse(&stub).unwrap();
+        let has = |number: u32| module.code().any(|i| i.op == Op::ExtInst && module[i][4] == number);
+        assert!(has(operation), "{name}");
+        // What the function leaves alone is known.
+        assert!(other.is_none_or(|other| !has(other)), "{name}");
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use foldhash::{HashMap, HashSet};
 
-use crate::shader::spirv::module::{Block, Function, Id, Instruction, Module};
+use crate::shader::spirv::module::{Function, Id, Instruction, Module};
 use crate::shader::spirv::op::{Class, Op, text};
 use crate::shader::spirv::reach::file_of;
 
@@ -80,12 +80,6 @@ fn given(module: &Module) -> HashSet<(Id, usize)> {
     let calls = module.code().filter(|i| i.op == Op::FunctionCall).map(|i| &module[i]);
     let arguments = calls.flat_map(|words| words[4..].iter().enumerate().map(|(at, id)| ((words[3], at), *id)));
     arguments.filter(|(_, id)| is_given(*id)).map(|(parameter, _)| parameter).collect()
-}
-
-/// The blocks of a function that begin with a phi.
-pub(super) fn joins(function: &Function) -> HashSet<Id> {
-    let begins_with_phi = |block: &&Block| block.body.iter().find(|i| !is_line(**i)).is_some_and(|i| i.op == Op::Phi);
-    function.blocks.iter().filter(begins_with_phi).map(|block| block.label).collect()
 }
 
 pub(super) fn is_line(i: Instruction) -> bool {

@@ -5,9 +5,11 @@
 //!
 //! `floats.rs` instruments a module to find the first value that is not finite, `statements.rs` to show what every statement does.
 
+mod branches;
 mod floats;
 mod functions;
 mod instances;
+mod lights;
 mod statements;
 
 use std::collections::BTreeSet;
@@ -16,9 +18,12 @@ use foldhash::HashMap;
 
 use super::module::{Id, Instruction, Module, Type};
 use super::op::{Op, text};
+use branches::Branches;
 pub use functions::Logged;
-use functions::{Functions, is_line, joins};
+use functions::{Functions, is_line};
 pub use instances::instances;
+pub use lights::LightList;
+use lights::LightParameters;
 
 /// Longer arrays are not logged.
 const MOST_ELEMENTS: u32 = 64;
@@ -37,14 +42,20 @@ pub enum Purpose {
     Input(String),
     /// Passes it to a function, compares, converts or samples with it.
     Use,
-    /// A function of this name begins. Without a value.
-    Enter(String),
+    /// A function of this name begins. If one of its parameters numbers a light, that number is the value.
+    Enter(String, Option<LightList>),
     /// The argument for the parameter of this name.
     Argument(String),
     /// A function ends. Without a value.
     Leave,
     /// Decides by it which statement is next.
     Condition,
+    /// The same, by a constant. Its line is that of the first code in the first branch, since the compiler gives a constant none. `between`:
+    /// how many other constants decide before that code.
+    Constant {
+        /// See above.
+        between: usize,
+    },
     /// Discards the pixel. Without a value.
     Discard,
 }
@@ -105,17 +116,18 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
     let mut module = Module::parse(words)?;
     let id = module.named(&format!("{function}(")).next()?;
     let known = Functions::new(&module, function, logged, only);
+    let light_parameters = LightParameters::new(&module);
     let mut functions = std::mem::take(&mut module.functions);
-    let mut tracer = Tracer::new(&mut module, id, only);
+    let mut tracer = Tracer::new(&mut module, id, only, light_parameters);
     for function in &mut functions {
         function.head.retain(|i| !is_line(*i));
         let is_silent = known.is_silent(function.id);
-        let joins = joins(function);
+        let branches = Branches::new(function);
         for block in &mut function.blocks {
             match logged {
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
                 Logged::Floats => block.body = tracer.floats(&block.body),
-                Logged::Statements => block.body = tracer.statements(&block.body, &joins),
+                Logged::Statements => block.body = tracer.statements(&block.body, &branches),
             }
         }
         if logged == Logged::Statements && !is_silent {
@@ -160,10 +172,16 @@ struct Tracer<'a> {
     places: Vec<Place>,
     points: Vec<LogPoint>,
     only: Option<&'a BTreeSet<String>>,
+    light_parameters: LightParameters,
 }
 
 impl<'a> Tracer<'a> {
-    fn new(module: &'a mut Module, function: Id, only: Option<&'a BTreeSet<String>>) -> Self {
+    fn new(
+        module: &'a mut Module,
+        function: Id,
+        only: Option<&'a BTreeSet<String>>,
+        light_parameters: LightParameters,
+    ) -> Self {
         let names = module.debug.iter().filter(|i| i.op == Op::Name).map(|i| &module[*i]);
         let names = names.map(|words| (words[1], text(&words[2..]))).collect();
         let members = module.debug.iter().filter(|i| i.op == Op::MemberName).map(|i| &module[*i]);
@@ -173,7 +191,21 @@ impl<'a> Tracer<'a> {
         let vectors = [2, 3, 4].map(|count| module.declare(Op::TypeVector, &[uint, count]));
         let [zero, one] = [0, 1].map(|number| module.constant(uint, number));
         let (places, points) = (Vec::new(), Vec::new());
-        Self { module, names, members, function, void, uint, vectors, zero, one, places, points, only }
+        Self {
+            module,
+            names,
+            members,
+            function,
+            void,
+            uint,
+            vectors,
+            zero,
+            one,
+            places,
+            points,
+            only,
+            light_parameters,
+        }
     }
 
     /// The kind of the numbers of a scalar type.

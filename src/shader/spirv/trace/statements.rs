@@ -1,8 +1,7 @@
 //! Logs what statements do: numbers and conditions of all types where they are stored, returned or decided about, copies and constants too,
 //! the arguments of functions, discards, and where functions begin and end.
 
-use foldhash::HashSet;
-
+use super::branches::{Branches, ConstantBranch};
 use super::functions::{Functions, is_line};
 use super::{MOST_PARTS, NumberKind, Place, Purpose, Tracer};
 use crate::shader::spirv::module::{Block, Function, Id, Instruction, Type};
@@ -21,9 +20,8 @@ fn is_merge(i: Instruction) -> bool {
 }
 
 impl Tracer<'_> {
-    /// The instructions of a block with calls between them, without lines. `joins`: blocks that begin with a phi. glslang evaluates `&&` and
-    /// `||` by a branch to such a block, which is no decision about statements.
-    pub(super) fn statements(&mut self, body: &[Instruction], joins: &HashSet<Id>) -> Vec<Instruction> {
+    /// The instructions of a block with calls between them, without lines.
+    pub(super) fn statements(&mut self, body: &[Instruction], branches: &Branches) -> Vec<Instruction> {
         let (mut out, mut line): (Vec<Instruction>, _) = (Vec::with_capacity(body.len()), None);
         for (at, &i) in body.iter().enumerate() {
             if is_line(i) {
@@ -33,22 +31,32 @@ impl Tracer<'_> {
             // A merge instruction stands directly before its branch, which therefore logs before both.
             if is_merge(i) {
                 let branch = body[at + 1..].iter().copied().find(|i| !is_line(*i));
-                let branch = branch.filter(|_| !joins.contains(&self.module[i][1]));
-                branch.into_iter().for_each(|branch| self.statement(&mut out, branch, line));
+                let branch = branch.filter(|_| !branches.is_of_expression(self.module, i));
+                if let Some(branch) = branch {
+                    let constant = branches.constant(self.module, branch, Some(i));
+                    self.statement(&mut out, branch, line, constant);
+                }
                 if i.op == Op::LoopMerge {
                     // Copies of a body would each have to be compiled.
                     self.module[i][3] = self.module[i][3] & !UNROLL | DONT_UNROLL;
                 }
             } else if !out.last().is_some_and(|i| is_merge(*i)) {
-                self.statement(&mut out, i, line);
+                let constant = branches.constant(self.module, i, None);
+                self.statement(&mut out, i, line, constant);
             }
             out.push(i);
         }
         out
     }
 
-    /// Appends what an instruction does.
-    fn statement(&mut self, out: &mut Vec<Instruction>, i: Instruction, line: Option<Instruction>) {
+    /// Appends what an instruction does. `constant`: the instruction is a branch by a constant.
+    fn statement(
+        &mut self,
+        out: &mut Vec<Instruction>,
+        i: Instruction,
+        line: Option<Instruction>,
+        constant: Option<ConstantBranch>,
+    ) {
         let (purpose, value) = match (i.op, &self.module[i][1..]) {
             (Op::Store, [pointer, value, ..]) => {
                 let (name, path) = self.stored(*pointer);
@@ -63,6 +71,9 @@ impl Tracer<'_> {
             (Op::Kill | Op::TerminateInvocation | Op::DemoteToHelperInvocation, _) => (Purpose::Discard, None),
             _ => return,
         };
+        let line = constant.as_ref().map_or(line, |constant| constant.line);
+        let between = constant.and_then(|constant| constant.between);
+        let purpose = between.map_or(purpose, |between| Purpose::Constant { between });
         let file = line.and_then(|line| file_of(self.module, &self.module[line]));
         match file.filter(|(file, _)| self.is_wanted(file)) {
             Some((file, line)) => self.log_at(out, Place { file, line, purpose }, value),
@@ -92,7 +103,10 @@ impl Tracer<'_> {
         let Some(Block { body, .. }) = function.blocks.first_mut() else { return };
         let mut out = Vec::new();
         let place = |purpose| Place { file: file.clone(), line, purpose };
-        self.log_at(&mut out, place(Purpose::Enter(name.unwrap_or_default())), None);
+        let light = self.light_parameters.of(function.id);
+        let number = light.map(|(parameter, _)| self.loaded(&mut out, parameter));
+        let purpose = Purpose::Enter(name.unwrap_or_default(), light.map(|(_, list)| list));
+        self.log_at(&mut out, place(purpose), number);
         let parameters = function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| self.module[*i][2]);
         let parameters: Vec<(usize, Id)> = parameters.enumerate().collect();
         for (at, parameter) in parameters {
@@ -106,11 +120,17 @@ impl Tracer<'_> {
             if name.is_empty() || !self.is_short(of) || matches!(self.module.get_type(of), Some(Type::Struct { .. })) {
                 continue;
             }
-            let value = to.map_or(parameter, |to| self.module.emit(&mut out, Op::Load, to, &[parameter]));
+            let value = self.loaded(&mut out, parameter);
             self.log_at(&mut out, place(Purpose::Argument(name)), Some(value));
         }
         let first = body.iter().position(|i| i.op != Op::Variable).unwrap_or(body.len());
         body.splice(first..first, out);
+    }
+
+    /// The value of a parameter, which glslang passes by a pointer unless it is constant.
+    fn loaded(&mut self, out: &mut Vec<Instruction>, parameter: Id) -> Id {
+        let to = self.module.pointer(self.module.type_of(parameter)).map(|(_, to)| to);
+        to.map_or(parameter, |to| self.module.emit(out, Op::Load, to, &[parameter]))
     }
 
     /// Appends calls for a place, which has a value, or none. A value that is too long is left out.

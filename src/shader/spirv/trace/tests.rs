@@ -85,20 +85,20 @@ fn statements_are_logged_with_what_they_do() {
     for (body, expected) in [
         (
             "float f(float x) {\n int i = 3; ++i;\n return x; }",
-            &["2 Enter(\"f\")", "2 Argument(\"x\")", "2 Store(\"i\")", "2 Store(\"i\")", "3 Return"][..],
+            &["2 Enter(\"f\", None)", "2 Argument(\"x\")", "2 Store(\"i\")", "2 Store(\"i\")", "3 Return"][..],
         ),
         (
             "void g(out float y, inout S s, const vec2 z) {\n y = z.x;\n s.b.y = y;\n s.c[1] = z; }\n\
              float f(float x) {\n S s; float y;\n g(y, s, vec2(x));\n return y; }",
             // The `out` argument has no value yet, and those of structs are left out.
             &[
-                "2 Enter(\"g\")",
+                "2 Enter(\"g\", None)",
                 "2 Argument(\"z\")",
                 "2 Store(\"y\")",
                 "3 Store(\"s.b.y\")",
                 "4 Store(\"s.c[1]\")",
                 "4 Leave",
-                "7 Enter(\"f\")",
+                "7 Enter(\"f\", None)",
                 "7 Argument(\"x\")",
                 "7 Store(\"y\")",
                 "7 Store(\"s\")",
@@ -109,7 +109,7 @@ fn statements_are_logged_with_what_they_do() {
             "float f(float x) {\n for (int i = 0; i < 3; ++i)\n  x *= 2.0;\n if (x > 1.0)\n  discard;\n switch (int(x)) {\n \
              case 1:\n  return 2.0;\n }\n return x; }",
             &[
-                "2 Enter(\"f\")",
+                "2 Enter(\"f\", None)",
                 "2 Argument(\"x\")",
                 "2 Store(\"i\")",
                 "2 Condition",
@@ -120,6 +120,24 @@ fn statements_are_logged_with_what_they_do() {
                 "6 Condition",
                 "8 Return",
                 "10 Return",
+            ],
+        ),
+        // The compiler gives constants no line: that of their branch counts.
+        (
+            "float f(float x) {\n const bool ON = true;\n x += 1.0;\n if (ON)\n  x += 2.0;\n if (KIND == 1u) {\n  if (ON)\n   x += 3.0;\n \
+             }\n switch (KIND) {\n case 1u:\n  x = 2.0;\n }\n return x; }",
+            &[
+                "3 Enter(\"f\", None)",
+                "3 Argument(\"x\")",
+                "3 Store(\"x\")",
+                "5 Constant { between: 0 }",
+                "5 Store(\"x\")",
+                "8 Constant { between: 0 }",
+                "8 Constant { between: 1 }",
+                "8 Store(\"x\")",
+                "12 Constant { between: 0 }",
+                "12 Store(\"x\")",
+                "14 Return",
             ],
         ),
         // Specialization takes branches by it.
@@ -148,4 +166,46 @@ fn copies_of_log_points_are_counted_as_a_driver_inlines_them() {
     let only = BTreeSet::from(["other.glsl".to_owned()]);
     let other = trace(&compiled(body).0, "told", Logged::Statements, Some(&only)).unwrap();
     assert_eq!(other.points, []);
+}
+
+/// Functions that read lights by a number, by a copy of it or by way of others; suns; and functions whose numbers are of other things.
+#[test]
+fn functions_tell_the_light_that_they_are_about() {
+    let text = "#version 460\n#extension GL_EXT_scalar_block_layout : require\nlayout(location = 0) out vec4 color;\n\
+        layout(set = 0, binding = 0, scalar) uniform Constants { uint other; uint light_count; uint sun; } frame;\n\
+        struct Light { vec4 position; vec3 intensity; };\n\
+        layout(set = 0, binding = 21, scalar) readonly buffer Many { Light lights[]; };\n\
+        layout(set = 0, binding = 1, scalar) uniform Few { Light few[8]; };\n\
+        uint last;\nvoid told(const in uint place, const in uvec4 bits) { last = place + bits.x; }\n\
+        Light given(uint i) { if (frame.other == 0u) return few[i]; return lights[i]; }\n\
+        vec3 constant(const vec3 n, const uint number) { return n * lights[number].intensity; }\n\
+        vec3 copied(float x, int at) { uint i = uint(at); return given(i).intensity * x; }\n\
+        vec3 of_sun(uint i) { return given(frame.light_count + i).intensity; }\n\
+        vec3 all_suns(uint k) { return of_sun(k); }\n\
+        vec3 shifted(uint i) { return given(frame.other + i).intensity; }\n\
+        vec3 plain(uint i) { return vec3(float(i)); }\n\
+        void main() {\n color = vec4(constant(vec3(1.0), 1u) + copied(1.0, 2) + all_suns(0u) + shifted(1u) + plain(3u), 1.0);\n \
+        told(0u, uvec4(0u)); }\n";
+    let source = Source::memory([("m.frag", text)]);
+    let words = Compiler::new().unwrap().compile_with_lines(&Snapshot::new(&source), &"m.frag".into()).unwrap();
+    let Traced { words, places, points } = trace(&words, "told", Logged::Statements, None).unwrap();
+    assert_eq!(validate(&words), Ok(()));
+    let entered = points.iter().filter_map(|point| match &places[point.place].purpose {
+        Purpose::Enter(name, list) => Some((name.as_str(), *list, point.kind, point.count)),
+        _ => None,
+    });
+    let (none, uint) = (NumberKind::Bool, NumberKind::Uint);
+    let [lights, suns] = [LightList::Lights, LightList::Suns].map(Some);
+    let mut entered: Vec<_> = entered.collect();
+    entered.sort_by_key(|(name, ..)| *name);
+    let expected = [
+        ("all_suns", suns, uint, 1),
+        ("constant", lights, uint, 1),
+        ("copied", lights, NumberKind::Int, 1),
+        ("given", lights, uint, 1),
+        ("of_sun", suns, uint, 1),
+        ("plain", None, none, 0),
+        ("shifted", None, none, 0),
+    ];
+    assert_eq!(entered, expected);
 }

@@ -56,6 +56,11 @@ fn vertices_and_the_tone_map_of_a_picture_are_traced() {
     trace(directory.path(), &[&place[..], &["--stage", "pbr.geom"]].concat())
         .expect(2, &["no stage pbr.geom that can be traced; it has pbr.frag, pbr.vert", "tonemap.frag"]);
     trace(directory.path(), &[&place[..], &["--invocation", "1,2"]].concat()).expect(2, &["no compute stage"]);
+    // The reason, for stages and files that no picture traces.
+    let baked = &["--stage", "ibl/irradiance.comp"];
+    trace(directory.path(), &[&place[..], baked].concat()).expect(2, &["those that bake light"]);
+    trace(directory.path(), &[&place[..], &["--shaders", "examples:displacement", "--file", "pbr.tese"]].concat())
+        .expect(2, &["pbr.tese is not traced", "those of tessellation"]);
     let beside = ["ball.glb", "--at", "1,1", "--stage", "pbr.vert"];
     trace(directory.path(), &[&beside[..], &EYE].concat()).expect(2, &["no triangle of the model is at the pixel 1,1"]);
 }

@@ -8,6 +8,7 @@ use crate::support::line_of;
 const LIBRARY: &str = "struct Pair { float a; vec2 b; };\n#define TWICE(x) ((x) * 2.0)\n\
     float pick(float x) { return x + 1.0; }\nint pick(int x) { return x - 1; }\n\
     void split(float x, out float whole, inout vec2 rest) { whole = floor(x); rest.y += x - whole; }\n\
+    const bool ON = true;\nconst bool OPAQUE = (FEATURES & FEATURE_TRANSMISSION) == 0u;\n\
     bool early(int n) {\n    if (n < 0)\n        return true;\n    return false;\n}";
 
 const BODY: &str = "    float zero = min(s.roughness, 0.0);\n\
@@ -36,6 +37,13 @@ const BODY: &str = "    float zero = min(s.roughness, 0.0);\n\
     \x20   }\n\
     \x20   if (sum > 3 || three > 2.0)\n\
     \x20       one += 0.5;\n\
+    \x20   if (ON)\n\
+    \x20       one += 1.0;\n\
+    \x20   if (!OPAQUE)\n\
+    \x20       one += 2.0;\n\
+    \x20   if (OPAQUE) {\n\
+    \x20       one += 4.0;\n\
+    \x20   }\n\
     \x20   if (is_late && s.roughness < 0.0) s.roughness = one + whole + rest.x + m[0].x + float(bits + less) + pair.a + list[0] + color.x;";
 
 /// What must not be guessed: macros, conditions, loops, components, arrays, structs, `out` arguments, overloads, shadowed names.
@@ -81,6 +89,10 @@ fn each_statement_has_its_own_value() {
         ("case 4: ", vec![store("one", vec![json!(14.0)])]),
         ("default: ", vec![]),
         ("if (sum > 3 || three", vec![condition(vec![json!(true)])]),
+        ("    if (ON)", vec![condition(vec![json!(true)])]),
+        ("    if (!OPAQUE)", vec![condition(vec![json!(false)])]),
+        ("    if (OPAQUE) {", vec![condition(vec![json!(true)])]),
+        ("const bool OPAQUE =", vec![]),
         ("    if (n < 0)", vec![condition(vec![json!(false)])]),
         ("        return true;", vec![]),
         ("    return false;", vec![("return".to_owned(), String::new(), vec![json!(false)])]),
@@ -88,7 +100,7 @@ fn each_statement_has_its_own_value() {
         assert_eq!(done(&found, "user.glsl", line_of(&text, part)), expected, "{part}");
     }
     let missed = not_reached(&found, "user.glsl");
-    let lines = ["        return true;", "default: "].map(|part| u64::from(line_of(&text, part)));
+    let lines = ["        return true;", "default: ", "one += 2.0;"].map(|part| u64::from(line_of(&text, part)));
     assert!(lines.iter().all(|line| missed.contains(line)), "{missed:?}");
     check_functions(&found, &text);
 }

@@ -1,0 +1,136 @@
+//! The values of a line, at the right end of what is in sight.
+
+use std::sync::Arc;
+
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
+use egui::{Color32, CursorIcon, Galley, Rect, Sense, Ui, pos2, vec2};
+
+use super::bar;
+use super::hover;
+use super::model::CodeLine;
+use crate::app::commands::Commands;
+use crate::app::source_line::watch;
+use crate::app::state::State;
+use crate::app::state::trace::rows::Note;
+use crate::app::widgets::spoken;
+use crate::app::widgets::theme::{ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, QUIET, small_mono_font};
+use crate::shader::TreePath;
+use crate::shader::trace::{Act, TracedValue};
+
+/// Points between code and values, and between two values.
+pub(super) const GAP: f32 = 14.0;
+/// Points between a bar and its value.
+const BAR_GAP: f32 = 5.0;
+/// Points to the right of the values.
+const MARGIN: f32 = 8.0;
+/// Values without this many points are left out.
+const LEAST: f32 = 3.0 * GAP;
+
+/// The values of a line as they are laid out.
+pub(super) struct Values<'a> {
+    laid_out: Vec<(&'a Note, Arc<Galley>, Option<TracedValue>)>,
+    /// Where they begin; infinite without values.
+    pub(super) start: f32,
+}
+
+impl<'a> Values<'a> {
+    /// Lays out the values of a line, in the part of its row that is in sight: as many as there is room for behind the code, or else in
+    /// `least` points.
+    pub(super) fn new(ui: &Ui, line: &'a CodeLine, (sight, code_end): (Rect, f32), least: f32) -> Self {
+        let right = sight.right() - MARGIN;
+        let most = (right - code_end - GAP).max(least);
+        let (mut laid_out, mut total) = (Vec::new(), 0.0);
+        for note in &line.row.notes {
+            let gap = if laid_out.is_empty() { 0.0 } else { GAP };
+            let room = most - total - gap;
+            if room < LEAST {
+                break;
+            }
+            let bar = bar::value(note);
+            let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
+            let mut job = job_of(note);
+            job.wrap = TextWrapping::truncate_at_width(room - of_bar);
+            let galley = ui.painter().layout_job(job);
+            total += gap + of_bar + galley.size().x;
+            laid_out.push((note, galley, bar));
+        }
+        let start = if laid_out.is_empty() { f32::INFINITY } else { right - total };
+        Self { laid_out, start }
+    }
+
+    /// Shows them.
+    pub(super) fn show(
+        self,
+        ui: &mut Ui,
+        (state, path): (&State, &TreePath),
+        (line, sight): (&CodeLine, Rect),
+        commands: &mut Commands,
+    ) {
+        let mut x = self.start;
+        for (index, (note, galley, bar)) in self.laid_out.into_iter().enumerate() {
+            let (size, begin) = (galley.size(), x);
+            if bar.is_some() {
+                x += bar::WIDTH + BAR_GAP;
+            }
+            let area = Rect::from_x_y_ranges(begin..=x + size.x, sight.y_range()).expand2(vec2(3.0, 0.0));
+            let expression =
+                expression(note).filter(|_| state.session.shaders.as_ref().is_some_and(|of| of.can_watch(path)));
+            let sense = if expression.is_some() { Sense::click() } else { Sense::hover() };
+            let response = ui.interact(area, ui.id().with(("note", line.row.line, index)), sense);
+            spoken::button(&response, &note.text());
+            if response.hovered() {
+                ui.painter().rect_filled(area, 3.0, ui.visuals().widgets.inactive.weak_bg_fill);
+            }
+            bar.into_iter().for_each(|value| bar::draw(ui.painter(), (begin, sight.center().y), value));
+            ui.painter().galley(pos2(x, sight.center().y - size.y / 2.0), galley, CODE_VALUE.color());
+            commands.sight.around |= response.hovered() && bar.is_some();
+            if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
+                watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
+                commands.settings.expression.evaluation = evaluation(state, path, line, note);
+            }
+            let is_link = expression.is_some();
+            let response = if is_link { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
+            response.on_hover_ui(|ui| hover::show(ui, state, (path, line), note, expression.as_deref()));
+            x += size.x + GAP;
+        }
+    }
+}
+
+/// The number of the evaluation that a value is of, where the user has chosen a call or a time.
+fn evaluation(state: &State, path: &TreePath, line: &CodeLine, note: &Note) -> u32 {
+    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
+    let place = trace.zip(line.row.traced);
+    place.map_or(0, |(trace, line)| state.traces.choice.evaluation(trace, path.as_str(), line, &note.done))
+}
+
+/// The expression that shows a value over the model.
+fn expression(note: &Note) -> Option<String> {
+    let name = &note.done.name;
+    match note.done.act {
+        Act::Store | Act::Argument if !name.is_empty() && !name.contains("[ ]") => Some(name.clone()),
+        Act::Return if name.is_empty() => Some("return".to_owned()),
+        _ => None,
+    }
+}
+
+fn job_of(note: &Note) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let mut add = |text: &str, color: Color32| {
+        let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
+        job.append(text, 0.0, format);
+    };
+    let is_branch = matches!(note.done.act, Act::Condition | Act::Discard);
+    add(&note.label, QUIET.color());
+    if let Some(before) = &note.before {
+        add(before, QUIET.color());
+        add(" → ", QUIET.color());
+    }
+    let color = match (note.is_bad, note.before.is_some(), is_branch) {
+        (true, ..) => ERROR,
+        (_, true, _) => ACCENT,
+        (.., true) => CODE_KEYWORD,
+        _ => CODE_VALUE,
+    };
+    add(&note.values, color.color());
+    job
+}
