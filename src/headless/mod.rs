@@ -60,6 +60,8 @@ pub struct Headless {
     resources: Resources,
     /// The view, and the image that [`Headless::render`] draws to and reads back.
     offscreen: OffscreenView,
+    /// Draws traced pixels. It keeps what it has compiled for the next ones, and is dropped after an error.
+    tracer: Option<PixelTracer>,
     size: (u32, u32),
     clock: Clock,
     sequence: Sequence,
@@ -173,6 +175,7 @@ impl Headless {
             reloader: Reloader::new(gpu, &layouts, compiler, source),
             resources: Resources::new(gpu, &layouts, [0.0; 3])?,
             offscreen: OffscreenView::new(gpu, &layouts)?,
+            tracer: None,
             layouts,
             size,
             clock: Clock::default(),

@@ -76,7 +76,12 @@ impl Headless {
             stage,
             invocation,
         };
-        let mut tracer = PixelTracer::new(&self.gpu, &self.layouts)?;
-        run(&pixel, &mut tracer, &mut TraceTools::new(&mut self.resources, &self.reloader))
+        let mut tracer = match self.tracer.take() {
+            Some(tracer) => tracer,
+            None => PixelTracer::new(&self.gpu, &self.layouts)?,
+        };
+        let result = run(&pixel, &mut tracer, &mut TraceTools::new(&mut self.resources, &self.reloader))?;
+        self.tracer = Some(tracer);
+        Ok(result)
     }
 }

@@ -1,4 +1,4 @@
-//! The integration tests, in one binary: it links the library once, and all tests of the process share one device, one compiler and the
+//! The integration tests, in one binary: it links the library once, and all tests of the process share two devices, one compiler and the
 //! compiled shader tree. Run a part of them by its path: `scripts/test light::baked`.
 
 #![allow(clippy::print_stdout, reason = "tests print what they measure")]

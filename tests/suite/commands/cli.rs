@@ -346,21 +346,27 @@ fn render_mode_all_writes_each_file() {
     fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
     let modes = run(directory.path(), &["modes", "--json"]).json();
     let modes = modes.as_array().unwrap();
-    let of_paths =
-        |mode: &&Value| mode["accumulate"] == true || mode["traces"] == true || mode["stage"] == "paths.frag";
-    let left_out = modes.iter().filter(of_paths).count();
-    assert!((5..20).contains(&left_out), "{left_out} modes of random paths");
     let all = ["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"];
-    let paths: &[&str] = &["--paths"];
-    for (more, expected) in [(&[][..], modes.len() - left_out), (paths, modes.len())] {
-        let finished = render(directory.path(), "quad.glb", &[&all[..], more].concat());
-        let told = format!("left out {left_out} modes of random paths; add --paths");
-        assert_eq!(finished.expect(0, &[]).stderr.contains(&told), more.is_empty(), "{finished:#?}");
-        let has = |mode: &str| directory.path().join(format!("out.{mode}.png")).exists();
-        assert_eq!([has("roughness"), has("path-traced")], [true, !more.is_empty()]);
-        let files = fs::read_dir(directory.path()).unwrap().count();
-        assert_eq!(files, expected + 1, "files beside the modes and the model");
-    }
+    let files = || fs::read_dir(directory.path()).unwrap().count();
+    let has = |mode: &str| directory.path().join(format!("out.{mode}.png")).exists();
+    // A tree that declares few modes beside the images of its passes.
+    let tree = Tree::new();
+    let few = ["final", "depth", "roughness", "path-traced", "monte-carlo"];
+    let is_kept = |line: &&str| {
+        let slug = line.strip_prefix("//@mode ").and_then(|rest| rest.split(' ').next());
+        slug.is_none_or(|slug| few.contains(&slug))
+    };
+    let text = tree.read("debug/modes.glsl").lines().filter(is_kept).collect::<Vec<_>>().join("\n");
+    tree.write("debug/modes.glsl", &text);
+    let root = tree.root();
+    let without_paths =
+        render(directory.path(), "quad.glb", &[&all[..], &["--shaders", root.to_str().unwrap()]].concat());
+    without_paths.expect(0, &["left out 2 modes of random paths; add --paths"]);
+    let of_passes = modes.iter().filter(|mode| mode["slug"].as_str().unwrap().starts_with("pass:")).count();
+    assert_eq!((files(), has("roughness"), has("path-traced")), (3 + of_passes + 1, true, false));
+    let finished = render(directory.path(), "quad.glb", &[&all[..], &["--paths"]].concat());
+    assert!(!finished.expect(0, &[]).stderr.contains("left out"), "{finished:#?}");
+    assert_eq!((files(), has("path-traced")), (modes.len() + 1, true), "files beside the modes and the model");
     for mode in modes {
         let path = directory.path().join(format!("out.{}.png", mode["slug"].as_str().unwrap().replace(':', "-")));
         assert_eq!(open_image(&path).into_rgba8().dimensions(), (48, 32));

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::support::process::{Finished, finish, specula};
-use crate::support::{assert_validated, compiler, gpu};
+use crate::support::{assert_validated, compiler, gpu, is_long};
 use specula::learn::{Finding, GoalMeter, exercise_of, exercises, find, prepare};
 use specula::settings::Settings;
 use specula::shader::{Source, TreePath};
@@ -23,7 +23,8 @@ fn three_times(name: &str) -> [Vec<Finding>; 3] {
         let found = meter.check(exercise, &Source::disk(folder.clone()), || false);
         found.unwrap_or_else(|error| panic!("{name}: {error}"))
     };
-    let start = check();
+    // The edits below change no value, so what fails after them fails at the start, too.
+    let start = if is_long() || name == "roughness" { check() } else { Vec::new() };
     let path = folder.join(&exercise.open.file);
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, format!("{text}\n// I have read this.\n")).unwrap();
@@ -45,9 +46,10 @@ fn exercise(name: &str, messages: &[&str]) {
     let told = |findings: &[Finding]| -> Vec<String> {
         findings.iter().map(|finding| format!("{} {}: {}", finding.passed, finding.goal, finding.found)).collect()
     };
-    println!("{name}\n{:#?}\n{:#?}", told(&start), told(&solved));
+    println!("{name}\n{:#?}\n{:#?}", told(&unrelated), told(&solved));
+    assert!(!unrelated.is_empty());
     assert!(solved.iter().all(|finding| finding.passed), "{name} is solved, but: {:#?}", told(&solved));
-    for findings in [&start, &unrelated] {
+    for findings in [&start, &unrelated].into_iter().filter(|findings| !findings.is_empty()) {
         let failed: Vec<&Finding> = findings.iter().filter(|finding| !finding.passed).collect();
         assert!(failed.len() >= messages.len() && !messages.is_empty(), "{name}: {:#?}", told(findings));
         for (finding, message) in failed.iter().zip(messages) {

@@ -1,7 +1,8 @@
-//! Shared by the tests: one device and compiler for all of them, shader trees that can be edited, models
+//! Shared by the tests: devices and a compiler, shader trees that can be edited, models
 //! made in code, and the program as a child process.
 
 pub mod browser;
+mod device;
 pub mod glb;
 pub mod hdr;
 pub mod process;
@@ -17,7 +18,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use specula::gpu::{Gpu, GpuOptions};
 use specula::headless::{Headless, HeadlessError};
 use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
@@ -26,21 +26,11 @@ use specula::settings::{Settings, Tonemap};
 use specula::shader::{Change, Compiler, Diagnostic, Library, Source, TreePath, check, embedded};
 use tempfile::TempDir;
 
+pub use device::gpu;
 pub use renderer::{Renderer, render, renderer};
 
 /// Large enough for every feature of the models, small enough for a software device.
 pub const SIZE: (u32, u32) = (96, 64);
-
-/// The device of all tests, with validation and synchronization validation on.
-pub fn gpu() -> &'static Arc<Gpu> {
-    static GPU: OnceLock<Arc<Gpu>> = OnceLock::new();
-    GPU.get_or_init(|| {
-        let options = GpuOptions { validation: true, ..GpuOptions::default() };
-        Gpu::new(&options).unwrap_or_else(|error| {
-            panic!("no device with validation layers: {error}\nscripts/test installs what is needed")
-        })
-    })
-}
 
 /// The compiler of all tests.
 pub fn compiler() -> &'static Arc<Compiler> {
@@ -48,7 +38,7 @@ pub fn compiler() -> &'static Arc<Compiler> {
     COMPILER.get_or_init(|| Arc::new(Compiler::new().unwrap()))
 }
 
-/// Fails on the first message that the validation layers ever said in this binary.
+/// Fails on the first message that the validation layers ever said about the device of this test.
 pub fn assert_validated() {
     let messages = gpu().validation_messages();
     assert!(messages.is_empty(), "validation layers:\n{}", messages.join("\n"));

@@ -9,10 +9,11 @@ use specula::scene::Model;
 use specula::settings::Settings;
 use specula::shader::Source;
 
-use super::{assert_validated, compiler, explain, gpu};
+use super::device::{DEVICES, gpu, number};
+use super::{assert_validated, compiler, explain};
 
-/// Renderers that no test holds.
-static IDLE: Mutex<Vec<Headless>> = Mutex::new(Vec::new());
+/// Renderers of each device that no test holds.
+static IDLE: [Mutex<Vec<Headless>>; DEVICES] = [const { Mutex::new(Vec::new()) }; DEVICES];
 
 /// A renderer of the embedded tree that a test holds. The test may change everything but the tree.
 pub struct Renderer(Option<Headless>);
@@ -35,14 +36,14 @@ impl Drop for Renderer {
     fn drop(&mut self) {
         // A failed test may leave anything behind.
         if !std::thread::panicking() {
-            IDLE.lock().unwrap().extend(self.0.take());
+            IDLE[number()].lock().unwrap().extend(self.0.take());
         }
     }
 }
 
 /// Opens the embedded tree; nothing is written to disk.
 pub fn renderer(model: Model, settings: Settings, size: (u32, u32)) -> Renderer {
-    let idle = IDLE.lock().unwrap().pop();
+    let idle = IDLE[number()].lock().unwrap().pop();
     let opened = match idle {
         Some(headless) => reopened(headless, model, settings, size),
         None => {
