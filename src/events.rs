@@ -107,6 +107,8 @@ pub enum Event<'a> {
     Pinned {
         /// Pixels from the upper left corner of the picture; null if none is pinned.
         pixel: Option<[u32; 2]>,
+        /// Whether it has moved with its surface since it was pinned, as the picture has changed its size.
+        moved: bool,
         /// Shader generation.
         generation: u64,
         /// The folder of the shader tree; null for the built-in one.

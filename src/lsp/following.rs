@@ -51,7 +51,7 @@ impl Following {
     /// Takes note of what a window tells. Returns whether the user has clicked there since it told last.
     pub fn is_click(&mut self, pinned: &Pinned) -> bool {
         let before = self.pixels.insert(pinned.socket.clone(), pinned.pixel);
-        before.is_some_and(|before| before != pinned.pixel)
+        before.is_some_and(|before| before != pinned.pixel) && !pinned.moved
     }
 
     /// Takes note that a window has closed.
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn another_pixel_is_a_click_and_another_picture_is_none() {
         let mut following = Following::default();
-        let pinned = |socket: &str, pixel| Pinned { socket: socket.into(), tree: None, pixel };
+        let pinned = |socket: &str, pixel| Pinned { socket: socket.into(), tree: None, pixel, moved: false };
         for (socket, pixel, is_click) in [
             ("a", Some((1, 2)), false),
             ("a", Some((1, 2)), false),
@@ -79,6 +79,8 @@ mod tests {
         ] {
             assert_eq!(following.is_click(&pinned(socket, pixel)), is_click, "{socket} {pixel:?}");
         }
+        let moved = Pinned { moved: true, ..pinned("a", Some((2, 1))) };
+        assert!(!following.is_click(&moved) && !following.is_click(&moved), "a window of another size");
         following.closed(Path::new("a"));
         assert!(!following.is_click(&pinned("a", Some((9, 9)))), "another window of the name");
     }

@@ -36,6 +36,8 @@ pub struct Pinned {
     pub tree: Option<PathBuf>,
     /// Counted from the upper left corner.
     pub pixel: Option<(u32, u32)>,
+    /// Whether it has moved with its surface, without a click.
+    pub moved: bool,
 }
 
 /// A line that the pixel reaches.

@@ -100,6 +100,7 @@ pub fn follow(socket: &Path, tell: impl Fn(Pinned)) {
             socket: socket.to_owned(),
             tree: pinned["tree"].as_str().map(PathBuf::from),
             pixel: number(0).zip(number(1)),
+            moved: pinned["moved"] == true,
         });
     }
 }

@@ -39,10 +39,9 @@ pub(in crate::app) fn update_guests(state: &mut State, engine: &mut Engine, is_s
     if let Some(left) = state.guests.rest_left(&now, rest) {
         return Some(left);
     }
-    emit(
-        &state.events,
-        &Event::Pinned { pixel: now.1, generation: now.0.shaders.generation, tree: state.source.root() },
-    );
+    let moved = state.inspection.has_moved();
+    let generation = now.0.shaders.generation;
+    emit(&state.events, &Event::Pinned { pixel: now.1, moved, generation, tree: state.source.root() });
     state.guests.tell(now);
     None
 }

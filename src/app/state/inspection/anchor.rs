@@ -29,6 +29,11 @@ impl Anchor {
         Self { point: scene.as_ref().and_then(point), share, at, size: *size, camera: *camera }
     }
 
+    /// The pixel with this place.
+    pub(in crate::app) fn at(&self) -> [u32; 2] {
+        self.at
+    }
+
     /// Whether it is still the place of a pixel of a picture: pixels are rounded, so a place is kept from one size to the next.
     pub(in crate::app) fn is_of(&self, at: [u32; 2], picture: &FrameState) -> bool {
         (self.at, self.size, self.camera) == (at, picture.size, picture.camera)

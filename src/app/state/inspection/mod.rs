@@ -79,6 +79,11 @@ impl Inspection {
         self.pin.is_some()
     }
 
+    /// Whether the pinned pixel has moved with its surface.
+    pub(in crate::app) fn has_moved(&self) -> bool {
+        self.pin.zip(self.anchor.as_ref()).is_some_and(|(pin, anchor)| anchor.at() == pin)
+    }
+
     /// Unpins the pixel. Its values are dropped, unless the pixel under the mouse replaces it.
     pub(in crate::app) fn unpin(&mut self) {
         (self.pin, self.search_not_finite) = (None, None);
