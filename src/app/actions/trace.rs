@@ -1,4 +1,4 @@
-//! Has the pinned pixel traced while the panel Source is in sight.
+//! Has the pinned pixel traced while the panel Source, or the list of the evaluations of an expression, is in sight.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -22,7 +22,8 @@ pub(in crate::app) const REST_ON_CPU: Duration = Duration::from_millis(400);
 
 /// Asks for a trace if that of the picture is missing. Returns the time until it is to be looked at again.
 pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_safe_mode: bool) -> Option<Duration> {
-    if !state.workspace.sight.source || is_safe_mode {
+    let sight = &state.workspace.sight;
+    if !(sight.source || sight.evaluations.is_some()) || is_safe_mode {
         state.traces.unseen();
         engine.threads.tracer.release();
         return None;
@@ -119,6 +120,10 @@ fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     let last = state.traces.asked().filter(|_| moves(state)).map(|asked| &asked.picture);
     let picture = final_picture(state, engine, last)?;
     let shown = state.shown()?;
+    let sight = &state.workspace.sight;
+    if let Some(file) = sight.evaluations.clone().filter(|_| !sight.source) {
+        return Some(Subject { picture, at, stage: None, file: Some(file) });
+    }
     Some(Subject {
         picture,
         at,

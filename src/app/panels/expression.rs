@@ -1,6 +1,8 @@
 //! The panel Expression: shows the value of an expression of the shaders over the model, and offers the numbers of its line as
 //! sliders.
 
+mod evaluations;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -15,7 +17,6 @@ use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::source_line::{SourceLine, stop, watch};
 use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
-use crate::app::state::trace::choice;
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::spoken::named;
@@ -24,7 +25,6 @@ use crate::settings::Settings;
 use crate::shader::Expression;
 use crate::shader::expression::{MODE, Variable};
 use crate::shader::rewrite::Edit;
-use crate::shader::trace::Event;
 
 /// How the rest of the window finds the panel.
 pub(super) static PANEL: PanelSpec =
@@ -34,10 +34,6 @@ pub(super) static PANEL: PanelSpec =
 
 /// Height of a menu of members, points.
 const MENU: f32 = 320.0;
-
-/// Height of the list of evaluations, and of a row of it, points.
-const EVALUATIONS: f32 = 130.0;
-const ROW: f32 = 18.0;
 
 /// Most edited lines that the panel offers.
 const MOST_LINES: usize = 8;
@@ -95,8 +91,8 @@ fn show(ui: &mut Ui, state: &State, own: &mut ExpressionState, commands: &mut Co
         Some(mut shown) => {
             line(ui, &mut shown, own);
             if let Some(name) = offered(ui, settings, &shown, own) {
-                sight.source = true;
-                evaluations(ui, state, settings, (shown.path.as_str(), shown.line, &name));
+                sight.evaluations = Some(shown.path.clone());
+                evaluations::show(ui, state, settings, (&shown, &name), list);
             }
             numbers(ui, state, &mut shown, list);
             own.shown = Some(shown);
@@ -241,40 +237,6 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &SourceLine, own: &mut E
     watched
 }
 
-/// Lists the evaluations of the watched expression at the pinned pixel, with their values and calls. A click chooses one.
-fn evaluations(ui: &mut Ui, state: &State, settings: &mut Settings, (file, line, name): (&str, u32, &str)) {
-    if state.inspection.pin.is_none() {
-        let hint = "Click a pixel of the picture to list its evaluations there";
-        return drop(ui.label(RichText::new(hint).small().color(QUIET)));
-    }
-    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
-    let Some((trace, fragment)) = trace.zip(state.traces.fragment()) else { return };
-    let found = choice::evaluations(trace, fragment, (file, line), name);
-    let chosen = match settings.expression.evaluation {
-        0 => found.len(),
-        number => number as usize,
-    };
-    ScrollArea::vertical().id_salt("evaluations").max_height(EVALUATIONS).show_rows(
-        ui,
-        ROW,
-        found.len(),
-        |ui, rows| {
-            for index in rows {
-                let Event { value, calls, .. } = found[index];
-                let value = value.map(|value| value.text()).unwrap_or_default();
-                let text = small_mono(format!("{:>3}  {value}  {calls}", index + 1));
-                let row = ui.add(Button::selectable(index + 1 == chosen, text).truncate());
-                if row
-                    .on_hover_text(format!("Show evaluation {} of {name} in each pixel: {calls}", index + 1))
-                    .clicked()
-                {
-                    settings.expression.evaluation = u32::try_from(index + 1).unwrap_or(0);
-                }
-            }
-        },
-    );
-}
-
 /// The numbers of the line as sliders.
 fn numbers(ui: &mut Ui, state: &State, shown: &mut SourceLine, commands: &mut Vec<Command>) {
     let draft = state.edits.draft.as_ref();
@@ -369,9 +331,6 @@ mod tests {
 
     use super::*;
     use crate::app::state::shaders::difference::difference;
-    use crate::app::state::trace::sample;
-    use crate::shader::trace::Act;
-    use crate::shader::trace::sample::called;
     use crate::shader::{Diagnostic, ShaderSet, Source, TreePath, Watching};
 
     /// The panel over a window that watches an expression which does not compile.
@@ -418,30 +377,6 @@ mod tests {
         harness.get_by_role_and_label(Role::Button, "Stop").click();
         harness.run();
         assert_eq!(harness.state().0.session.settings.expression.at, "");
-    }
-
-    #[test]
-    fn a_click_chooses_an_evaluation_at_the_pinned_pixel() {
-        let texts = BTreeMap::from([(TreePath::from("a.glsl"), Arc::<str>::from("float a = 2.0 * x;\n"))]);
-        let shaders = Arc::new(ShaderSet { texts, ..ShaderSet::default() });
-        let mut harness = panel();
-        let (state, own) = harness.state_mut();
-        let line = SourceLine::new(&shaders, &"a.glsl".into(), 1, &shaders.texts[&TreePath::from("a.glsl")]);
-        own.shown = line.map(|line| SourceLine { variables: Some(Vec::new()), ..line });
-        watch(&mut state.session.settings, "a.glsl:1:a".to_owned());
-        state.session.shaders = Some(shaders.clone());
-        harness.run();
-        harness.get_by_label_contains("Click a pixel of the picture");
-        let state = &mut harness.state_mut().0;
-        state.inspection.pin = Some([3, 4]);
-        let events = [("f", 2.0), ("f [2]", 4.0), ("f [3]", 8.0)];
-        let events = events.map(|(calls, value)| called(calls, 1, Act::Store, "a", &[value])).to_vec();
-        sample::add(&mut state.traces, &shaders, 1, events, &[1]);
-        harness.run();
-        harness.get_by_label_contains("3  8  f [3]");
-        harness.get_by_label_contains("2  4  f [2]").click();
-        harness.run();
-        assert_eq!(harness.state().0.session.settings.expression.evaluation, 2);
     }
 
     #[test]

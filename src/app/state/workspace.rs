@@ -6,6 +6,7 @@ use super::arrangement::{Panel, Preset};
 use super::dialog::Dialog;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::TextureSource;
+use crate::shader::TreePath;
 
 /// A change of the user interface that something else than the user interface asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +72,10 @@ pub(in crate::app) struct Sight {
     pub(in crate::app) timing: bool,
     /// Whether the values of the inspected pixel were.
     pub(in crate::app) inspector: bool,
-    /// Whether values of a trace of the pinned pixel were: beside the code, or in the list of evaluations.
+    /// Whether the code with the values of the pinned pixel was.
     pub(in crate::app) source: bool,
+    /// The file whose evaluations at the pinned pixel were listed.
+    pub(in crate::app) evaluations: Option<TreePath>,
     /// Whether the mouse rests on one of these values.
     pub(in crate::app) around: bool,
     /// The texture that is shown.

@@ -3,6 +3,7 @@
 use image::RgbaImage;
 use serde_json::json;
 
+use super::NDF;
 use super::controls::choose;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb, line_of};
@@ -43,5 +44,21 @@ fn an_expression_is_watched_by_the_palette() {
     assert_eq!(diagnostic["line"].as_u64(), Some(u64::from(line) + 2));
     viewer.until("the picture", |shot| *shot == picture);
     viewer.running.done(json!({ "command": "reload" }));
+    viewer.quit();
+}
+
+/// The panel Source is closed, so nothing else asks for a trace.
+#[test]
+fn evaluations_are_traced_while_the_panel_expression_lists_them() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "shader-ball"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "run", "entry": "Panel: Expression" }));
+    let line = line_of(&viewer.tree.read(NDF), "float a2 = alpha * alpha;");
+    let watched = json!({ "expression.at": format!("{NDF}:{line}:a2"), "mode": "expression" });
+    viewer.running.done(json!({ "command": "set", "values": watched }));
+    let picture = viewer.screenshot();
+    viewer.running.done(json!({ "command": "pick", "at": [picture.width() / 2, picture.height() / 2] }));
+    let is_of_file = |event: &serde_json::Value| event["event"] == "traced" && event["file"] == NDF;
+    viewer.running.until("the trace of the file of the expression", is_of_file);
     viewer.quit();
 }

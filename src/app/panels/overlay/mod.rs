@@ -107,7 +107,7 @@ fn in_picture(
     let state = context.state;
     marks::show(egui, state, &mut own.marks, picture);
     compare::show(egui, state, &mut own.map, picture, &mut commands.list);
-    if commands.sight.inspector || commands.sight.source {
+    if commands.sight.inspector || commands.sight.source || commands.sight.evaluations.is_some() {
         marker(egui, &state.inspection, picture);
     }
     gizmo::show(egui, state, &mut own.gizmo, picture, commands);

@@ -1,5 +1,5 @@
 //! The traces of a file at the pinned pixel: the newest one, that of the version before, and which part of them the user has chosen.
-//! Nothing is traced while the panel Source is out of sight.
+//! Nothing is traced while the panel Source and the list of evaluations are out of sight.
 
 pub(in crate::app) mod around;
 pub(in crate::app) mod choice;
