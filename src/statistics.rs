@@ -63,14 +63,14 @@ impl Difference {
         self.margin_ms / self.base_ms
     }
 
-    /// The difference of the second side for a reader, as `4.1 % ± 0.3 slower` or `no difference (0.1 % ± 0.4)`.
+    /// The difference of the second side for a reader, as `4.1 % ± 0.3 slower` or `no difference in time (0.1 % ± 0.4)`.
     pub fn text(&self) -> String {
         let [share, margin] = [self.share(), self.margin_share()].map(|part| 100.0 * part);
         let digits = if margin < 0.1 { 2 } else { 1 };
         match self.verdict {
             Verdict::Slower => format!("{share:.digits$} % ± {margin:.digits$} slower"),
             Verdict::Faster => format!("{:.digits$} % ± {margin:.digits$} faster", -share),
-            Verdict::Same => format!("no difference ({share:+.digits$} % ± {margin:.digits$})"),
+            Verdict::Same => format!("no difference in time ({share:+.digits$} % ± {margin:.digits$})"),
         }
     }
 }
@@ -279,7 +279,10 @@ mod tests {
         let told = (1..=300).filter(|seed| measured(*seed, 20.0, 20.0, 0.2, 1 << 10).verdict != Verdict::Same).count();
         assert!(told <= 6, "{told} of 300 tell a difference where there is none");
         let found = measured(9, 20.0, 20.0, 0.2, 1 << 12);
-        assert!(found.margin_share() <= PRECISE_SAME && found.text().starts_with("no difference ("), "{found:?}");
+        assert!(
+            found.margin_share() <= PRECISE_SAME && found.text().starts_with("no difference in time ("),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -18,16 +18,18 @@ impl Settings {
     /// Whether both are equal but for the camera, the directions of orbiting lights and the animations. These select no pipelines and no baked
     /// light, change in many frames, and never make a shader hang by themselves.
     pub fn is_alike(&self, other: &Self) -> bool {
-        self.mode == other.mode && self.lights == other.lights.turned_as(&self.lights) && self.rest() == other.rest()
+        (&self.mode, &self.expression) == (&other.mode, &other.expression)
+            && self.lights == other.lights.turned_as(&self.lights)
+            && self.rest() == other.rest()
     }
 
     /// Whether both are equal but for the mode.
     pub fn is_of_other_mode(&self, other: &Self) -> bool {
-        (&self.camera, &self.lights, &self.animation) == (&other.camera, &other.lights, &other.animation)
-            && self.rest() == other.rest()
+        let parts = |of: &Self| (of.camera.clone(), of.lights.clone(), of.animation.clone(), of.expression.clone());
+        parts(self) == parts(other) && self.rest() == other.rest()
     }
 
-    /// Whether both are equal but for the camera, the mode and, while they orbit, the directions of lights.
+    /// Whether both are equal but for the camera, the mode, the watched expression and, while they orbit, the directions of lights.
     pub fn is_other_view(&self, other: &Self) -> bool {
         let turned = if other.lights.spin == 0.0 { self.lights.clone() } else { self.lights.turned_as(&other.lights) };
         turned == other.lights && self.animation == other.animation && self.rest() == other.rest()
@@ -40,7 +42,7 @@ impl Settings {
         Self { camera: view.camera.clone(), animation: view.animation.clone(), lights, ..self.clone() }
     }
 
-    /// All but the mode, the camera, the lights and the animations.
+    /// All but the mode, the watched expression, the camera, the lights and the animations.
     fn rest(&self) -> impl PartialEq {
         let Self {
             mode: _,
@@ -55,14 +57,14 @@ impl Settings {
             added,
             environment,
             measured,
-            expression,
+            expression: _,
             view,
             bookmarks,
             passes,
             shader,
         } = self;
         let of_model = (variant, material, materials, scene, model, added);
-        (of_model, environment, measured, expression, view, bookmarks, passes, shader)
+        (of_model, environment, measured, view, bookmarks, passes, shader)
     }
 }
 
@@ -85,6 +87,7 @@ mod tests {
         assert_eq!(with("lights.orbit.1.azimuth=1"), (true, false, false));
         assert_eq!(with("animation.speed=2"), (true, false, false));
         assert_eq!(with("mode=normal"), (false, true, true));
+        assert_eq!(with("expression.evaluation=2"), (false, false, true));
         for other in ["lights.orbit.1.strength=1", "view.ev=1", "rim=0.5", "passes.ground=false", "variant=red"] {
             assert_eq!(with(other), (false, false, false), "{other}");
         }

@@ -167,7 +167,7 @@ pub(in crate::app) fn on_written(state: &mut State, engine: &mut Engine, written
             // The file has the dragged numbers now, so nothing is compiled.
             if state.edits.draft.is_some() {
                 state.versions.keep_draft();
-                state.traces.drafted = None;
+                state.traces.drafted.clear();
             }
             end_draft(state, engine);
             state.say(text);

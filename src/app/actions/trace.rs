@@ -57,7 +57,7 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     let with_before = before.is_some();
     let number = engine.threads.tracer.trace(request, before);
     if state.edits.draft.is_some() {
-        state.traces.drafted = Some(subject.picture.shaders.generation);
+        state.traces.drafted.insert(subject.picture.shaders.generation);
     }
     state.traces.ask(subject, number, with_before);
     None

@@ -17,7 +17,7 @@ pub(in crate::app) static UNDO: Spec<()> = Spec::fallible("undo", |state, engine
 .shortcuts(
     Group::Program,
     &[Shortcut::key('z').ctrl()],
-    "undo a change of the settings, or what was written to the shader files; camera and mode are not undone",
+    "undo a change of the settings, or what was written to the shader files; camera, mode and watched expression are not undone",
 );
 
 pub(in crate::app) static REDO: Spec<()> = Spec::fallible("redo", |state, engine, ()| {

@@ -16,7 +16,8 @@ struct Step {
     files: Option<Arc<Written>>,
 }
 
-/// The settings before and after each change, except the camera, the mode and the orbiting lights, and the files that were written.
+/// The settings before and after each change, except the camera, the mode, the watched expression and the orbiting lights, and the files that
+/// were written.
 #[derive(Default)]
 pub(in crate::app) struct History {
     past: Vec<Step>,
@@ -86,11 +87,12 @@ impl History {
     }
 }
 
-/// `settings` with the camera, the mode and the orbiting lights of `view`.
+/// `settings` with the camera, the mode, the watched expression and the orbiting lights of `view`.
 fn with_view_of(settings: &Settings, view: &Settings) -> Settings {
     let turns = view.lights.spin != 0.0;
     let lights = if turns { settings.lights.turned_as(&view.lights) } else { settings.lights.clone() };
-    Settings { camera: view.camera.clone(), mode: view.mode.clone(), lights, ..settings.clone() }
+    let (camera, mode, expression) = (view.camera.clone(), view.mode.clone(), view.expression.clone());
+    Settings { camera, mode, expression, lights, ..settings.clone() }
 }
 
 #[cfg(test)]
@@ -144,7 +146,7 @@ mod tests {
         let (mut history, mut now) = (History::default(), with_ev(0.0));
         record(&mut history, &now, false);
         now.camera.azimuth = 70.0;
-        now.mode = "d".into();
+        (now.mode, now.expression.at) = ("expression".into(), "brdf/ndf.glsl:21 a2".into());
         now.lights.spin = 30.0;
         record(&mut history, &now, false);
         now.lights.orbit[0].azimuth += 10.0;
@@ -153,7 +155,8 @@ mod tests {
         now.view.ev = 1.0;
         record(&mut history, &now, false);
         assert!(history.undo(&mut now).is_some());
-        assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "d"));
+        assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "expression"));
+        assert_eq!(now.expression.at, "brdf/ndf.glsl:21 a2");
         assert_eq!(now.lights.orbit[0].azimuth, azimuth);
         // The previous step is that the lights began to orbit.
         assert!(history.undo(&mut now).is_some() && now.lights.spin == 0.0);

@@ -14,6 +14,8 @@ use egui::{
 const BODY: f32 = 13.0;
 /// Size of notes, and of text that is drawn by hand in dense rows and over pictures, in points.
 const SMALL: f32 = 11.0;
+/// A press and a release within this time are a click, seconds.
+const LONGEST_CLICK_S: f64 = 10.0;
 
 /// A color of the window, which depends on the theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,6 +130,8 @@ pub(in crate::app) fn apply(egui: &egui::Context) {
         let scroll = &mut style.spacing.scroll;
         scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
+    // egui takes the times of frames for those of presses, and a frame of a slow device may last a second.
+    egui.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK_S);
     choose(egui, false);
 }
 
@@ -203,6 +207,10 @@ fn colors(style: &mut egui::Style, theme: Theme) {
 
 #[cfg(test)]
 mod tests {
+    use egui::{Event, Modifiers, PointerButton, Ui};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
 
     /// The contrast of two colors (WCAG 2.1).
@@ -246,5 +254,26 @@ mod tests {
         choose(&egui, true);
         assert_eq!(Color32::from(PANEL), PANEL.light);
         assert_eq!(egui.style_of(Theme::Light).visuals.panel_fill, PANEL.light);
+    }
+
+    #[test]
+    fn a_click_counts_although_frames_are_slow() {
+        let show = |ui: &mut Ui, clicks: &mut u32| *clicks += u32::from(ui.button("Stop").clicked());
+        let mut harness = Harness::builder().with_step_dt(1.5).build_ui_state(show, 0);
+        apply(&harness.ctx);
+        harness.step();
+        let pos = harness.get_by_label("Stop").rect().center();
+        harness.event(Event::PointerMoved(pos));
+        harness.step();
+        for pressed in [true, false] {
+            harness.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::default(),
+            });
+            harness.step();
+        }
+        assert_eq!(*harness.state(), 1);
     }
 }

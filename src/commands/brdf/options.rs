@@ -19,7 +19,7 @@ use crate::commands::common::{TIMEOUT_S, check_validation, compiler, open_gpu, s
 /// Options of every measurement.
 #[derive(clap::Args)]
 pub(super) struct Options {
-    /// Shader tree [default: ./shaders if it is a Specula tree, else the built-in one]
+    /// Shader tree [default: ./shaders or the working directory, if one is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR")]
     pub(super) shaders: Option<PathBuf>,
     /// Set a constant or parameter of the shader tree, such as NDF=Beckmann; may be repeated. `specula modes` lists them

@@ -36,7 +36,7 @@ pub const TIMEOUT_S: u32 = 60;
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
-    /// Shader tree: a folder, an example such as examples:fur, or a shader written for Shadertoy or glslViewer [default: ./shaders if it is a Specula tree, else the built-in one]
+    /// Shader tree: a folder, an example such as examples:fur, or a shader written for Shadertoy or glslViewer [default: ./shaders or the working directory, if one is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR|FILE")]
     pub shaders: Option<PathBuf>,
     /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, model (the light of the model's file), or none [default: studio]
@@ -330,8 +330,10 @@ pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
             "{} is not a Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
             directory.display()
         ))),
-        None if is_specula_tree(Path::new("shaders")) => open(Path::new("shaders")),
-        None => Ok(Source::embedded()),
+        None => match ["shaders", "."].map(Path::new).into_iter().find(|folder| is_specula_tree(folder)) {
+            Some(folder) => open(folder),
+            None => Ok(Source::embedded()),
+        },
     }
 }
 

@@ -216,3 +216,12 @@ fn the_drivers_pipelines_outlive_the_process_and_a_damaged_file_is_ignored() {
         assert!(fs::read(pipelines.join(name)).unwrap() == whole, "the damaged file is still there");
     }
 }
+
+/// `cd tree; specula`.
+#[test]
+fn the_tree_in_the_working_directory_is_used() {
+    let tree = Tree::new();
+    tree.write("user.glsl", "no GLSL\n");
+    let error = |folder: &Path| run(folder, &["check"]).expect(1, &["user.glsl"]).stderr.contains("error");
+    assert!(error(&tree.beside("")) && error(tree.root()));
+}

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Color32, ComboBox, Label, PopupCloseBehavior, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
+use egui::{Color32, ComboBox, Key, Label, PopupCloseBehavior, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
 
 use super::edit::Editor;
 use super::fold::Folds;
@@ -86,8 +86,15 @@ fn files(
     let list = ComboBox::from_id_salt("file").selected_text(small_mono(shown)).width(FILES).height(MENU).truncate();
     let id = ui.id().with("search of files");
     let list = list.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show_ui(ui, |ui| {
-        let mut typed: String = ui.data(|data| data.get_temp(id).unwrap_or_default());
-        search::field(ui, &mut typed, "files", 0.0);
+        let typed: Option<String> = ui.data(|data| data.get_temp(id));
+        let is_opening = typed.is_none();
+        let mut typed = typed.unwrap_or_default();
+        let field = search::field(ui, &mut typed, "files", 0.0);
+        if is_opening {
+            field.request_focus();
+        }
+        // Enter chooses the first file.
+        let mut takes_first = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let words = Words::new(&typed);
         ui.data_mut(|data| data.insert_temp(id, typed));
         ScrollArea::vertical().max_height(MENU).show(ui, |ui| {
@@ -97,9 +104,8 @@ fn files(
                 }
                 let text = small_mono(path.as_str());
                 let text = if is_strong { text } else { text.color(QUIET) };
-                if ui.selectable_label(path.as_str() == shown, text).clicked() {
+                if ui.selectable_label(path.as_str() == shown, text).clicked() || std::mem::take(&mut takes_first) {
                     commands.push(SHOW_FILE.with(path.clone()));
-                    ui.data_mut(|data| data.remove_temp::<String>(id));
                     ui.close();
                 }
             };
@@ -113,6 +119,9 @@ fn files(
             others.for_each(|path| file(ui, path, false));
         });
     });
+    if list.inner.is_none() {
+        ui.data_mut(|data| data.remove_temp::<String>(id));
+    }
     let of = state.source.name();
     named(list.response, "File")
         .on_hover_text(format!("The file of {of} that is shown. The values are those of its statements"));

@@ -10,6 +10,7 @@ pub(in crate::app) mod sample;
 pub(in crate::app) mod saved;
 pub(in crate::app) mod subject;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -78,8 +79,8 @@ pub(in crate::app) struct Traces {
     newest: Option<Arc<PixelTrace>>,
     /// The trace of the version before, at the same pixel of the same picture.
     before: Option<Arc<PixelTrace>>,
-    /// The generation of shaders with dragged numbers that are in no file. They are no version before another.
-    pub(in crate::app) drafted: Option<u64>,
+    /// The generations of shaders with dragged numbers that are in no file. They are no version before another.
+    pub(in crate::app) drafted: BTreeSet<u64>,
     /// Whether the thread has still to answer about the version before.
     awaits_before: bool,
     pub(in crate::app) around: Around,
@@ -199,7 +200,7 @@ impl Traces {
                 && (newest.stage.is_empty() || old.stage == newest.stage)
                 && !old.of.picture.has_same_texts(&newest.of.picture)
         };
-        let is_draft = |of: &Arc<PixelTrace>| Some(of.of.picture.shaders.generation) == self.drafted;
+        let is_draft = |of: &Arc<PixelTrace>| self.drafted.contains(&of.of.picture.shaders.generation);
         let last = self.newest.take().filter(|last| fits(last) && !is_draft(last));
         self.before = last.or(self.before.take().filter(fits));
         self.newest = Some(Arc::new(newest));
@@ -230,9 +231,10 @@ impl Traces {
         self.newest.as_ref()?.trace.as_ref().ok().and_then(|trace| self.choice.fragment_of(trace))
     }
 
-    /// The rows of a text of a file.
+    /// The rows of a text of a file. Without a pixel in the picture, they have no values.
     pub(in crate::app) fn rows(&self, file: &TreePath, text: &str) -> Vec<Row> {
-        let of_file = |of: &Option<Arc<PixelTrace>>| of.clone().filter(|of| of.file == *file);
+        let has_pixel = !matches!(self.progress, Progress::NoPixel | Progress::Outside);
+        let of_file = |of: &Option<Arc<PixelTrace>>| of.clone().filter(|of| has_pixel && of.file == *file);
         let (now, before) = (of_file(&self.newest), of_file(&self.before));
         let now = now.as_ref().and_then(|now| now.side());
         let before = before.as_ref().and_then(|before| before.side());

@@ -217,3 +217,31 @@ fn a_result_that_comes_while_the_picture_is_not_final_counts_once_it_is() {
     traces.unseen();
     assert!(!traces.take(1, Default::default(), Ok(trace(old_events(), &[1]))));
 }
+
+#[test]
+fn dragged_numbers_are_no_version_before_another() {
+    let mut traces = Traces::default();
+    let texts = [(1, "    float a = x * 2.0;"), (2, "    float a = x * 2.5;"), (3, "    float a = x * 3.0;")];
+    for (generation, line) in texts {
+        if generation > 1 {
+            traces.drafted.insert(generation);
+        }
+        let value = 0.5 * generation as f32;
+        let text = OLD.replacen("    float a = x * 2.0;", line, 1);
+        add(&mut traces, &shaders(generation, &text), generation, vec![event(2, Act::Store, "a", &[value])], &[2]);
+    }
+    let before = traces.before().expect("the version of the file").of.picture.shaders.generation;
+    assert_eq!(before, 1);
+}
+
+#[test]
+fn there_are_no_values_without_a_pixel() {
+    let mut traces = Traces::default();
+    add(&mut traces, &shaders(1, OLD), 1, old_events(), &[1, 2, 3, 5]);
+    let has_values = |traces: &Traces| texts(traces, OLD).iter().any(|text| !text.is_empty());
+    assert!(has_values(&traces));
+    for progress in [Progress::NoPixel, Progress::Outside] {
+        traces.progress = progress;
+        assert!(!has_values(&traces), "{progress:?}");
+    }
+}
