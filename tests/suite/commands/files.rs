@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc::channel;
 
 use crate::support::process::{PATIENCE, finish, run, specula};
-use crate::support::{glb, open_image};
+use crate::support::{Tree, glb, open_image};
 use notify::{RecursiveMode, Watcher as _};
 use serde_json::json;
 use tempfile::TempDir;
@@ -223,5 +223,5 @@ fn the_tree_in_the_working_directory_is_used() {
     let tree = Tree::new();
     tree.write("user.glsl", "no GLSL\n");
     let error = |folder: &Path| run(folder, &["check"]).expect(1, &["user.glsl"]).stderr.contains("error");
-    assert!(error(&tree.beside("")) && error(tree.root()));
+    assert!(error(&tree.beside("")) && error(&tree.root()));
 }

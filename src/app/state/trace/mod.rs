@@ -231,9 +231,9 @@ impl Traces {
         self.newest.as_ref()?.trace.as_ref().ok().and_then(|trace| self.choice.fragment_of(trace))
     }
 
-    /// The rows of a text of a file. Without a pixel in the picture, they have no values.
+    /// The rows of a text of a file. Without a pinned pixel, they have no values.
     pub(in crate::app) fn rows(&self, file: &TreePath, text: &str) -> Vec<Row> {
-        let has_pixel = !matches!(self.progress, Progress::NoPixel | Progress::Outside);
+        let has_pixel = self.progress != Progress::NoPixel;
         let of_file = |of: &Option<Arc<PixelTrace>>| of.clone().filter(|of| has_pixel && of.file == *file);
         let (now, before) = (of_file(&self.newest), of_file(&self.before));
         let now = now.as_ref().and_then(|now| now.side());
