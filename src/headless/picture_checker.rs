@@ -16,7 +16,7 @@ use crate::render::Redraw;
 use crate::shader::annotation::pass::{PassSize, PassTarget};
 use crate::shader::checks::{Broken, CheckBuffer, CheckedStages, Operations};
 use crate::shader::compile::asserts::has_calls;
-use crate::shader::{Diagnostic, ShaderSet, StageKind, TreePath};
+use crate::shader::{Diagnostic, ShaderSet, Source, StageKind, TreePath};
 
 /// A picture whose operations were checked.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +31,8 @@ pub struct CheckedPicture {
     pub checks: usize,
     /// Stages that the device cannot let write to buffers.
     pub left_out: BTreeSet<String>,
-    /// Files with assertions that only stages have which bake light. They are not checked.
-    pub baked: BTreeSet<String>,
+    /// Warnings about files with assertions that only stages have which bake light: they are not checked.
+    pub baked: Vec<Diagnostic>,
     /// Operations that are not checked, since a stage has too many.
     pub dropped: usize,
     /// Whether derivatives are not checked, since fragments cannot ask which neighbors run along on this device.
@@ -130,7 +130,7 @@ impl PictureChecker {
             marks,
             size: state.size,
             checks: checked.check_count(),
-            baked: asserting_bakes(request.shaders, &state),
+            baked: asserting_bakes(request.shaders, &state).iter().map(|path| unchecked(source, path)).collect(),
             left_out: left_out.into_keys().collect(),
             dropped: checked.left_out(),
             without_derivatives: request.undefined && !self.gpu.quad_ballots(),
@@ -192,7 +192,7 @@ fn stages_of(state: &FrameState) -> BTreeMap<String, bool> {
 }
 
 /// The files with assertions that stages have which bake light, and no stage of a frame.
-fn asserting_bakes(shaders: &ShaderSet, state: &FrameState) -> BTreeSet<String> {
+fn asserting_bakes(shaders: &ShaderSet, state: &FrameState) -> BTreeSet<TreePath> {
     let files = |path: &str| {
         let stage = shaders.stages.get(path);
         stage.into_iter().flat_map(|stage| stage.dependencies.iter().chain([&stage.path]))
@@ -200,7 +200,12 @@ fn asserting_bakes(shaders: &ShaderSet, state: &FrameState) -> BTreeSet<String> 
     let of_frame: BTreeSet<&TreePath> = stages_of(state).keys().flat_map(|path| files(path)).collect();
     let asserts = |path: &&TreePath| shaders.texts.get(*path).is_some_and(|text| has_calls(text));
     let baked = bake_stages().flat_map(files).filter(|path| !of_frame.contains(path));
-    baked.filter(asserts).map(TreePath::to_string).collect()
+    baked.filter(asserts).cloned().collect()
+}
+
+fn unchecked(source: &Source, path: &TreePath) -> Diagnostic {
+    let message = "the assertions of this file are not checked: only stages have it that bake light before the picture";
+    Diagnostic::warning(source.display_path(path), message.to_owned())
 }
 
 fn write(buffer: &Buffer, words: &[u32]) {

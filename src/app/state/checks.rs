@@ -127,11 +127,13 @@ impl Checks {
             self.progress = CheckProgress::Done;
         }
         // A tree may have functions of its own with these names.
-        if result.as_ref().is_ok_and(|picture| picture.checks == 0) {
+        if result.as_ref().is_ok_and(|picture| picture.checks == 0 && picture.baked.is_empty()) {
             self.asserting = Some((of.shaders.clone(), false));
         }
-        let found = result.as_ref().map(|picture| picture.broken.as_slice()).unwrap_or_default();
-        self.diagnostics = found.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();
+        let picture = result.as_ref().ok();
+        let found = picture.into_iter().flat_map(|picture| &picture.broken).map(|(_, diagnostic)| diagnostic);
+        let baked = picture.into_iter().flat_map(|picture| &picture.baked);
+        self.diagnostics = found.chain(baked).cloned().collect();
         self.result = Some((of, result));
         true
     }

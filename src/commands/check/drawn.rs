@@ -11,7 +11,7 @@ use specula::shader::checks::Broken;
 use super::args::Args;
 use crate::commands::common::chosen_modes::Modes;
 use crate::commands::common::opened::Opened;
-use crate::commands::common::unchecked::{warn_of_bakes, warn_of_unchecked};
+use crate::commands::common::unchecked::warn_of_unchecked;
 use crate::commands::common::{check_mode, check_validation};
 use crate::commands::{Failure, print_diagnostics, print_json};
 
@@ -39,20 +39,20 @@ pub(super) fn run(args: &mut Args) -> Result<(), Failure> {
         modes => modes.in_shaders(&shaders, args.paths)?.into_iter().map(|mode| mode.slug.clone()).collect(),
     };
     let (mut found, mut checks, mut left_out) = (Vec::<Found>::new(), 0, BTreeSet::new());
-    let (mut dropped, mut without_derivatives, mut baked) = (0, false, BTreeSet::new());
+    let (mut dropped, mut without_derivatives, mut baked) = (0, false, Vec::new());
     for slug in &slugs {
         progress.say(&format!("checking the mode {slug}"));
         headless.settings_mut().mode.clone_from(slug);
         let picture = headless.check_operations(args.undefined)?;
         checks = checks.max(picture.checks);
         left_out.extend(picture.left_out);
-        baked.extend(picture.baked);
+        baked = picture.baked;
         dropped = dropped.max(picture.dropped);
         without_derivatives |= picture.without_derivatives;
         picture.broken.into_iter().for_each(|(broken, diagnostic)| add(&mut found, broken, diagnostic, slug));
     }
     drop(progress);
-    warn_of_bakes(&baked);
+    print_diagnostics(&baked);
     warn_of_unchecked(&gpu.info().name, &left_out, (dropped, without_derivatives));
     found.sort_by(|a, b| (&a.broken.file, a.broken.line).cmp(&(&b.broken.file, b.broken.line)));
     let result = tell_of(args, &found, (checks, slugs.len()));

@@ -4,16 +4,6 @@ use std::collections::BTreeSet;
 
 use specula::message::warn;
 
-/// Warns of files with assertions that only stages have which bake light.
-pub fn warn_of_bakes(files: &BTreeSet<String>) {
-    if !files.is_empty() {
-        let files = files.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
-        warn(format_args!(
-            "the assertions of these files are not checked, since only stages have them that bake light before the picture: {files}"
-        ));
-    }
-}
-
 /// Warns of stages that the device cannot let write to buffers, and of operations for which a stage has no room.
 /// `without_derivatives`: fragments cannot ask which neighbors run along.
 pub fn warn_of_unchecked(device: &str, stages: &BTreeSet<String>, (dropped, without_derivatives): (usize, bool)) {

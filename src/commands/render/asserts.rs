@@ -7,7 +7,7 @@ use specula::shader::Diagnostic;
 use specula::shader::compile::asserts::has_calls;
 
 use super::Args;
-use crate::commands::common::unchecked::{warn_of_bakes, warn_of_unchecked};
+use crate::commands::common::unchecked::warn_of_unchecked;
 use crate::commands::{Failure, print_diagnostics};
 
 /// Draws the picture again with stages that check their assertions, if there are any.
@@ -20,7 +20,7 @@ pub(super) fn check(headless: &mut Headless, args: &Args) -> Result<(), Failure>
     let picture = headless.check_operations(false);
     headless.settings_mut().view.msaa = msaa;
     let picture = picture?;
-    warn_of_bakes(&picture.baked);
+    print_diagnostics(&picture.baked);
     warn_of_unchecked("the device", &picture.left_out, (picture.dropped, picture.without_derivatives));
     let diagnostics: Vec<Diagnostic> = picture.broken.iter().map(|(_, diagnostic)| diagnostic.clone()).collect();
     for diagnostic in &diagnostics {

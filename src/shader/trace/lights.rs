@@ -21,7 +21,9 @@ impl TracedLight {
     /// The light for a reader, as `lamp, point, 12 cd`.
     pub fn text(&self) -> String {
         let most = self.intensity.into_iter().fold(0.0, f32::max);
-        let strength = format!("{} {}", TracedValue::float(most).text(), self.unit);
+        let digits = if most > 0.0 { (2 - most.log10().floor() as i32).clamp(0, 9) } else { 0 };
+        let scale = 10_f32.powi(digits);
+        let strength = format!("{} {}", TracedValue::float((most * scale).round() / scale).text(), self.unit);
         let parts = [self.name.as_str(), self.kind, &strength];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
     }
@@ -41,6 +43,10 @@ mod tests {
     fn a_light_is_told_by_its_name_and_strength() {
         let light = TracedLight { name: "lamp".into(), kind: "point", intensity: [12.0, 6.5, 0.0], unit: "cd" };
         assert_eq!(light.text(), "lamp, point, 12 cd");
+        for (intensity, text) in [(47.88926, "47.9 cd"), (0.012_345, "0.0123 cd"), (683.2, "683 cd"), (0.0, "0 cd")] {
+            let light = TracedLight { name: String::new(), intensity: [intensity; 3], ..light.clone() };
+            assert_eq!(light.text(), format!("point, {text}"));
+        }
         assert_eq!(TracedLight { name: String::new(), ..light }.text(), "point, 12 cd");
     }
 }

@@ -38,7 +38,7 @@ fn stages_between_vertices_and_pixels_are_checked() {
     let quad = tree.beside("quad.glb");
     std::fs::write(&quad, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
     let checked = check(&tree, &["--json", quad.to_str().unwrap()]);
-    checked.expect(1, &["6 errors", "bake light before the picture: ibl/irradiance.comp"]);
+    checked.expect(1, &["6 errors", "irradiance.comp: warning: the assertions of this file are not checked"]);
     let found: Value = serde_json::from_str(&checked.stdout).unwrap();
     let found = found.as_array().unwrap();
     for (file, fault) in [("pbr.tesc", "division-by-zero"), ("pbr.tese", "sqrt"), ("passes/normals.geom", "sqrt")] {
