@@ -124,13 +124,12 @@ fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
     if let Some(file) = sight.evaluations.clone().filter(|_| !sight.source) {
         return Some(Subject { picture, at, stage: None, file: Some(file) });
     }
-    Some(Subject {
-        picture,
-        at,
-        // A picture may lack the stage that was chosen in another.
-        stage: state.traces.stage.clone().filter(|stage| shown.pipelines.stages().contains(stage)),
-        file: state.traces.file.clone(),
-    })
+    // A picture may lack the stage that was chosen in another.
+    let stage = state.traces.stage.clone().filter(|stage| shown.pipelines.stages().contains(stage));
+    // The stage around a single file is not what the user has written.
+    let opened = || state.source.opened().filter(|_| stage.is_none());
+    let file = state.traces.file.clone().or_else(opened);
+    Some(Subject { picture, at, stage, file })
 }
 
 /// The picture on screen; `None` while it is not final. `moment`: an earlier one, of the same moving picture.

@@ -65,7 +65,12 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             state.model.load_ms = loaded.ms;
             state.model.failure = None;
             state.model.files = model.files.as_slice().into();
+            let is_next = is_other && state.session.model().is_some();
             state.session.set_model(model);
+            if is_next && state.shader.is_single_file {
+                let (name, file) = (&model.name, &state.shader.tree);
+                state.say(format!("{name} is loaded, but {file} draws no model. Open a shader tree to see it"));
+            }
             engine.resources.set_model(&uploaded);
             if !awaits_textures {
                 tell_problems(state, model);

@@ -101,6 +101,14 @@ impl Source {
         matches!(self.tree, Tree::Toy(_))
     }
 
+    /// The path of the single file of which the tree is made.
+    pub fn opened(&self) -> Option<TreePath> {
+        match &self.tree {
+            Tree::Toy(toy) => Some(toy.opened()),
+            _ => None,
+        }
+    }
+
     /// The tree that was compiled into the binary.
     pub fn embedded() -> Self {
         Self::example(None)

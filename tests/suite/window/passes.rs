@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::support::Tree;
 use crate::support::window::Viewer;
+use crate::support::{Tree, glb};
 
 const PASS: &str = "passes/swap.frag";
 const TEXT: &str = "//@pass swap to=picture\n#version 460\n#include \"pass.glsl\"\nuniform sampler2D picture;\n\
@@ -70,7 +70,7 @@ fn a_single_file_is_a_tree() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = 0.5 * texture(iChannel0, p / 64.0); }\n";
     std::fs::write(&toy, text).unwrap();
     let path = toy.to_str().unwrap().to_owned();
-    let mut viewer = Viewer::open(tree, &["sphere-grid", "--shaders", &path]);
+    let mut viewer = Viewer::driven(tree, &["sphere-grid", "--shaders", &path]);
     viewer.running.event("ready");
     let noise = viewer.screenshot();
 
@@ -103,5 +103,9 @@ fn a_single_file_is_a_tree() {
     viewer.until_screen("a picture without names", |screen| {
         screen.pixels().filter(|pixel| *pixel == blue.get_pixel(0, 0)).count() >= pixels
     });
-    viewer.quit();
+    // Another model changes nothing on screen, which is told.
+    let model = viewer.tree.beside("quad.glb");
+    std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    viewer.running.done(json!({ "command": "open", "file": model }));
+    assert!(viewer.quit().contains("is loaded, but toy.glsl draws no model"));
 }

@@ -71,6 +71,11 @@ impl Toy {
         &self.file
     }
 
+    /// Its path in the tree.
+    pub fn opened(&self) -> TreePath {
+        opened_path(&self.name())
+    }
+
     /// The folder of the file.
     pub fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new("."))
