@@ -52,6 +52,7 @@ pub mod frame;
 pub mod fuzz;
 pub mod gpu;
 pub mod headless;
+mod identity;
 pub mod interface;
 pub mod learn;
 pub mod lsp;

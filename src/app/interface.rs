@@ -24,10 +24,10 @@ use super::state::workspace::{PanelRequest, Sight};
 use super::widgets;
 use crate::frame::Limits;
 use crate::gpu::Gpu;
+use crate::identity::Identity;
 use crate::recovery::Geometry;
 use crate::render::PixelAt;
 use crate::scene::CameraController;
-use crate::settings::Settings;
 use crate::threads::Message;
 use freshness::Freshness;
 
@@ -49,7 +49,7 @@ pub(super) struct Interface {
 /// Values that panels show at once although no event tells of them: settings that move by themselves, and what the device has read.
 #[derive(PartialEq)]
 pub(super) struct Followed {
-    pub(super) settings: *const Settings,
+    pub(super) settings: Identity,
     pub(super) pixel: Option<(PixelAt, bool)>,
     pub(super) limits: Option<Limits>,
     pub(super) is_settled: bool,

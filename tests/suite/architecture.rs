@@ -13,7 +13,18 @@ use syn::{Attribute, Item, UseTree, Visibility};
 /// The folders and files of `src`, from the lowest layer to the highest. Each imports only from layers before its own in this list; those
 /// of one layer do not know each other.
 const LAYERS: &[&[&str]] = &[
-    &["astc", "cancel", "cpu_clock", "interface", "message", "process_end", "regular_file", "report", "statistics"],
+    &[
+        "astc",
+        "cancel",
+        "cpu_clock",
+        "identity",
+        "interface",
+        "message",
+        "process_end",
+        "regular_file",
+        "report",
+        "statistics",
+    ],
     &["disk_cache", "distribution", "settings", "state_folder"],
     &["shader", "gpu", "scene"],
     &["frame", "picture_difference", "control", "file_kind", "recovery"],

@@ -1,7 +1,5 @@
 //! The inspector's side of the viewer: pins pixels, takes their values, and has the curves of their materials measured.
 
-use std::sync::Arc;
-
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::inspection::anchor::Anchor;
@@ -9,10 +7,11 @@ use crate::app::state::inspection::{Asked, NotFiniteSearch, Page, Reading, Searc
 use crate::app::state::workspace::Sight;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
+use crate::identity::Identity;
 use crate::render::Texel;
 use crate::scene::pick;
+use crate::shader::PixelValue;
 use crate::shader::not_finite::NotFinite;
-use crate::shader::{PixelValue, ShaderSet};
 use crate::threads::MeasuredCurves;
 use crate::threads::finder::FindRequest;
 use crate::threads::measurer::CurvesRequest;
@@ -186,10 +185,9 @@ fn request_curves(state: &mut State, engine: &mut Engine) {
     let material = inspector.reading.as_ref().filter(|reading| reading.is_hit()).and_then(|of| of.material(chosen));
     let (Some(material), Some(newest)) = (material, state.session.shaders.clone()) else { return };
     let before = state.versions.last_before(newest.generation).map(|version| version.shaders.clone());
-    let address = |shaders: &Arc<ShaderSet>| Arc::as_ptr(shaders) as usize;
-    let shaders = [address(&newest), before.as_ref().map_or(0, address)];
+    let shaders = [Identity::of(&newest), Identity::of_any(before.as_ref())];
     let settings = format!("{:?}", state.session.settings.shader);
-    let is_asked = |asked: &Asked| (asked.material, asked.shaders, &asked.settings) == (material, shaders, &settings);
+    let is_asked = |asked: &Asked| (asked.material, &asked.shaders, &asked.settings) == (material, &shaders, &settings);
     if inspector.asked.as_ref().is_some_and(is_asked) {
         return;
     }

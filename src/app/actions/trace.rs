@@ -10,6 +10,7 @@ use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::Progress;
 use crate::app::state::trace::subject::Subject;
 use crate::events::{Event, emit};
+use crate::identity::Identity;
 use crate::settings::{ExpressionSettings, Settings};
 use crate::shader::{Severity, TreePath, expression};
 use crate::threads::tracer::{OlderVersion, TraceRequest};
@@ -155,8 +156,8 @@ pub(in crate::app) fn final_picture(
         settings: same.unwrap_or(now),
         shaders,
         revisions: state.session.revisions,
-        model: state.session.model().map_or(0, |model| Arc::as_ptr(model) as usize),
-        light: Arc::as_ptr(engine.resources.environment()) as usize,
+        model: Identity::of_any(state.session.model()),
+        light: Identity::of(engine.resources.environment()),
         clock: moment.map_or(state.picture.clock, |moment| moment.clock),
     })
 }

@@ -1,6 +1,5 @@
 //! Draws between frames: thumbnails and values of pixels.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::adaptive::{Step, draw_part, prepare_next};
@@ -23,7 +22,7 @@ use crate::app::state::workspace::Sight;
 use crate::events::{Event, emit};
 use crate::frame::TargetFormat;
 use crate::gpu::GpuError;
-use crate::render::GpuEnvironment;
+use crate::identity::Identity;
 
 /// How long a software device may continue between frames. Showing a thumbnail takes it longer than drawing one.
 const UNSEEN: Duration = Duration::from_millis(200);
@@ -184,7 +183,6 @@ fn resting_picture(state: &State, engine: &Engine) -> Option<RestingPicture> {
     if !is_current || !shaders.is_complete() || awaits_edit(state, engine) {
         return None;
     }
-    let environment: *const GpuEnvironment = Arc::as_ptr(engine.resources.environment());
     // A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
     // sample per pixel, which egui halves.
     let samples = if engine.gpu_is_fast() { frame_state.pipelines.target.samples } else { 1 };
@@ -194,7 +192,7 @@ fn resting_picture(state: &State, engine: &Engine) -> Option<RestingPicture> {
         plays: state.playback.runs() && state.session.scene()?.is_playing(),
         scene: state.session.scene()?,
         revisions: state.session.revisions,
-        environment: environment as usize,
+        environment: Identity::of(engine.resources.environment()),
         target: TargetFormat { samples, ..frame_state.pipelines.target },
         features: state.session.features(),
     })

@@ -1,7 +1,6 @@
 //! Draws the window: runs the panels over the state, has the screen draw the frame that the state describes, and tells the state what came
 //! of it. In a session without a window there are no panels, and all else is alike.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::adaptive::{self, Step};
@@ -31,6 +30,7 @@ use crate::app::state::adaptive::plan::Plan;
 use crate::app::state::timing::CpuTimes;
 use crate::cpu_clock::CpuClock;
 use crate::gpu::GpuError;
+use crate::identity::Identity;
 use crate::recovery::Geometry;
 use crate::render::{BoundFrame, Redraw};
 use crate::scene::built_in_pictures;
@@ -283,7 +283,7 @@ impl Drawing {
         take_times(state, screen, engine.gpu_is_fast());
         adaptive::take_times(state, screen);
         let followed = Followed {
-            settings: Arc::as_ptr(&state.session.shared_settings()),
+            settings: Identity::of(&state.session.shared_settings()),
             pixel: screen.pixel(),
             limits: screen.view.limits(),
             is_settled: is_settled(state, engine),

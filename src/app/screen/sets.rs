@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::gpu::GpuError;
+use crate::identity::Identity;
 use crate::render::{BoundFrame, Resources};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet};
@@ -25,8 +26,8 @@ pub(in crate::app) struct RestingPicture {
     /// Whether an animation of the model plays.
     pub(in crate::app) plays: bool,
     pub(in crate::app) revisions: Revisions,
-    /// Address of the environment on the device.
-    pub(in crate::app) environment: usize,
+    /// The environment on the device.
+    pub(in crate::app) environment: Identity,
     pub(in crate::app) target: TargetFormat,
     /// `FEATURE_*` bits of the scene, which decide about the modes that have data.
     pub(in crate::app) features: Option<u32>,
@@ -72,7 +73,7 @@ impl PartialEq for Shown {
         // The address of the shaders: generation numbers may restart at 1.
         let parts = |of: &Self| {
             let RestingPicture { shaders, revisions, environment, target, .. } = &of.picture;
-            (Arc::as_ptr(shaders), *revisions, *environment, *target, of.gives_numbers, of.size)
+            (Arc::as_ptr(shaders), *revisions, environment.clone(), *target, of.gives_numbers, of.size)
         };
         let (a, b) = (&self.picture, &other.picture);
         // Pictures of a model that moves show a moment of it. Pixels are those of a moment.

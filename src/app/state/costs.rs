@@ -185,8 +185,8 @@ mod tests {
             settings: Arc::new(Settings::default()),
             shaders: tree.clone(),
             revisions: Default::default(),
-            model: 1,
-            light: 1,
+            model: Default::default(),
+            light: Default::default(),
             clock: Default::default(),
         };
         let difference = Difference {

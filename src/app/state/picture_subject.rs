@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::frame::{Clock, Revisions};
+use crate::identity::Identity;
 use crate::settings::Settings;
 use crate::shader::ShaderSet;
 
@@ -13,9 +14,9 @@ pub(in crate::app) struct PictureSubject {
     pub(in crate::app) settings: Arc<Settings>,
     pub(in crate::app) shaders: Arc<ShaderSet>,
     pub(in crate::app) revisions: Revisions,
-    /// Addresses of the model and of the light on the device.
-    pub(in crate::app) model: usize,
-    pub(in crate::app) light: usize,
+    pub(in crate::app) model: Identity,
+    /// The light on the device.
+    pub(in crate::app) light: Identity,
     /// The time of the picture.
     pub(in crate::app) clock: Clock,
 }
@@ -28,14 +29,14 @@ impl PictureSubject {
 
     /// Whether both are the same picture, drawn by any version of the shaders. A version has a light of its own.
     pub(in crate::app) fn is_same_but_version(&self, other: &Self) -> bool {
-        let parts = |of: &Self| (of.size, of.model, of.clock.time_s.to_bits());
+        let parts = |of: &Self| (of.size, of.model.clone(), of.clock.time_s.to_bits());
         parts(self) == parts(other) && self.settings == other.settings
     }
 }
 
 impl PartialEq for PictureSubject {
     fn eq(&self, other: &Self) -> bool {
-        let light = |of: &Self| (of.light, of.revisions);
+        let light = |of: &Self| (of.light.clone(), of.revisions);
         // Generation numbers may restart at 1.
         let is_same_set = Arc::ptr_eq(&self.shaders, &other.shaders);
         is_same_set && light(self) == light(other) && self.is_same_but_version(other)

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use egui::{Align2, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::app::widgets::theme::{CARD, TEXT, small_font};
+use crate::identity::Identity;
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, view_of};
 use crate::settings::CameraSettings;
 
@@ -22,17 +23,17 @@ const MOST_HIDDEN: f32 = 0.4;
 /// Where each named object of a chart is. Empty for other models.
 #[derive(Default)]
 pub(in crate::app::panels) struct Labels {
-    /// Address of the model.
-    of: usize,
+    /// The model.
+    of: Identity,
     /// Name and bounds in the world.
     objects: Vec<(String, Bounds)>,
 }
 
 impl Labels {
     fn update(&mut self, model: &Arc<Model>) {
-        let address = Arc::as_ptr(model) as usize;
-        if self.of != address {
-            *self = Self { of: address, objects: objects(model) };
+        let of = Identity::of(model);
+        if self.of != of {
+            *self = Self { of, objects: objects(model) };
         }
     }
 }

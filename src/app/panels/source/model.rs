@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use super::functions::{Fold, Function, functions};
 use crate::app::state::State;
-use crate::app::state::trace::PixelTrace;
+use crate::app::state::trace::Progress;
 use crate::app::state::trace::choice::Choice;
 use crate::app::state::trace::rows::{Note, Reach, Row};
+use crate::identity::Identity;
 use crate::shader::rewrite::literals_by_line;
 use crate::shader::trace::Act;
 use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
@@ -43,7 +44,8 @@ pub(super) enum Shown {
 struct Inputs {
     path: TreePath,
     text: Arc<str>,
-    traces: [usize; 2],
+    /// Those of the newest version and of the one before, and whether a pixel is pinned.
+    traces: ([Identity; 2], bool),
     choice: Choice,
     diagnostics: Vec<Diagnostic>,
     /// The folded functions.
@@ -88,14 +90,16 @@ impl CodeModel {
             Some(text) => (text, BTreeSet::new()),
             None => (text, folds(&path)),
         };
-        let address = |trace: Option<&Arc<PixelTrace>>| trace.map_or(0, |trace| Arc::as_ptr(trace) as usize);
         let display = state.source.display_path(&path);
         let diagnostics = state.session.diagnostics.iter().chain(state.checks.diagnostics());
         let diagnostics = diagnostics.filter(|found| found.file == display);
         let inputs = Inputs {
             path,
             text,
-            traces: [address(state.traces.newest()), address(state.traces.before())],
+            traces: (
+                [state.traces.newest(), state.traces.before()].map(Identity::of_any),
+                state.traces.progress == Progress::NoPixel,
+            ),
             choice: state.traces.choice.clone(),
             diagnostics: diagnostics.cloned().collect(),
             folded,

@@ -299,3 +299,14 @@ fn typed_text_stays_in_its_tree() {
     }
     harness.get_by_label("not saved");
 }
+
+/// A trace may lie in memory where the one before it was.
+#[test]
+fn each_trace_shows_its_own_values() {
+    let mut harness = window(TEXT, events(1.0), &[2, 3, 4, 6]);
+    for number in 2..20 {
+        add(&mut harness.state_mut().state, 1, TEXT, trace(events(number as f32), &[2, 3, 4, 6]));
+        harness.run();
+        harness.get_by_label(&format!("a = {number}"));
+    }
+}

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use crate::identity::Identity;
 use crate::interface::Light;
 use crate::measure::{Curves, Material};
 use crate::render::Texel;
@@ -212,8 +213,8 @@ pub(in crate::app) struct Asked {
     /// Number of the request.
     pub(in crate::app) number: u64,
     pub(in crate::app) material: Material,
-    /// Addresses of the shaders: generation numbers may restart at 1.
-    pub(in crate::app) shaders: [usize; 2],
+    /// Generation numbers may restart at 1.
+    pub(in crate::app) shaders: [Identity; 2],
     /// The author's constants and parameters, in a comparable form.
     pub(in crate::app) settings: String,
 }
