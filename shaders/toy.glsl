@@ -19,6 +19,19 @@ uniform Pass {
     uint frame_index;
 } toy;
 
+#ifdef TOY_FILE
+// The stage of a file gives these values their names, except names that the file declares itself.
+#define iResolution toy_iResolution
+#define iTime toy_iTime
+#define iTimeDelta toy_iTimeDelta
+#define iFrameRate toy_iFrameRate
+#define iFrame toy_iFrame
+#define iMouse toy_iMouse
+#define iDate toy_iDate
+#define iChannelTime toy_iChannelTime
+#define iSampleRate toy_iSampleRate
+#endif
+
 vec3 iResolution;              // width and height, pixels; 1
 float iTime;                   // seconds
 float iTimeDelta;              // seconds since the frame before
@@ -29,7 +42,8 @@ vec4 iDate;                    // year, month from 0, day from 1, seconds of the
 float iChannelTime[4];
 const float iSampleRate = 44100.0;
 
-// The same under the names of glslViewer and the Book of Shaders.
+#ifndef TOY_FILE
+// The same under the names of glslViewer and the Book of Shaders, and of Shadertoy's first years.
 #define u_time iTime
 #define u_delta iTimeDelta
 #define u_frame iFrame
@@ -37,9 +51,10 @@ const float iSampleRate = 44100.0;
 #define u_resolution (iResolution.xy)
 #define u_mouse (iMouse.xy)
 #define v_texcoord (toyFragCoord.xy / iResolution.xy)
-
-// The same under the names of GLSL ES 1.00 and of Shadertoy's first years.
 #define iGlobalTime iTime
+#endif
+
+// Names of GLSL ES 1.00.
 #define texture2D texture
 #define textureCube texture
 #define texture2DProj textureProj
@@ -51,6 +66,7 @@ const float iSampleRate = 44100.0;
 
 #ifdef TOY_FILE
 #define toyES 1
+#define HW_PERFORMANCE 1
 // Precisions mean nothing here, and must not tell two declarations of a function apart.
 #define lowp
 #define mediump
@@ -62,6 +78,8 @@ const float iSampleRate = 44100.0;
 // gl_FragCoord and gl_FragColor of the file.
 vec4 toyFragCoord;
 vec4 toyFragColor;
+// The image is a triangle whose front is visible in WebGL.
+const bool toyFrontFacing = true;
 
 void toy_begin() {
     iResolution = vec3(toy.size_px, 1.0);
@@ -98,18 +116,30 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord);
 void Main() { mainImage(toyFragColor, toyFragCoord.xy); }
 #endif
 
-#ifdef TOY_VARIABLES
+#ifdef TOY_FILE
 void toy_variables();
 #endif
 
 void main() {
     toy_begin();
-#ifdef TOY_VARIABLES
+#ifdef TOY_FILE
     toy_variables();
 #endif
     Main();
     toy_end();
 }
+#endif
+
+#ifdef TOY_FILE
+#undef iResolution
+#undef iTime
+#undef iTimeDelta
+#undef iFrameRate
+#undef iFrame
+#undef iMouse
+#undef iDate
+#undef iChannelTime
+#undef iSampleRate
 #endif
 
 #endif

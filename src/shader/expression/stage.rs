@@ -61,7 +61,10 @@ pub(super) fn stage_texts(
         let all = inside.filter(|token| token.text == "all_lights");
         edits.extend(all.map(|token| (token.bytes.clone(), "chosen_lights".to_owned())));
     }
-    let call = edited.is_none().then(|| format!(" {FUNCTION}({});", expression.text)).unwrap_or_default();
+    let call = match edited {
+        None => format!(" {FUNCTION}({});", expression.text),
+        Some(_) => String::new(),
+    };
     let watched = vertex.as_ref().filter(|vertex| vertex.is_watched);
     let (varying, shown) = match watched {
         Some(_) => (

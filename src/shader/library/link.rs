@@ -38,6 +38,7 @@ impl Library {
             return Err(errors);
         }
         let mut warnings = snapshot.source().refusals();
+        warnings.extend(snapshot.source().warnings());
         warnings.extend(self.idle_warnings(snapshot));
         warnings.extend(self.stray_warnings(snapshot));
         let mut files = BTreeSet::new();

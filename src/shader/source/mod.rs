@@ -152,6 +152,11 @@ impl Source {
         if is_on_disk { self.tree.problems() } else { Vec::new() }
     }
 
+    /// The warnings about a single opened file that are known before anything is compiled.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        self.tree.warnings()
+    }
+
     /// The tree with other texts of these files. Each applies only while the file's own text equals `base`, so an edit of the
     /// file wins. Replaces an earlier draft.
     #[must_use]

@@ -140,6 +140,14 @@ impl Tree {
         }
     }
 
+    /// The warnings about a single opened file that are known before anything is compiled.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        match self {
+            Self::Toy(toy) => toy.warnings(),
+            _ => Vec::new(),
+        }
+    }
+
     /// A diagnostic as the author of the tree should see it: with the author's line, also where another text is compiled.
     #[must_use]
     pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {

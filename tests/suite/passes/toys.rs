@@ -268,10 +268,6 @@ fn errors_quote_the_author() {
             image("c = vec4(isKeyDown(Key_A));"),
             vec!["t.glsl:1:", "help: write `#iKeyboard` on a line of its own", "Key_LeftArrow"],
         ),
-        (
-            "uniform sampler2D photo;\nvoid main() { gl_FragColor = texture2D(photo, gl_FragCoord.xy); }\n".to_owned(),
-            vec!["t.glsl:1:19: error: nothing gives the image `photo`", "`//@texture photo \"image.png\"`"],
-        ),
     ] {
         let stderr = render(folder.path(), &[("t.glsl", &text)], &[]).expect(1, &told).stderr.clone();
         let foreign = ["embedded:", "opened/", "toyFrag", "Main()", "_channel", "#error"];

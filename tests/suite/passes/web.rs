@@ -130,6 +130,44 @@ fn declared_uniforms_have_their_values() {
     assert_eq!(pixel(folder.path(), 3, 3), GREEN);
 }
 
+/// Each of the texts is a name of a playground that the file has for itself.
+#[test]
+fn names_of_playgrounds_may_be_a_files_own() {
+    for head in [
+        "uniform float time;\n#define iTime time\n#define iGlobalTime time\n#define VALUE iTime * iGlobalTime\n",
+        "uniform float time;\nfloat iTime = 0.5;\nconst vec4 iMouse = vec4(0.5);\n#define VALUE time * (iTime + iMouse.x)\n",
+        "uniform vec2 resolution;\nvec3 iResolution = vec3(0.0);\n#define VALUE step(3.0, resolution.x) + iResolution.y\n",
+        "uniform vec2 mouse, resolution;\n#define iMouse (mouse * resolution)\n#define iResolution resolution\n\
+         #define VALUE 1.0 + iMouse.x + 0.0 / iResolution.x\n",
+        "uniform float u_time;\nuniform vec2 u_resolution;\nstruct S { vec2 u_mouse; };\n\
+         float f(float u_time) { vec2 u_resolution = vec2(u_time); return S(u_resolution).u_mouse.y; }\n\
+         #define VALUE f(1.0) * step(3.0, u_resolution.x) * u_time\n",
+        "float u_time() { return 1.0; }\n#define u_resolution iResolution.xy\n#define v_texcoord 1.0\n\
+         #define VALUE u_time() * v_texcoord * step(3.0, u_resolution.x)\n",
+        "uniform vec3 u_mouse, u_resolution;\n#define VALUE u_mouse.z + u_resolution.z\n",
+        "#define texture2D(a, b) texture(a, b)\n#define lowp mediump\nlowp float a;\n#define VALUE 1.0 + a\n",
+        "#if __VERSION__ != 100 || !defined HW_PERFORMANCE\n#error\n#endif\n#if 0\n3d 0x 5\"\n#endif\n\
+         #define VALUE gl_FrontFacing ? 1.0 : 0.0\n",
+    ] {
+        is_drawn(
+            &format!("{head}void main() {{ gl_FragColor = vec4(0.0, VALUE, 0.0, 1.0); }}\n"),
+            &["--time", "1"],
+            GREEN,
+        );
+    }
+}
+
+#[test]
+fn a_sampler_without_an_image_is_black() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "uniform sampler2D photo, unused;\nvoid main() { gl_FragColor = vec4(0, 1, 0, 0) + texture2D(photo, gl_FragCoord.xy); }\n";
+    render(folder.path(), &[("toy.frag", text)], &[]).expect(
+        0,
+        &["toy.frag:1:19: warning: nothing gives the image `photo`", "`//@texture photo \"image.png\"`", "`unused`"],
+    );
+    assert_eq!(pixel(folder.path(), 9, 9), GREEN);
+}
+
 #[test]
 fn variables_that_are_not_set_start_at_0() {
     is_green(&[(

@@ -18,8 +18,13 @@ pub(super) const COMMON: &str = "common";
 pub(super) const KEY_FUNCTIONS: &str = "#iKeyboard";
 
 /// Names that a shader of WebGL uses, with names of the same length that toy.glsl defines.
-const WEBGL: [(&str, &str); 3] =
-    [("gl_FragCoord", "toyFragCoord"), ("gl_FragColor", "toyFragColor"), ("GL_ES", "toyES")];
+const WEBGL: [(&str, &str); 5] = [
+    ("gl_FragCoord", "toyFragCoord"),
+    ("gl_FragColor", "toyFragColor"),
+    ("gl_FrontFacing", "toyFrontFacing"),
+    ("GL_ES", "toyES"),
+    ("__VERSION__", "toy_VERSION"),
+];
 
 /// Words of GLSL 4.60 that are names in GLSL ES 1.00 or 3.00.
 const NAMES_OF_ES: [&str; 24] = [
@@ -65,6 +70,16 @@ pub(super) fn has_main(text: &str) -> bool {
     text.contains("main") && code(text).windows(3).any(|t| (t[0].text, t[1].text, t[2].text) == ("void", "main", "("))
 }
 
+/// The version of GLSL that a text is written in.
+pub(super) fn version(text: &str) -> u32 {
+    let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).take(3).collect();
+    match all.as_slice() {
+        [sign, word, number] if sign.kind == TokenKind::Directive && word.text == "version" => number.text.parse().ok(),
+        _ => None,
+    }
+    .unwrap_or(if is_shadertoy(text) { 300 } else { 100 })
+}
+
 /// Whether the code of a text has this word.
 pub(super) fn uses(text: &str, word: &str) -> bool {
     text.contains(word) && lines(text).iter().any(|line| find_word(&line.code, word).is_some())
@@ -100,6 +115,7 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
     let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).collect();
     let code = code(text);
     let mut edits = directives(text, pass);
+    edits.extend(never_compiled(text, &all));
     edits.extend(words(&all, has_main(text)));
     edits.extend(first_output(&all));
     edits.extend(empty_arguments(&all));
@@ -163,6 +179,31 @@ fn directives(text: &str, pass: &str) -> Vec<Edit> {
         }
     };
     text.split_inclusive('\n').filter_map(edit).collect()
+}
+
+/// Blanks after `#if 0`: the compiler refuses some words that WebGL skips there, as `3d` and a single quote.
+fn never_compiled(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
+    let directives: Vec<usize> = (0..all.len()).filter(|at| all[*at].kind == TokenKind::Directive).collect();
+    let word = |at: usize, after: usize| all.get(at + after).map_or("", |token| token.text);
+    let ends = |at: usize| all.get(at + 3).is_none_or(|next| !next.in_directive || next.kind == TokenKind::Directive);
+    let mut edits = Vec::new();
+    for (place, at) in directives.iter().enumerate() {
+        if word(*at, 1) != "if" || word(*at, 2) != "0" || !ends(*at) {
+            continue;
+        }
+        let mut depth = 0;
+        let end = directives[place + 1..].iter().find(|other| {
+            let is_end = depth == 0 && matches!(word(**other, 1), "else" | "elif" | "endif");
+            match word(**other, 1) {
+                "if" | "ifdef" | "ifndef" => depth += 1,
+                "endif" => depth -= 1,
+                _ => {}
+            }
+            is_end
+        });
+        edits.extend(end.map(|end| blank(text, all[at + 2].bytes.end..all[*end].bytes.start)));
+    }
+    edits
 }
 
 /// Names that toy.glsl or GLSL 4.60 uses otherwise.
@@ -300,6 +341,17 @@ mod tests {
         assert_eq!(with_names("'sampl_' : no such field"), "'sample' : no such field");
         let qualifiers = "shared float x;\nprecise float y;\nbuffer B { float z; };\n";
         assert_eq!(adapted(qualifiers, "image"), qualifiers);
+    }
+
+    #[test]
+    fn text_that_is_never_compiled_is_blank() {
+        let text = "#if 0\n3d \"\n#if A\nb\n#else\n#endif\n#else // c\nfloat d;\n#endif\n#if 0 + 1\ne\n#endif\n";
+        let found = adapted(text, "image");
+        let lines: Vec<&str> = found.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines, ["#if 0", "#else // c", "float d;", "#endif", "#if 0 + 1", "e", "#endif"]);
+        assert_eq!(found.len(), text.len());
+        let versions = [("void main() {}", 100), ("// a\n#version 330 core\n", 330), ("void mainImage(", 300)];
+        versions.iter().for_each(|(text, expected)| assert_eq!(version(text), *expected, "{text}"));
     }
 
     #[test]

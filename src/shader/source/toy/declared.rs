@@ -1,31 +1,33 @@
 //! The uniforms, inputs and outputs that a toy declares, and the values that the stage gives them.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::channel::channel_of;
 use crate::shader::glsl::syntax::outside_brackets;
 use crate::shader::glsl::{Token, TokenKind, code, tokens};
 
-/// The variables that toy.glsl or the stage defines. A declaration of them is dropped.
-const BUILT_IN: [&str; 18] = [
-    "iResolution",
-    "iTime",
-    "iGlobalTime",
-    "iTimeDelta",
-    "iFrameRate",
-    "iFrame",
-    "iMouse",
-    "iDate",
-    "iChannelTime",
-    "iChannelResolution",
-    "iSampleRate",
-    "u_time",
-    "u_delta",
-    "u_frame",
-    "u_date",
-    "u_resolution",
-    "u_mouse",
-    "v_texcoord",
+/// The arrays and constants that the stage defines. A declaration of them is dropped.
+const BUILT_IN: [&str; 3] = ["iChannelTime", "iChannelResolution", "iSampleRate"];
+/// The variables that the stage declares even if the file does not, and their types.
+const STANDARD: [(&str, &str); 17] = [
+    ("iResolution", "vec3"),
+    ("iTime", "float"),
+    ("iGlobalTime", "float"),
+    ("iTimeDelta", "float"),
+    ("iFrameRate", "float"),
+    ("iFrame", "int"),
+    ("iMouse", "vec4"),
+    ("iDate", "vec4"),
+    ("iChannelTime", "float[4]"),
+    ("iSampleRate", "float"),
+    ("u_time", "float"),
+    ("u_delta", "float"),
+    ("u_frame", "int"),
+    ("u_date", "vec4"),
+    ("u_resolution", "vec2"),
+    ("u_mouse", "vec2"),
+    ("v_texcoord", "vec2"),
 ];
 /// The types that can be made of a 0.
 pub(super) const TYPES: [&str; 19] = [
@@ -73,7 +75,7 @@ impl Declaration<'_> {
 
     /// Whether the stage declares its variables: those of plain types. Others stay where they are, and are 0.
     pub(super) fn is_moved(&self) -> bool {
-        TYPES.contains(&self.kind) && self.names.iter().all(|name| name.is_plain || is_built_in(name.text))
+        TYPES.contains(&self.kind) && self.names.iter().all(|name| name.is_plain || is_given(name.text))
     }
 
     /// The bytes behind a `//@ui` on the line of the declaration.
@@ -90,6 +92,11 @@ pub(super) fn is_built_in(name: &str) -> bool {
     let number = PARTS.iter().find_map(|part| name.strip_prefix(part));
     let is_part = number.is_some_and(|number| number.len() == 1 && number.as_bytes()[0].is_ascii_digit());
     is_channel || is_part || channel_of(name).is_some() || BUILT_IN.contains(&name) || BEFORE.contains(&name)
+}
+
+/// Whether the stage gives a name its value whatever the file declares.
+fn is_given(name: &str) -> bool {
+    is_built_in(name) || STANDARD.iter().any(|(known, _)| *known == name)
 }
 
 /// Whether the author names the file of an image.
@@ -118,6 +125,12 @@ pub(super) fn declarations<'a>(code: &[Token<'a>]) -> Vec<Declaration<'a>> {
 pub(super) fn outputs<'a>(code: &[Token<'a>]) -> Vec<&'a str> {
     let outputs = declarations(code).into_iter().filter(|declaration| declaration.storage == Storage::Output);
     outputs.flat_map(|declaration| declaration.names).map(|name| name.text).collect()
+}
+
+/// The names of the 2D images that a text declares.
+pub(super) fn samplers<'a>(code: &[Token<'a>]) -> Vec<&'a str> {
+    let flat = declarations(code).into_iter().filter(|declaration| declaration.kind == "sampler2D");
+    flat.flat_map(|declaration| declaration.names).filter(|name| name.is_plain).map(|name| name.text).collect()
 }
 
 fn declaration<'a>(statement: &[Token<'a>]) -> Option<Declaration<'a>> {
@@ -154,7 +167,7 @@ pub(super) struct Variable {
 
 enum Value {
     /// In GLSL.
-    Known(&'static str),
+    Known(String),
     /// The size of the image of a channel.
     SizeOf(usize),
     /// The rest of the `//@ui` of its slider.
@@ -163,7 +176,7 @@ enum Value {
 }
 
 /// The uniforms and inputs of a text that the stage declares.
-pub(super) fn variables(text: &str) -> Vec<Variable> {
+fn variables(text: &str) -> Vec<Variable> {
     let code = code(text);
     let declarations = declarations(&code).into_iter();
     let moved = declarations.filter(|declaration| declaration.storage != Storage::Output && declaration.is_moved());
@@ -184,6 +197,17 @@ pub(super) fn variables(text: &str) -> Vec<Variable> {
     moved.flat_map(of_declaration).collect()
 }
 
+/// The variables of texts, each name once.
+pub(super) fn variables_of(texts: &[String]) -> Vec<Variable> {
+    let mut out: Vec<Variable> = Vec::new();
+    for variable in texts.iter().flat_map(|text| variables(text)) {
+        if out.iter().all(|known| known.name != variable.name) {
+            out.push(variable);
+        }
+    }
+    out
+}
+
 /// The block of the sliders of some variables. Empty if there is none.
 pub(super) fn sliders(variables: &[Variable]) -> String {
     let member = |variable: &Variable| match &variable.value {
@@ -194,13 +218,14 @@ pub(super) fn sliders(variables: &[Variable]) -> String {
     if members.is_empty() { members } else { format!("uniform ToySliders {{\n{members}}} toy_sliders;\n") }
 }
 
-/// Macros for variables of toy.glsl that the author declares with fewer components.
-pub(super) fn narrowed(text: &str) -> String {
-    let code = code(text);
-    let is_narrow = |declaration: &Declaration<'_>| declaration.kind == "vec2";
-    let names = declarations(&code).into_iter().filter(is_narrow).flat_map(|declaration| declaration.names);
-    let names = names.filter(|name| matches!(name.text, "iResolution" | "iMouse"));
-    names.map(|Name { text, .. }| format!("#define {text} ({text}.xy)\n")).collect()
+/// Adds the variables that no file declares. `owned`: the names that the files declare as their own.
+pub(super) fn add_standard(variables: &mut Vec<Variable>, owned: &BTreeSet<String>) {
+    for (name, kind) in STANDARD {
+        let value = known(name, kind).filter(|_| !owned.contains(name));
+        if let Some(value) = value.filter(|_| variables.iter().all(|other| other.name != name)) {
+            variables.push(Variable { name: name.to_owned(), kind: kind.to_owned(), value });
+        }
+    }
 }
 
 /// The declarations of the variables.
@@ -208,7 +233,7 @@ pub(super) fn globals(variables: &[Variable]) -> String {
     variables.iter().map(|Variable { name, kind, .. }| format!("{kind} {name};\n")).collect()
 }
 
-/// The function that gives the variables their values.
+/// The function that gives the variables their values. It comes before the files, whose macros may have the same names.
 pub(super) fn assignments(variables: &[Variable]) -> String {
     let line = |Variable { name, value, .. }: &Variable| match value {
         Value::Known(value) => format!("    {name} = {value};\n"),
@@ -225,27 +250,43 @@ fn known(name: &str, kind: &str) -> Option<Value> {
     let plain =
         plain.strip_prefix(['u', 'i', 'v']).filter(|rest| rest.starts_with(char::is_uppercase)).unwrap_or(plain);
     let plain = plain.to_ascii_lowercase().replace('_', "");
-    let value = match (plain.as_str(), kind) {
-        ("time" | "globaltime" | "elapsedtime", "float") => "iTime",
-        ("timedelta" | "deltatime" | "delta", "float") => "iTimeDelta",
-        ("framerate" | "fps", "float") => "iFrameRate",
-        ("frame" | "framecount", "int") => "iFrame",
-        ("frame" | "framecount", "float") => "float(iFrame)",
-        ("resolution" | "screensize" | "viewport", "vec2") => "iResolution.xy",
-        ("resolution" | "screensize" | "viewport", "vec3") => "iResolution",
+    let scalar = match (plain.as_str(), kind) {
+        ("time" | "globaltime" | "elapsedtime", "float") => "toy_iTime",
+        ("timedelta" | "deltatime" | "delta", "float") => "toy_iTimeDelta",
+        ("framerate" | "fps", "float") => "toy_iFrameRate",
+        ("frame" | "framecount", "int") => "toy_iFrame",
+        ("frame" | "framecount", "float") => "float(toy_iFrame)",
+        _ if (name, kind) == ("iChannelTime", "float[4]") => "toy_iChannelTime",
+        _ if (name, kind) == ("iSampleRate", "float") => "toy_iSampleRate",
+        _ => "",
+    };
+    if !scalar.is_empty() {
+        return Some(Value::Known(scalar.to_owned()));
+    }
+    let (vector, length) = match plain.as_str() {
+        "viewport" if kind == "vec4" => return None,
+        "resolution" | "screensize" | "viewport" => ("toy_iResolution", 3),
+        "mouse" if kind == "vec4" || name == "iMouse" => ("toy_iMouse", 4),
         // GLSL Sandbox has it from 0 to 1.
-        ("mouse", "vec2") if name == "mouse" => "iMouse.xy / iResolution.xy",
-        ("mouse", "vec2") => "iMouse.xy",
-        ("mouse", "vec4") => "iMouse",
-        ("date", "vec4") => "iDate",
-        ("uv" | "texcoord" | "texcoords" | "texturecoord" | "texcoord0", "vec2") => "toyFragCoord.xy / iResolution.xy",
-        ("surfaceposition", "vec2") => "(toyFragCoord.xy - 0.5 * iResolution.xy) / iResolution.y",
-        (_, "vec2") => {
-            return channel_of(name.strip_suffix("Resolution")?).map(Value::SizeOf);
-        }
+        "mouse" if name == "mouse" => ("(toy_iMouse.xy / toy_iResolution.xy)", 2),
+        "mouse" => ("toy_iMouse.xy", 2),
+        "date" => ("toy_iDate", 4),
+        "uv" | "texcoord" | "texcoords" | "texturecoord" | "texcoord0" => ("(toyFragCoord.xy / toy_iResolution.xy)", 2),
+        "surfaceposition" => ("((toyFragCoord.xy - 0.5 * toy_iResolution.xy) / toy_iResolution.y)", 2),
+        _ if kind == "vec2" => return channel_of(name.strip_suffix("Resolution")?).map(Value::SizeOf),
         _ => return None,
     };
-    Some(Value::Known(value))
+    resized(vector, length, kind).map(Value::Known)
+}
+
+/// A vector of `length` components as one of another type, which ends with 0 if it is longer.
+fn resized(vector: &str, length: usize, kind: &str) -> Option<String> {
+    let wanted: usize = kind.strip_prefix("vec")?.parse().ok()?;
+    Some(match wanted.checked_sub(length) {
+        None => format!("{vector}.{}", &"xyz"[..wanted]),
+        Some(0) => vector.to_owned(),
+        Some(more) => format!("{kind}({vector}{})", ", 0.0".repeat(more)),
+    })
 }
 
 /// The rest of the `//@ui` of a uniform that nobody else sets.
@@ -278,20 +319,55 @@ mod tests {
         let found = variables(text);
         let lines = globals(&found) + &assignments(&found);
         for line in [
-            "time = iTime;",
+            "    time = toy_iTime;",
             "speed = toy_sliders.speed;",
-            "mouse = iMouse.xy / iResolution.xy;",
+            "mouse = (toy_iMouse.xy / toy_iResolution.xy);",
             "u_tex1Resolution = iChannelResolution[1].xy;",
             "tint_color = toy_sliders.tint_color;",
-            "vUv = toyFragCoord.xy / iResolution.xy;",
+            "vUv = (toyFragCoord.xy / toy_iResolution.xy);",
+            "iTime = toy_iTime;",
+            "iResolution = toy_iResolution;",
             "mat4 camera;",
             "vec3 normal;",
         ] {
             assert!(lines.contains(line), "{lines}");
         }
-        assert_eq!(found.len(), 8, "{lines}");
+        assert_eq!(found.len(), 10, "{lines}");
         let block = "uniform ToySliders {\n    float speed;   //@ui \"speed\" 0..1 = 0\n    vec3 tint_color;   \
                      //@ui \"Tint\" color = 1 0 0\n} toy_sliders;\n";
         assert_eq!(sliders(&found), block);
+    }
+    #[test]
+    fn known_values_have_the_declared_type() {
+        for (text, expected) in [
+            ("uniform vec3 u_mouse;", "u_mouse = vec3(toy_iMouse.xy, 0.0);"),
+            ("uniform vec4 u_mouse;", "u_mouse = toy_iMouse;"),
+            ("uniform vec2 iMouse;", "iMouse = toy_iMouse.xy;"),
+            ("uniform vec2 iResolution;", "iResolution = toy_iResolution.xy;"),
+            ("uniform vec3 u_resolution;", "u_resolution = toy_iResolution;"),
+            ("uniform vec4 u_resolution;", "u_resolution = vec4(toy_iResolution, 0.0);"),
+            ("varying vec3 vUv;", "vUv = vec3((toyFragCoord.xy / toy_iResolution.xy), 0.0);"),
+            ("uniform float u_time = 1.0;", "u_time = toy_iTime;"),
+            ("uniform vec4 viewport;", "viewport = toy_sliders.viewport;"),
+        ] {
+            let lines = assignments(&variables(text));
+            assert!(lines.contains(expected), "{text} {lines}");
+        }
+    }
+
+    #[test]
+    fn a_file_may_have_names_of_other_playgrounds() {
+        let names = |owned: &[&str]| {
+            let mut found = variables("uniform vec2 u_mouse;");
+            add_standard(&mut found, &owned.iter().map(|name| (*name).to_owned()).collect());
+            globals(&found)
+        };
+        let all = names(&[]);
+        for line in ["float iTime;\n", "float[4] iChannelTime;\n", "float iSampleRate;\n", "vec2 v_texcoord;\n"] {
+            assert!(all.contains(line), "{all}");
+        }
+        assert_eq!(all.lines().count(), STANDARD.len());
+        let own = names(&["iTime", "u_resolution"]);
+        assert!(!own.contains(" iTime;") && !own.contains(" u_resolution;") && own.contains(" u_time;"), "{own}");
     }
 }

@@ -8,7 +8,9 @@ use super::declared::{self, BEFORE};
 use crate::shader::glsl::code;
 
 /// The image of a channel that names none.
-pub(super) const NOISE: &str = "opened/noise.png";
+pub(super) const NOISE: &str = "toy/noise.png";
+/// The image of a sampler that nothing names.
+pub(super) const BLACK: &str = "toy/black.png";
 /// The pass that draws the state of the keys, for files that read it.
 pub(super) const KEYBOARD: &str = "toy_keyboard";
 /// Shadertoy has four buffers.
@@ -16,6 +18,8 @@ pub(super) const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buff
 
 /// The names before the number of an image that glslViewer draws from a part of a file: its sampler, and the macro of the part.
 const PARTS: [(&str, &str); 2] = [(declared::PARTS[0], "BUFFER_"), (declared::PARTS[1], "DOUBLE_BUFFER_")];
+/// Images of the built-in tree that a file can read.
+const IMAGES: [&str; 4] = ["picture", "depth", "behind", KEYBOARD];
 /// Most parts of a file.
 const MAX_PARTS: usize = 8;
 
@@ -59,6 +63,25 @@ pub(super) fn keeps_image(drawings: &[Drawing]) -> bool {
         })
     };
     drawings.iter().any(reads) || BEFORE.iter().any(|name| uses(&image.text, name))
+}
+
+/// The samplers of drawings whose image nothing names, each with the index of the first drawing that declares it.
+pub(super) fn without_image(drawings: &[Drawing]) -> Vec<(usize, String)> {
+    let is_named = |name: &str| {
+        let pass = name.strip_prefix("before_").unwrap_or(name);
+        IMAGES.contains(&pass)
+            || declared::is_built_in(name)
+            || drawings.iter().any(|drawing| drawing.pass == pass || declared::has_texture(&drawing.text, name))
+    };
+    let mut out: Vec<(usize, String)> = Vec::new();
+    for (place, drawing) in drawings.iter().enumerate() {
+        for name in declared::samplers(&code(&drawing.text)) {
+            if !is_named(name) && out.iter().all(|(_, other)| other != name) {
+                out.push((place, name.to_owned()));
+            }
+        }
+    }
+    out
 }
 
 /// Declares the channels that a drawing, or the text that all files share, uses.
@@ -113,6 +136,8 @@ pub(super) fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> 
     if has_key_functions(text) || has_key_functions(shared) {
         lines.insert(format!("uniform sampler2D {KEYBOARD};\n"));
     }
+    let black = without_image(drawings).into_iter().filter(|(place, _)| *place == index);
+    lines.extend(black.map(|(_, name)| format!("//@texture {name} \"{BLACK}\"\n")));
     lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
     lines.into_iter().collect()
 }

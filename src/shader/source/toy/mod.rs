@@ -19,6 +19,7 @@ mod drawing;
 mod explain;
 mod initial;
 mod noise;
+mod own;
 mod problems;
 
 use std::collections::BTreeSet;
@@ -30,10 +31,11 @@ use super::read::{check_text, names_in, read_anywhere, read_bytes, read_file};
 use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{code, includes};
-use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
+use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses, version};
 use channel::{Channel, channels};
-use declared::{Variable, assignments, globals, narrowed, outputs, sliders, variables};
-use drawing::{BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image, parts};
+use declared::{add_standard, assignments, globals, outputs, sliders, variables_of};
+use drawing::{BLACK, BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image, parts, without_image};
+use own::OwnNames;
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -121,6 +123,7 @@ impl Toy {
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match below(path.as_str(), OPENED) {
             _ if path.as_str() == NOISE => noise::png().map_err(SourceError::Io),
+            _ if path.as_str() == BLACK => noise::black().map_err(SourceError::Io),
             Some(relative) => read_bytes(self.folder(), relative, MAX_IMAGE_BYTES),
             None => Ok(embedded::read(None, path).ok_or(SourceError::Missing)?.to_vec()),
         }
@@ -180,6 +183,18 @@ impl Toy {
             out.extend(problems::problems(&self.folder().join(file).display().to_string(), &text, self.folder()));
         }
         out
+    }
+
+    /// Warnings about samplers whose image no file names.
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        let drawings = self.drawings();
+        let unknown = without_image(&drawings);
+        let warning = |(place, name): &(usize, String)| {
+            let Drawing { file, text, .. } = &drawings[*place];
+            let shown = self.folder().join(file).display().to_string();
+            problems::black(&shown, text, name)
+        };
+        unknown.iter().map(warning).collect()
     }
 
     /// The files whose change changes the tree. Some may not exist yet.
@@ -286,26 +301,22 @@ impl Toy {
         let common = self.common();
         let own = drawings.iter().map(|drawing| (drawing.file.as_str(), drawing.text.as_str()));
         let common = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
-        sliders(&self.variables(common.chain(own)))
+        sliders(&variables_of(&self.texts(common.chain(own))))
     }
 
-    /// The variables of files and of what they include, each name once.
-    fn variables<'a>(&self, files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Vec<Variable> {
+    /// The texts of files and of what they include.
+    fn texts<'a>(&self, files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Vec<String> {
         let mut open: Vec<(TreePath, String)> =
             files.into_iter().map(|(file, text)| (TreePath::from(file), text.to_owned())).collect();
-        let (mut out, mut seen): (Vec<Variable>, BTreeSet<TreePath>) = Default::default();
+        let (mut out, mut seen): (Vec<String>, BTreeSet<TreePath>) = Default::default();
         while let Some((path, text)) = open.pop() {
-            for variable in variables(&text) {
-                if out.iter().all(|known| known.name != variable.name) {
-                    out.push(variable);
-                }
-            }
             for name in includes(&text).map(|include| include.name) {
                 let places = path.sibling(name).into_iter().chain(TreePath::parse(name));
                 let found = places.filter_map(|place| Some((self.text(place.as_str()).ok()?, place)));
                 let found = { found }.next().filter(|(_, place)| seen.insert(place.clone()));
                 open.extend(found.map(|(text, place)| (place, text)));
             }
+            out.push(text);
         }
         out
     }
@@ -316,6 +327,7 @@ impl Toy {
         let is_picture = index + 1 == drawings.len() && !keeps_image(drawings);
         let goes = if is_picture { "to=picture after=tonemap" } else { "keep format=rgba32f rows=up" };
         let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n#define TOY_FILE\n");
+        out += &format!("#define toy_VERSION {}\n", version(text));
         if !is_picture {
             out += "#define TOY_BUFFER\n";
         }
@@ -326,17 +338,19 @@ impl Toy {
         let common = self.common();
         let shared = common.as_ref().map_or("", |(_, text)| text);
         let files = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
-        let own = self.variables(files.chain([(file.as_str(), text.as_str())]));
-        if !own.is_empty() {
-            out += "#define TOY_VARIABLES\n";
-        }
+        let texts = self.texts(files.chain([(file.as_str(), text.as_str())]));
+        let mut own = OwnNames::default();
+        texts.iter().for_each(|text| own.add(text));
+        let mut variables = variables_of(&texts);
+        add_standard(&mut variables, &own.declared);
         out += "#include \"toy.glsl\"\n";
         if !self.sliders(drawings).is_empty() {
             out += &format!("#include \"{SLIDERS}\"\n");
         }
-        out += &globals(&own);
-        out += &narrowed(text);
+        out += &globals(&variables);
         out += &declarations(drawings, index, shared);
+        out += &assignments(&variables);
+        out += &own.removed_macros();
         if has_key_functions(text) || has_key_functions(shared) {
             out += "#include \"toy/keys.glsl\"\n";
         }
@@ -346,7 +360,7 @@ impl Toy {
         for file in common.iter().map(|(file, _)| file).chain([file]) {
             out += &format!("#include \"{OPENED}/{file}\"\n");
         }
-        if own.is_empty() { out } else { out + &assignments(&own) }
+        out
     }
 }
 

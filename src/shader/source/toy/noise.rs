@@ -1,8 +1,8 @@
-//! The image of a channel without one: 256 x 256 random colors, as many shaders expect there.
+//! The images of samplers without one. For a channel, these are 256 x 256 random colors, as many shaders expect there.
 
 use std::io::Cursor;
 
-use image::{ImageFormat, RgbaImage};
+use image::{ImageFormat, Rgba, RgbaImage};
 
 const SIDE: u32 = 256;
 
@@ -12,6 +12,15 @@ pub(super) fn png() -> Result<Vec<u8>, String> {
     for (x, y, pixel) in image.enumerate_pixels_mut() {
         pixel.0 = hash(x + SIDE * y).to_le_bytes();
     }
+    encoded(&image)
+}
+
+/// A black pixel as a PNG file, which WebGL reads from a sampler without an image.
+pub(super) fn black() -> Result<Vec<u8>, String> {
+    encoded(&RgbaImage::from_pixel(1, 1, Rgba([0, 0, 0, 255])))
+}
+
+fn encoded(image: &RgbaImage) -> Result<Vec<u8>, String> {
     let mut out = Cursor::new(Vec::new());
     image.write_to(&mut out, ImageFormat::Png).map_err(|error| error.to_string())?;
     Ok(out.into_inner())

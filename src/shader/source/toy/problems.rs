@@ -10,7 +10,7 @@ use super::beside::{is_there, not_found};
 use super::channel::{CHANNELS, Channel, Kind, OPTIONS, Sampler, channel, channels, samplers};
 use crate::message::{did_you_mean, either};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::glsl::{Line, is_word, lines};
+use crate::shader::glsl::{Line, find_word, is_word, lines};
 use crate::shader::source::TreePath;
 
 /// Shadertoy's entry point.
@@ -64,6 +64,17 @@ pub(super) fn without_entry(shown: &str, text: &str) -> Diagnostic {
     match OTHER_ENTRIES.iter().find(|(name, _)| uses(text, name)) {
         Some((name, help)) => error.with_help(format!("this file has `{name}`: {help}")),
         None => error,
+    }
+}
+
+/// The warning about a sampler that reads black.
+pub(super) fn black(shown: &str, text: &str, name: &str) -> Diagnostic {
+    let found = lines(text).into_iter().find_map(|line| Some((find_word(&line.code, name)?, line)));
+    let warning = Diagnostic::warning(shown, format!("nothing gives the image `{name}`, so it is black"))
+        .with_help(format!("name its file on a line of its own: `//@texture {name} \"image.png\"`"));
+    match found {
+        Some((bytes, line)) => warning.on_line(line.number, Some(line.raw)).under(bytes),
+        None => warning,
     }
 }
 

@@ -56,11 +56,11 @@ fn named_files_are_drawn_before_those_that_read_them() {
     let text = stage(&toy, "image");
     assert!(text.contains("#define iChannel0 buffer_blur\n"), "{text}");
     // Without a file, a channel is noise.
-    assert!(text.contains("//@texture image_noise \"opened/noise.png\""), "{text}");
+    assert!(text.contains("//@texture image_noise \"toy/noise.png\""), "{text}");
     let text = stage(&toy, "buffer_blur");
     assert!(text.contains("#define iChannel0 before_buffer_blur\n"), "{text}");
     assert!(text.contains("#define iChannel1 buffer_blur_channel1\n"), "{text}");
-    assert!(toy.read_bytes(&TreePath::from("opened/noise.png")).unwrap().starts_with(b"\x89PNG"));
+    assert!(toy.read_bytes(&TreePath::from("toy/noise.png")).unwrap().starts_with(b"\x89PNG"));
     let watched = toy.watched();
     ["t.frag", "blur.glsl", "spots.png", "common.glsl", "t.buffer_c.glsl"].iter().for_each(|name| {
         assert!(watched.contains(&folder.path().join(name)), "{name}");

@@ -1,0 +1,106 @@
+//! The names that a toy declares or defines itself, which the stage leaves to it.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::declared::declarations;
+use crate::shader::glsl::{Token, TokenKind, tokens};
+
+/// Macros of toy.glsl and of the stage for names that a file may define or declare itself.
+const MACROS: [&str; 13] = [
+    "texture2D",
+    "textureCube",
+    "texture2DProj",
+    "texture2DLod",
+    "texture2DLodEXT",
+    "textureCubeLodEXT",
+    "texture2DGradEXT",
+    "gl_FragDepthEXT",
+    "lowp",
+    "mediump",
+    "highp",
+    "HW_PERFORMANCE",
+    "iChannelResolution",
+];
+const PRECISIONS: [&str; 3] = ["lowp", "mediump", "highp"];
+
+/// The variables, functions, types and macros of some texts, at file level and outside of `#if`: only the compiler knows which of
+/// the others exist.
+#[derive(Default)]
+pub(super) struct OwnNames {
+    pub(super) declared: BTreeSet<String>,
+    defined: BTreeSet<String>,
+}
+
+impl OwnNames {
+    /// Adds the names of a text. Uniforms, inputs and outputs, which the stage replaces, are left out.
+    pub(super) fn add(&mut self, text: &str) {
+        let tokens = unconditional(text);
+        let is_define = |three: &&[Token<'_>]| three[0].kind == TokenKind::Directive && three[1].text == "define";
+        self.defined.extend(tokens.windows(3).filter(is_define).map(|three| three[2].text.to_owned()));
+        let code: Vec<Token<'_>> = tokens.into_iter().filter(|token| !token.in_directive).collect();
+        let replaced: Vec<Range<usize>> =
+            declarations(&code).into_iter().map(|declaration| declaration.bytes).collect();
+        let mut depth = 0_usize;
+        for (before, token) in code.iter().zip(code.iter().skip(1)) {
+            match before.text {
+                "{" | "(" | "[" => depth += 1,
+                "}" | ")" | "]" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            let may_follow = before.kind == TokenKind::Word || matches!(before.text, "," | "}" | "]");
+            let is_name = token.kind == TokenKind::Word && !PRECISIONS.contains(&token.text);
+            let is_replaced = || replaced.iter().any(|bytes| bytes.contains(&token.bytes.start));
+            if depth == 0 && may_follow && is_name && !is_replaced() {
+                self.declared.insert(token.text.to_owned());
+            }
+        }
+    }
+
+    /// The lines that remove the macros of these names.
+    pub(super) fn removed_macros(&self) -> String {
+        let is_own = |name: &&&str| self.declared.contains(**name) || self.defined.contains(**name);
+        MACROS.iter().filter(is_own).map(|name| format!("#undef {name}\n")).collect()
+    }
+}
+
+/// The tokens of a text outside of comments and of `#if`.
+fn unconditional(text: &str) -> Vec<Token<'_>> {
+    let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).collect();
+    let (mut out, mut depth) = (Vec::new(), 0_usize);
+    for (at, token) in all.iter().enumerate() {
+        match all.get(at + 1).map_or("", |next| next.text) {
+            _ if token.kind != TokenKind::Directive => {}
+            "if" | "ifdef" | "ifndef" => depth += 1,
+            "endif" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth == 0 {
+            out.push(token.clone());
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_at_file_level_are_a_files_own() {
+        let mut own = OwnNames::default();
+        own.add(
+            "precision lowp float;\nuniform float time;\nconst vec4 iMouse = vec4(a, b.x), other[2];\nfloat iTime = f(c), after;\n\
+             void u_time(float parameter) { float local; }\nstruct Own { float field; } v_texcoord;\n#define texture2D(a) a\n\
+             #ifdef GL_ES\nfloat maybe;\n#define mediump\n#endif\nfloat last;\n",
+        );
+        let declared: Vec<&str> = own.declared.iter().map(String::as_str).collect();
+        for name in ["iMouse", "other", "iTime", "after", "u_time", "Own", "v_texcoord", "last"] {
+            assert!(declared.contains(&name), "{name}: {declared:?}");
+        }
+        for name in ["time", "a", "b", "c", "parameter", "local", "field", "maybe", "lowp"] {
+            assert!(!declared.contains(&name), "{name}: {declared:?}");
+        }
+        assert_eq!(own.removed_macros(), "#undef texture2D\n");
+    }
+}
