@@ -84,7 +84,7 @@ impl Subsampled {
         let (size, position) = (header.layer_size, header.own_attributes.layer_position);
         for (channel, steps) in header.channels.list.iter_mut().zip(&self.sampling) {
             let fits = |step: usize, size: usize, position: i32| {
-                i32::try_from(step).is_ok_and(|whole| step > 0 && position % whole == 0) && size % step == 0
+                i32::try_from(step).is_ok_and(|whole| step > 0 && position % whole == 0) && size.is_multiple_of(step)
             };
             if !fits(steps.x(), size.x(), position.x()) || !fits(steps.y(), size.y(), position.y()) {
                 return Err(Error::Invalid("size of a subsampled channel".into()));
@@ -131,7 +131,7 @@ impl Plane {
 
     /// Takes the samples of a row of pixels, if it has any.
     fn take(&mut self, row: usize, kind: SampleType, bytes: &mut &[u8]) -> Result<()> {
-        if row % self.sampling.y() != 0 {
+        if !row.is_multiple_of(self.sampling.y()) {
             return Ok(());
         }
         let width = self.size.width();
