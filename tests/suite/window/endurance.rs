@@ -64,6 +64,8 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
     viewer.running.event("ready");
     let first = viewer.screenshot();
     let left = first.width();
+    // Panels move until they have their sizes.
+    viewer.rests();
     let before = viewer.screen();
     let text = viewer.tree.read(TONEMAP).replace(
         "void main() {",
@@ -75,8 +77,9 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
     let differs =
         |screen: &RgbaImage, y: u32| (left..WIDTH - 16).any(|x| screen.get_pixel(x, y) != before.get_pixel(x, y));
     let row = |screen: &RgbaImage| TILES.into_iter().find(|y| differs(screen, *y));
-    let after = viewer.until_screen("the constant's row", |screen| row(screen).is_some());
-    let y = row(&after).unwrap() + 8;
+    viewer.until_screen("the constant's row", |screen| row(screen).is_some());
+    viewer.rests();
+    let y = row(&viewer.screen()).unwrap() + 8;
     // The background alone is left.
     let is_plain = |shot: &RgbaImage| shot.pixels().all(|pixel| pixel == shot.get_pixel(0, 0));
     assert!(!is_plain(&first), "the model is not to be seen");
