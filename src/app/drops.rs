@@ -18,9 +18,9 @@ pub(super) struct Drops {
     last: Vec<PathBuf>,
 }
 
-/// What happened to files that came together.
+/// An event of files that came together.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Happened {
+pub(super) enum DropEvent {
     Dropped(Vec<PathBuf>),
     /// The files of the last drop are dragged again, though perhaps by nobody.
     Repeated,
@@ -38,15 +38,15 @@ impl Drops {
         self.dropped.push(path);
     }
 
-    /// What happened since the last call, once all events were told.
-    pub(super) fn happened(&mut self) -> Vec<Happened> {
+    /// The events since the last call, once winit has told all of them.
+    pub(super) fn take_events(&mut self) -> Vec<DropEvent> {
         let mut happened = Vec::new();
         if !self.dropped.is_empty() {
             self.last.clone_from(&self.dropped);
-            happened.push(Happened::Dropped(std::mem::take(&mut self.dropped)));
+            happened.push(DropEvent::Dropped(std::mem::take(&mut self.dropped)));
         }
         if !self.hovered.is_empty() && std::mem::take(&mut self.last) == std::mem::take(&mut self.hovered) {
-            happened.push(Happened::Repeated);
+            happened.push(DropEvent::Repeated);
         }
         happened
     }
@@ -74,8 +74,8 @@ pub(super) fn forget(_: &Window) {}
 /// Sends a window the messages of a drag of files that leaves it and enters it again.
 #[cfg(target_os = "linux")]
 fn tell_of_return(window: u32) -> Result<(), Box<dyn std::error::Error>> {
-    use x11rb::connection::Connection as _;
     use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt as _, EventMask};
+    use x11rb::wrapper::ConnectionExt as _;
 
     /// Version 5 of the protocol, in the byte where a message has it.
     const VERSION: u32 = 5 << 24;
@@ -88,8 +88,8 @@ fn tell_of_return(window: u32) -> Result<(), Box<dyn std::error::Error>> {
         let message = ClientMessageEvent::new(32, window, kind?.reply()?.atom, data);
         server.send_event(false, window, EventMask::NO_EVENT, message)?;
     }
-    server.flush()?;
-    Ok(())
+    // A server that finds a connection closed does not read what was sent on it before.
+    Ok(server.sync()?)
 }
 
 #[cfg(test)]
@@ -102,20 +102,20 @@ mod tests {
         let files = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
         let both = files(&["a.glb", "b.glb"]);
         both.iter().for_each(|file| drops.hover(file.clone()));
-        assert_eq!(drops.happened(), []);
+        assert_eq!(drops.take_events(), []);
         both.iter().for_each(|file| drops.release(file.clone()));
-        assert_eq!(drops.happened(), [Happened::Dropped(both.clone())]);
+        assert_eq!(drops.take_events(), [DropEvent::Dropped(both.clone())]);
         both.iter().for_each(|file| drops.hover(file.clone()));
-        assert_eq!(drops.happened(), [Happened::Repeated]);
+        assert_eq!(drops.take_events(), [DropEvent::Repeated]);
         both.iter().for_each(|file| drops.hover(file.clone()));
-        assert_eq!(drops.happened(), [], "it is another drag of these files");
+        assert_eq!(drops.take_events(), [], "it is another drag of these files");
         // A late answer may come with the drop, and another drag is none.
         drops.release("a.glb".into());
         drops.hover("a.glb".into());
-        assert_eq!(drops.happened(), [Happened::Dropped(files(&["a.glb"])), Happened::Repeated]);
+        assert_eq!(drops.take_events(), [DropEvent::Dropped(files(&["a.glb"])), DropEvent::Repeated]);
         drops.release("a.glb".into());
-        drops.happened();
+        drops.take_events();
         drops.hover("b.glb".into());
-        assert_eq!(drops.happened(), []);
+        assert_eq!(drops.take_events(), []);
     }
 }

@@ -55,7 +55,7 @@ use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
 use actions::sessions::remember_session;
 use closing::Closing;
-use drops::{Drops, Happened};
+use drops::{DropEvent, Drops};
 use ending::Ending;
 use engine::Engine;
 use frames::background::Next;
@@ -226,10 +226,10 @@ impl ApplicationHandler<Message> for App {
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         let mut files = Vec::new();
-        for happened in open.drops.happened() {
-            match happened {
-                Happened::Dropped(dropped) => files = dropped,
-                Happened::Repeated => drops::forget(&open.window),
+        for event in open.drops.take_events() {
+            match event {
+                DropEvent::Dropped(dropped) => files = dropped,
+                DropEvent::Repeated => drops::forget(&open.window),
             }
         }
         if files.is_empty() {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::controls::{WARNING, choose, count};
 use crate::support::window::Viewer;
 use crate::support::xdnd::{drop_file, drop_file_and_answer_late, drop_files};
-use crate::support::{Tree, glb, is_long, open_image};
+use crate::support::{Tree, glb, open_image};
 
 const RECENT: &str = "state/specula/recent.json";
 const SESSIONS: &str = "state/specula/sessions.json";
@@ -58,13 +58,8 @@ fn a_model_is_dropped_with_its_files_and_a_damaged_one_changes_no_setting() {
 }
 
 /// While frames are slow, a file manager answers twice what it drags, and once after the drop. That answer is none of the next drag.
-/// In a long run alone: one of two runs on a quiet machine ended with a second drop that the window did not finish. This source drops within
-/// milliseconds of its first movement; the message that makes winit forget may come after that.
 #[test]
 fn a_second_drop_opens_its_own_file_whatever_the_first_said_late() {
-    if !is_long() {
-        return;
-    }
     let tree = Tree::new();
     let (first, second) = (tree.beside("first.glb"), tree.beside("second.glb"));
     std::fs::write(&first, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
