@@ -48,7 +48,7 @@ pub struct Difference {
     pub confidence: f64,
     /// How many pairs were measured.
     pub pairs: usize,
-    /// What follows.
+    /// The conclusion.
     pub verdict: Verdict,
 }
 

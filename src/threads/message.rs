@@ -83,7 +83,7 @@ pub(crate) enum Message {
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.
     OperationsChecked(u64, Result<Arc<CheckedPicture>, String>),
-    /// What the functions of a stage cost, for the request with this number.
+    /// The costs of the functions of a stage, for the request with this number.
     FunctionsTimed(u64, Result<Arc<StageCosts>, String>),
     /// By how much an older version of the shaders is slower, for the request with this number.
     VersionTimed(u64, Result<Difference, String>),

@@ -29,7 +29,7 @@ pub(crate) struct TimedPicture {
 
 /// The question about the picture.
 pub(crate) enum TimeQuestion {
-    /// What the functions of a stage cost; without a stage, of the one that draws the picture.
+    /// The costs of the functions of a stage; without a stage, of the one that draws the picture.
     Functions(Option<String>, Vec<String>),
     /// By how much an older version of the shaders differs from the newest one.
     Version(OlderVersion),

@@ -23,7 +23,7 @@ pub(in crate::app) struct WantedCosts {
 /// A question about a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Question {
-    /// What functions cost.
+    /// The costs of functions.
     Functions(WantedCosts),
     /// How much slower the version with this number is than the newest.
     Version(u64),
@@ -35,7 +35,7 @@ type Answer<T> = Result<T, String>;
 /// The store.
 #[derive(Default)]
 pub(in crate::app) struct Costs {
-    /// What the user has asked for and what has not been answered.
+    /// The questions of the user, and those that have not been answered.
     wanted: Option<WantedCosts>,
     /// The question that is being measured, and its number.
     asked: Option<(PictureSubject, Question, u64)>,
@@ -173,22 +173,14 @@ impl Costs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Settings;
+    use crate::app::state::trace::sample::subject;
     use crate::statistics::Verdict;
 
     #[test]
     fn a_difference_is_of_one_set_of_shaders() {
         // Another tree, or the same one after a restart, has a generation of the same number.
         let [tree, other] = [(); 2].map(|()| Arc::new(ShaderSet { generation: 2, ..ShaderSet::default() }));
-        let picture = PictureSubject {
-            size: (64, 48),
-            settings: Arc::new(Settings::default()),
-            shaders: tree.clone(),
-            revisions: Default::default(),
-            model: Default::default(),
-            light: Default::default(),
-            clock: Default::default(),
-        };
+        let picture = subject(&tree).picture;
         let difference = Difference {
             base_ms: 1.0,
             change_ms: 0.5,

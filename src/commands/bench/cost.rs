@@ -41,7 +41,7 @@ pub(super) fn print(result: &Value) {
     out!("{:<NAME$}  {:>9}  {:>9}  {:>7}  {:>9}  figures", "function", "ms", "± ms", "frame", "calls");
     for of in result["functions"].as_array().into_iter().flatten() {
         let (ms, margin) = (number(&of["ms"]), number(&of["margin_ms"]));
-        // What is not significant is told by its bound.
+        // A difference that is not significant is told by its bound.
         let [ms, share] = match of["significant"].as_bool().unwrap_or_default() {
             true => [format!("{ms:.3}"), format!("{:.1} %", 100.0 * number(&of["share"]))],
             false => [format!("< {:.3}", ms.max(0.0) + margin), "0 %".to_owned()],

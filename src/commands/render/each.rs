@@ -11,7 +11,7 @@ use super::Failure;
 use super::args::Args;
 use crate::commands::common::Models;
 
-/// What stands for the name of a model in `--out`.
+/// The placeholder for the name of a model in `--out`.
 const NAME: &str = "{name}";
 
 /// Calls `draw` with the options of each model. A model that cannot be drawn does not keep the others away.

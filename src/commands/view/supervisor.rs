@@ -29,7 +29,7 @@ pub fn session() -> Option<PathBuf> {
     std::env::var_os(VARIABLE).map(PathBuf::from)
 }
 
-/// What becomes of this process's standard input.
+/// The use of this process's standard input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forward {
     /// Nobody reads it.

@@ -104,7 +104,7 @@ fn decompress(header: &mut Header, compressed: Vec<u8>, section: IntegerBounds) 
         columns * rows * channel.sample_type.bytes_per_sample()
     };
     let bytes = header.channels.list.iter().map(bytes_of).sum::<usize>();
-    // What compression does not shorten is stored as it is.
+    // A block that compression does not shorten is stored as it is.
     if compressed.len() == bytes {
         return Ok(compressed);
     }

@@ -51,7 +51,7 @@ pub struct CheckedStages<'a> {
     undefined: bool,
 }
 
-/// What is checked besides what the author asserts and prints.
+/// The checks besides those that the author asserts and prints.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Operations {
     /// Operations whose result GLSL leaves open.

@@ -27,6 +27,14 @@ pub(super) struct Linked {
     warnings: Vec<Diagnostic>,
 }
 
+/// Drops the modes that show values of a model, which a single file does not draw. Its picture is displayed as it is.
+fn keep_modes_of_toys(modes: &mut Vec<Mode>) {
+    modes.retain(|mode| mode.id == MODE_FINAL || mode.slug == expression::MODE);
+    for mode in modes.iter_mut().filter(|mode| mode.id == MODE_FINAL) {
+        (mode.is_displayed, mode.unit) = (true, String::new());
+    }
+}
+
 impl Library {
     /// Links the stages: all must have compiled, interfaces must match, and annotations must parse. If `is_partial`,
     /// stages that have not compiled are left out, and their annotations are those in the files of their last good
@@ -91,12 +99,7 @@ impl Library {
             if missing.is_empty() { errors } else { missing }
         })?;
         if self.source.is_toy() {
-            // No model is drawn whose values they could show.
-            let is_of_toy = |mode: &Mode| mode.id == MODE_FINAL || mode.slug == expression::MODE;
-            annotations.modes.retain(is_of_toy);
-            for mode in annotations.modes.iter_mut().filter(|mode| mode.id == MODE_FINAL) {
-                (mode.is_displayed, mode.unit) = (true, String::new());
-            }
+            keep_modes_of_toys(&mut annotations.modes);
         }
         // A pass that has never compiled has a name, which other stages may read already.
         let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);

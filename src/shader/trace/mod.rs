@@ -196,7 +196,7 @@ pub struct Doing {
 /// Something that a statement did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// What the statement does.
+    /// The action of the statement.
     pub doing: Doing,
     /// The value; none for a discard.
     pub value: Option<TracedValue>,
@@ -335,7 +335,7 @@ fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
     *fragments = kept;
 }
 
-/// What the statement of a log point does. `None` for the begin and the end of a function.
+/// The action of the statement of a log point. `None` for the begin and the end of a function.
 fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
     let point = stage.point(number)?;
     let place = stage.place(point);

@@ -20,14 +20,14 @@ pub struct LineOfTrace {
     pub line: u32,
     /// The line itself, without the space around it.
     pub code: String,
-    /// What was done, in order.
+    /// The actions, in order.
     pub done: Vec<Done>,
 }
 
-/// What a statement did, once or more often.
+/// An action of a statement, once or more often.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Done {
-    /// What it was.
+    /// The kind of action.
     pub act: Act,
     /// The variable or parameter; empty for others.
     pub name: String,
@@ -230,7 +230,7 @@ impl LineOfTrace {
             "done": self.done.iter().map(done).collect::<Vec<_>>() })
     }
 
-    /// What the statements did, on one line.
+    /// The actions of the statements, on one line.
     pub fn text(&self) -> String {
         self.done.iter().map(Done::text).collect::<Vec<_>>().join("   ")
     }

@@ -179,7 +179,7 @@ pub(super) fn beside(
             }
             ui.painter().galley(at, galley, color);
         }
-        // What is typed is never cut.
+        // A line that is being typed is never cut.
         None => Values::new(ui, line, (sight, end), 0.0).show(ui, of, (line, sight), commands),
     }
     let behind = background.map_or(Shape::Noop, |color| Shape::rect_filled(sight, 0.0, color));

@@ -1,4 +1,4 @@
-//! What stands behind the code of a function's first line: how many of its lines are folded, and what it costs.
+//! The texts behind the code of a function's first line: the number of folded lines, and the function's cost.
 
 use std::sync::Arc;
 

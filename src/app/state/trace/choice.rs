@@ -71,7 +71,7 @@ impl Choice {
     }
 }
 
-/// What the statements of a line did in a fragment for which `is_it` holds, in order.
+/// The events of a line's statements in a fragment for which `is_it` holds, in order.
 fn events_of<'a>(
     trace: &'a Trace,
     fragment: usize,

@@ -337,6 +337,7 @@ mod tests {
                      //@ui \"Tint\" color = 1 0 0\n} toy_sliders;\n";
         assert_eq!(sliders(&found), block);
     }
+
     #[test]
     fn known_values_have_the_declared_type() {
         for (text, expected) in [

@@ -1,4 +1,4 @@
-//! What the text of a module has to ask which invocations of a quad run along.
+//! Instructions that ask which invocations of a quad run along.
 
 use crate::shader::spirv::module::{Id, Module};
 use crate::shader::spirv::op::Op;
@@ -6,7 +6,7 @@ use crate::shader::spirv::op::Op;
 /// The capability of queries of images.
 const IMAGE_QUERY: u32 = 50;
 
-/// What the text has for quads, and how many derivatives are checked.
+/// The identifiers of a module for quads, and the number of checked derivatives.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Quads {
     /// The function that asks for missing invocations, and the array that keeps them.

@@ -144,7 +144,7 @@ fn values_of_a_caller_do_not_decide_what_follows() {
         let module = Module::parse(&stub).unwrap();
         let has = |number: u32| module.code().any(|i| i.op == Op::ExtInst && module[i][4] == number);
         assert!(has(operation), "{name}");
-        // What the function leaves alone is known.
+        // Members that the function leaves alone are known.
         assert!(other.is_none_or(|other| !has(other)), "{name}");
     }
 }
