@@ -85,7 +85,8 @@ void toy_begin() {
     iResolution = vec3(toy.size_px, 1.0);
     iTime = toy.time_s;
     iTimeDelta = toy.delta_s;
-    iFrameRate = 1.0 / max(toy.delta_s, 1e-6);
+    // The first frame follows none.
+    iFrameRate = toy.delta_s > 0.0 ? 1.0 / toy.delta_s : 60.0;
     iFrame = int(toy.frame_index);
     vec4 mouse = toy.mouse_px;
     bool was_down = mouse != vec4(0.0);

@@ -37,7 +37,7 @@ impl State {
         };
         let next = self.versions.iter().find(|version| version.number > number)?;
         Some(if Some(number) == before {
-            format!("before the edit of {}", next.title())
+            format!("version {number}, before the edit of {}", next.title())
         } else {
             format!("version {number}")
         })
@@ -102,23 +102,36 @@ fn differences(kept: &Shown<'_>, now: &Shown<'_>) -> [String; 2] {
     add(both(&|side| side.mode.to_owned()));
     add(both(&|side| side.model.to_owned()));
     add(both(&|side| file_name(Path::new(&side.settings.environment.name))));
-    let (before, after) = (leaves(kept.settings), leaves(now.settings));
-    let paths: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
-    let changed: Vec<&String> = paths.into_iter().filter(|path| before.get(*path) != after.get(*path)).collect();
-    let named = if changed.len() > NAMED { NAMED - 1 } else { changed.len() };
-    for path in &changed[..named] {
-        let of = |side: &Shown<'_>, stored: &BTreeMap<String, String>| {
-            setting_text(path, stored.get(*path).map(String::as_str), side.settings, side.shaders)
-        };
-        add([of(kept, &before), of(now, &after)]);
-    }
-    if changed.len() > named {
-        parts[1].push(format!("{} other settings", changed.len() - named));
-    }
+    let (named, others) = changed([(kept.settings, kept.shaders), (now.settings, now.shaders)]);
+    named.into_iter().for_each(add);
+    parts[1].extend(others);
     if parts[0].is_empty() {
         return ["kept", "now"].map(|side| format!("{side}: {}", now.mode));
     }
     parts.map(|parts| parts.join(", "))
+}
+
+/// The settings that differ, by their labels and values on each side, and how many more do.
+fn changed([before, after]: [(&Settings, &ShaderSet); 2]) -> (Vec<[String; 2]>, Option<String>) {
+    let stored = [before, after].map(|(settings, _)| leaves(settings));
+    let paths: BTreeSet<&String> = stored.iter().flat_map(BTreeMap::keys).collect();
+    let changed: Vec<&String> = paths.into_iter().filter(|path| stored[0].get(*path) != stored[1].get(*path)).collect();
+    let named = if changed.len() > NAMED { NAMED - 1 } else { changed.len() };
+    let text = |path: &str, (settings, shaders), stored: &BTreeMap<String, String>| {
+        setting_text(path, stored.get(path).map(String::as_str), settings, shaders)
+    };
+    let texts = changed[..named].iter().map(|path| [text(path, before, &stored[0]), text(path, after, &stored[1])]);
+    let others = changed.len() - named;
+    (texts.collect(), (others > 0).then(|| format!("{others} other settings")))
+}
+
+/// The settings of `after` that differ from those of `before`, by their labels: `Exposure: +0.3 EV`. Empty if the texts are equal.
+pub(in crate::app) fn new_values(before: &Settings, after: &Settings, shaders: &ShaderSet) -> String {
+    let (named, others) = changed([(before, shaders), (after, shaders)]);
+    let environment = &after.environment.name;
+    let environment = (*environment != before.environment.name).then(|| file_name(Path::new(environment)));
+    let named = named.into_iter().map(|[_, after]| after);
+    environment.into_iter().chain(named).chain(others).collect::<Vec<_>>().join(", ")
 }
 
 /// The settings by their paths, except those that the names of a picture or of its parts show and the camera, which a kept
@@ -177,6 +190,8 @@ mod tests {
         after.view.ev = -0.3;
         after.camera.azimuth += 10.0;
         assert_eq!(labels(3, "Final", &after), ["Exposure: -0.7 EV", "Exposure: +0.3 EV"]);
+        assert_eq!(new_values(&before, &after, &shaders), "Exposure: +0.3 EV");
+        assert_eq!(new_values(&after, &before, &shaders), "Exposure: -0.7 EV");
         after.environment.name = "/maps/forest.hdr".into();
         after.environment.rotation = 90.0;
         let [kept, now] = labels(3, "Final", &after);

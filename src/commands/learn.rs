@@ -21,7 +21,8 @@ pub struct Args {
     /// Number, name or folder of an exercise to open [default: the first unsolved one]; or list, check or reset
     #[arg(value_name = "EXERCISE|list|check|reset")]
     what: Option<String>,
-    /// Number, name or folder of the exercise to check [default: that of the folder]; or all, for each folder below DIR
+    /// Exercise to check: its number or name, its folder that `specula learn` has made, or the folder that describes one [default: that of the
+    /// working directory]; or all, for each folder below DIR
     #[arg(value_name = "EXERCISE|all")]
     exercise: Option<String>,
     /// Folder that holds a folder for each exercise [default: specula-learn, or the last one]. For check, it may be the folder of the exercise itself,
@@ -109,8 +110,12 @@ fn list(json: bool) -> Result<(), Failure> {
 
 /// Measures the tree of an exercise. The exit code says whether all goals are reached.
 fn check(args: &Args) -> Result<(), Failure> {
-    let dir = args.dir.clone().unwrap_or_else(|| ".".into());
-    let exercise = match &args.exercise {
+    // A folder that `specula learn` has made says which exercise it is of.
+    let folder = args.exercise.as_deref().map(Path::new).filter(|folder| folder.is_dir());
+    let folder = folder.filter(|folder| args.dir.is_none() && exercise_of(folder).is_some());
+    let dir = folder.map(Path::to_owned).or_else(|| args.dir.clone()).unwrap_or_else(|| ".".into());
+    let named = args.exercise.as_deref().filter(|_| folder.is_none());
+    let exercise = match named {
         Some(name) => find(name).map_err(Failure::Usage)?,
         None => exercise_of(&dir).ok_or_else(|| {
             let dir = dir.display();
@@ -119,7 +124,7 @@ fn check(args: &Args) -> Result<(), Failure> {
             ))
         })?,
     };
-    let source = Source::open(match args.exercise {
+    let source = Source::open(match named {
         Some(_) => tree(args.dir.as_deref(), &exercise)?,
         None => std::path::absolute(&dir).unwrap_or(dir),
     });

@@ -89,9 +89,16 @@ impl Reloader {
         Self { gpu: gpu.clone(), layouts: layouts.clone(), library, current: None, unbuilt: None }
     }
 
-    /// Reads another tree, or the same one from scratch. Compiles nothing yet.
-    pub fn open(&mut self, source: Source) {
-        *self = Self::new(&self.gpu, &self.layouts, self.library.compiler(), source);
+    /// Reads another tree, with its number ([`ShaderSet::tree`]). Compiles nothing yet.
+    pub fn open(&mut self, source: Source, tree: usize) {
+        let mut next = Self::new(&self.gpu, &self.layouts, self.library.compiler(), source);
+        next.library.follow(&self.library, tree);
+        *self = next;
+    }
+
+    /// Reads the same tree from scratch. Compiles nothing yet.
+    pub fn restart(&mut self) {
+        self.open(self.library.source().clone(), self.library.tree());
     }
 
     /// Reads the tree from another source. The next update must name the files whose texts this changes.

@@ -177,9 +177,9 @@ impl Worker {
         self.send(Job::FindTree(path));
     }
 
-    /// Opens another shader tree.
-    pub(crate) fn open_tree(&self, source: Source) {
-        self.send(Job::OpenTree(source));
+    /// Opens another shader tree, with its number ([`crate::shader::ShaderSet::tree`]).
+    pub(crate) fn open_tree(&self, source: Source, tree: usize) {
+        self.send(Job::OpenTree(source, tree));
     }
 
     /// Reads the same tree from another source, which changes the texts of these files.

@@ -16,13 +16,12 @@ use crate::app::actions::compare::file::open_picture;
 use crate::app::actions::compare::tree::open_second_tree;
 use crate::app::engine::Engine;
 use crate::app::engine::compared::Compared;
-use crate::app::engine::generations::Generations;
 use crate::app::options::OtherPicture;
 use crate::app::state::State;
 use crate::app::state::compare::{Difference, With};
-use crate::app::state::shaders::versions::Versions;
 use crate::events::{Event, emit};
 use crate::picture_difference::Comparison;
+use crate::shader::Source;
 use switch::{REPLACED, compare, end};
 pub(super) use write::write_files;
 
@@ -93,10 +92,13 @@ pub(in crate::app) fn forget_references(state: &mut State, engine: &mut Engine) 
     engine.generations.keep(&state.versions);
 }
 
-/// Ends the comparison and drops all versions.
-pub(in crate::app) fn forget_all_references(state: &mut State, engine: &mut Engine) {
+/// Ends the comparison, and takes the versions of another tree in place of those of this one, which are kept. Returns its number.
+pub(in crate::app) fn change_tree(state: &mut State, engine: &mut Engine, to: &Source) -> usize {
     end(state, engine);
-    (state.versions, engine.generations) = (Versions::default(), Generations::default());
+    let tree = state.versions.change_tree(state.source.location(), to.location());
+    engine.generations.keep(&state.versions);
+    engine.generations.drop_pictures();
+    tree
 }
 
 /// Marks a version in which a loop did not end, and releases its picture.

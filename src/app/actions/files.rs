@@ -1,6 +1,6 @@
 //! Opens files: models, shader trees, and any file in the user's editor.
 
-use crate::app::actions::compare::forget_all_references;
+use crate::app::actions::compare::change_tree;
 use crate::app::actions::watch::watch_tree;
 use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
@@ -99,15 +99,16 @@ pub(in crate::app) fn on_tree_found(
     if stops {
         stop(&mut state.session.settings);
     }
+    // Versions of another tree must never be written into this one.
+    let tree = change_tree(state, engine, &source);
+    state.shader.log.forget();
     state.source = source.clone();
     state.picture.settled = None;
-    // Versions of another tree must never be written into this one.
-    forget_all_references(state, engine);
     state.edits.forget_draft();
     // Nor is the text of a file that of the same file in another tree.
     state.traces.saved.forget();
     watch_tree(state, engine, &source);
-    engine.threads.worker.open_tree(source);
+    engine.threads.worker.open_tree(source, tree);
     engine.threads.worker.reloaded(edits);
     if state.has_window {
         engine.find_exercise(&state.source);

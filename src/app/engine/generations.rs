@@ -71,6 +71,6 @@ impl Generations {
 
     /// Drops what belongs to versions that are no longer kept.
     pub(in crate::app) fn keep(&mut self, versions: &Versions) {
-        self.0.retain(|generation, _| versions.of_generation(*generation).is_some());
+        self.0.retain(|generation, _| versions.keeps(*generation));
     }
 }

@@ -100,6 +100,7 @@ pub(super) fn timed(state: &mut State, screen: &Screen, frame: Option<&BoundFram
 /// The inputs that decide whether times of frames can be compared.
 pub(super) fn shown(frame_state: &FrameState) -> Shown {
     Shown {
+        tree: frame_state.shaders.tree,
         generation: frame_state.shaders.generation,
         mode: frame_state.mode().map(|mode| mode.slug.clone()).unwrap_or_default(),
         size: frame_state.size,

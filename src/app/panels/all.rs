@@ -144,6 +144,7 @@ fn bars(ui: &mut Ui, context: &Context<'_>, panels: &mut Panels, commands: &mut 
         missing_textures: state.missing_textures(),
         waits: baking::long_wait(ui.ctx(), context),
         not_finite: state.shown_not_finite(),
+        captures: &state.captures,
         checked: state.checks.newest().and_then(|result| result.as_ref().ok()).map(|checked| &**checked),
         progress: context.readings.baking.map(|(done, _)| *done),
         generation: context.shaders.generation,

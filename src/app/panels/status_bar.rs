@@ -5,9 +5,11 @@ use std::time::Duration;
 use egui::{Align, Layout, RichText, Ui};
 
 use super::{baking, shaders};
+use crate::app::command::capture::CANCEL_ONE;
 use crate::app::command::checks::SHOW_FAILURE;
 use crate::app::command::scene::INSPECT_PIXEL;
 use crate::app::command::spec::Command;
+use crate::app::state::captures::Captures;
 use crate::app::state::shaders::log::lines;
 use crate::app::state::shaders::stages::StageRow;
 use crate::app::state::shaders::status::ShaderStatus;
@@ -39,6 +41,8 @@ pub(super) struct Status<'a> {
     pub(super) not_finite: Option<NotFinitePixels>,
     /// The findings of the checks of the picture.
     pub(super) checked: Option<&'a CheckedPicture>,
+    /// What is being written.
+    pub(super) captures: &'a Captures,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
@@ -92,6 +96,7 @@ fn state(ui: &mut Ui, status: &Status<'_>, commands: &mut Vec<Command>) {
         }
     }
     failed_checks(ui, status.checked, commands);
+    captures(ui, status.captures, commands);
     if let Some(row) = status.stage.filter(|_| ui.available_width() > ROOM_FOR_STAGE) {
         ui.scope(|ui| stage(ui, row));
         ui.add_space(8.0);
@@ -122,6 +127,17 @@ fn failed_checks(ui: &mut Ui, checked: Option<&CheckedPicture>, commands: &mut V
     }
 }
 
+/// How far captures of many pictures are. A click cancels one.
+fn captures(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
+    for running in captures.iter().filter(|running| running.of > 1 && !running.is_canceled()) {
+        let text = format!("{} {} of {}", running.title, running.done, running.of);
+        let button = egui::Button::new(RichText::new(text).small().color(WARNING)).small();
+        if ui.add(button).on_hover_text("Pictures written so far. Click to cancel").clicked() {
+            commands.push(CANCEL_ONE.with(running.number));
+        }
+    }
+}
+
 /// The statistics of a stage with their changes: `pbr.frag 4,469 words -212 · 96 registers -8`.
 fn stage(ui: &mut Ui, row: &StageRow) {
     ui.spacing_mut().item_spacing.x = 4.0;
@@ -140,11 +156,18 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable as _;
 
+    use std::sync::LazyLock;
+
+    use serde_json::Value;
+
     use super::*;
+
+    static NONE: LazyLock<Captures> = LazyLock::new(Captures::default);
 
     fn status(shader: &ShaderStatus) -> Status<'_> {
         Status {
             shader,
+            captures: &NONE,
             missing_textures: None,
             waits: None,
             progress: None,
@@ -189,5 +212,22 @@ mod tests {
         harness.get_by_label("NaN in 12 pixels").click();
         harness.run();
         assert_eq!(harness.state().last(), Some(&INSPECT_PIXEL.with([30, 40])));
+    }
+
+    #[test]
+    fn a_capture_of_many_pictures_is_told_and_canceled() {
+        let mut running = Captures::default();
+        let numbers = ["Picture", "Turntable"].map(|title| running.begin(title, (0, Value::Null)).unwrap().0);
+        running.progress(numbers[0], 0, 1);
+        running.progress(numbers[1], 12, 75);
+        let show_bar = move |ui: &mut Ui, commands: &mut Vec<Command>| {
+            let shader = ShaderStatus::default();
+            show(ui, &Status { captures: &running, ..status(&shader) }, commands);
+        };
+        let mut harness = Harness::new_ui_state(show_bar, Vec::new());
+        assert!(harness.query_by_label_contains("Picture").is_none());
+        harness.get_by_label("Turntable 12 of 75").click();
+        harness.run();
+        assert_eq!(harness.state().last(), Some(&CANCEL_ONE.with(numbers[1])));
     }
 }

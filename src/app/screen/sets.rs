@@ -70,7 +70,6 @@ pub(super) struct BoundSets<'a> {
 
 impl PartialEq for Shown {
     fn eq(&self, other: &Self) -> bool {
-        // The address of the shaders: generation numbers may restart at 1.
         let parts = |of: &Self| {
             let RestingPicture { shaders, revisions, environment, target, .. } = &of.picture;
             (Arc::as_ptr(shaders), *revisions, environment.clone(), *target, of.gives_numbers, of.size)

@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn a_difference_is_of_one_set_of_shaders() {
-        // Another tree, or the same one after a restart, has a generation of the same number.
+        // Another tree has a generation of the same number.
         let [tree, other] = [(); 2].map(|()| Arc::new(ShaderSet { generation: 2, ..ShaderSet::default() }));
         let picture = subject(&tree).picture;
         let difference = Difference {

@@ -37,7 +37,6 @@ impl PictureSubject {
 impl PartialEq for PictureSubject {
     fn eq(&self, other: &Self) -> bool {
         let light = |of: &Self| (of.light.clone(), of.revisions);
-        // Generation numbers may restart at 1.
         let is_same_set = Arc::ptr_eq(&self.shaders, &other.shaders);
         is_same_set && light(self) == light(other) && self.is_same_but_version(other)
     }

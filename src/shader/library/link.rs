@@ -173,9 +173,20 @@ impl Library {
                 return Update::Unchanged { cleared };
             }
         }
-        let set =
-            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, watched };
-        let set = Arc::new(set);
+        let tree = self.tree;
+        let set = Arc::new(ShaderSet {
+            generation,
+            tree,
+            stages,
+            pending,
+            modes,
+            constants,
+            parameters,
+            graph,
+            warnings,
+            texts,
+            watched,
+        });
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }

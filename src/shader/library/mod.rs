@@ -55,7 +55,38 @@ impl Library {
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
         let (fixed, beside) = (slots.len(), BTreeSet::new());
         let (set, failed, relink, watched, is_part, is_whole) = (None, false, false, None, false, false);
-        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched, is_part, is_whole }
+        Self {
+            source,
+            compiler,
+            cache,
+            slots,
+            fixed,
+            idle,
+            beside,
+            set,
+            tree: 0,
+            before: 0,
+            failed,
+            relink,
+            watched,
+            is_part,
+            is_whole,
+        }
+    }
+
+    /// Gives the tree its number ([`ShaderSet::tree`]) and goes on with the generations of the library that this one follows.
+    pub fn follow(&mut self, before: &Self, tree: usize) {
+        (self.before, self.tree) = (before.generation(), tree);
+    }
+
+    /// Number of the tree: [`ShaderSet::tree`].
+    pub fn tree(&self) -> usize {
+        self.tree
+    }
+
+    /// The newest generation; 0 before the first.
+    fn generation(&self) -> u64 {
+        self.set.as_ref().map_or(self.before, |set| set.generation)
     }
 
     /// A library whose source holds a part of a tree: the constants that `when=` names may be in other files.
@@ -197,7 +228,7 @@ impl Library {
     }
 
     fn next_generation(&self) -> u64 {
-        self.set.as_ref().map_or(0, |set| set.generation) + 1
+        self.generation() + 1
     }
 
     /// Compiles stages in parallel. If `is_whole`, no stage reuses its last module. Once `superseded` returns true, no

@@ -24,6 +24,10 @@ pub struct Library {
     /// Files of tessellation, geometry, task and mesh stages.
     pub(super) beside: BTreeSet<TreePath>,
     pub(super) set: Option<Arc<ShaderSet>>,
+    /// See [`Library::follow`].
+    pub(super) tree: usize,
+    /// The generation before the first set.
+    pub(super) before: u64,
     pub(super) failed: bool,
     /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
     pub(super) relink: bool,

@@ -41,8 +41,10 @@ impl Change {
 /// The result of one successful update. It is immutable; an edit creates a new set.
 #[derive(Clone, Debug, Default)]
 pub struct ShaderSet {
-    /// Increments with every new set, from 1.
+    /// Increments with every new set, from 1. The trees that a window opens one after the other share one count.
     pub generation: u64,
+    /// Number of the tree among those that a window has opened; 0 is the first.
+    pub tree: usize,
     /// The stages by path. A stage that an edit does not affect is the same `Arc` in both sets.
     pub stages: BTreeMap<String, Arc<Stage>>,
     /// Stages that are still to be compiled for this edit, or that failed. [`ShaderSet::stages`] holds their last good

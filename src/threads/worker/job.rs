@@ -54,7 +54,7 @@ pub(super) enum Job {
     Edit(Edit),
     /// Looks whether there is a tree at this path.
     FindTree(PathBuf),
-    OpenTree(Source),
+    OpenTree(Source, usize),
     /// Reads the same tree from another source, which changes these files.
     Read(Source, BTreeSet<TreePath>),
     Build(Build),
@@ -73,6 +73,6 @@ pub(super) enum Job {
 impl Job {
     /// Whether the job makes a running reload stale.
     pub(super) fn is_edit(&self) -> bool {
-        matches!(self, Self::Edit(_) | Self::FindTree(_) | Self::OpenTree(_) | Self::Read(..))
+        matches!(self, Self::Edit(_) | Self::FindTree(_) | Self::OpenTree(..) | Self::Read(..))
     }
 }

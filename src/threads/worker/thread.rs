@@ -71,7 +71,7 @@ impl Thread {
         let mut edit = Some(Edit::new(Change::All, Instant::now()));
         while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.work(edit.take()))) {
             self.sender.send(Message::Panicked(TaskKind::Worker, panic_text(&*panic).to_owned()));
-            self.reloader.open(self.reloader.library().source().clone());
+            self.reloader.restart();
             self.panics += 1;
             // If each attempt panics, wait for the next edit, with which a new reloader compiles the whole tree.
             edit = (self.panics <= RESTARTS).then(|| Edit::new(Change::All, Instant::now()));
@@ -113,8 +113,8 @@ impl Thread {
                         let message = WorkerMessage::TreeFound { path, tree, edits: self.edits_taken };
                         self.sender.send(Message::Worker(message));
                     }
-                    Job::OpenTree(source) => {
-                        self.reloader.open(source);
+                    Job::OpenTree(source, tree) => {
+                        self.reloader.open(source, tree);
                         edit = Some(Edit::new(Change::All, Instant::now()));
                     }
                     Job::Read(source, paths) => {

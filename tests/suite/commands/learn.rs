@@ -284,11 +284,12 @@ fn an_own_exercise_is_a_folder_as_the_manual_describes_it() {
         write(&ben, path.as_str(), text);
     }
     // The folder knows its exercise.
-    let check = |dir: &Path| learn(folder.path(), &["check", "--dir", dir.to_str().unwrap()]);
-    let failed = check(&anna);
+    let check = |words: &[&str]| learn(folder.path(), &[&["check"], words].concat());
+    let [of_anna, of_ben] = [&anna, &ben].map(|dir| dir.to_str().unwrap());
+    let failed = check(&["--dir", of_anna]);
     failed.expect(1, &[]);
     assert!(failed.stdout.contains("FAIL") && failed.stdout.contains("the light is"), "{}", failed.stdout);
-    assert!(check(&ben).expect(0, &[]).stdout.contains("Exercise distance, Light and distance: solved"));
+    assert!(check(&[of_ben]).expect(0, &[]).stdout.contains("Exercise distance, Light and distance: solved"));
     let all = |more: &[&str]| learn(folder.path(), &[&["check", "all", "--dir", "students"], more].concat());
     let table = all(&[]);
     table.expect(1, &[]);

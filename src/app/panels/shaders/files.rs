@@ -43,7 +43,7 @@ impl FilesState {
         if self.of == of {
             return;
         }
-        if self.of.1 != of.1 || shaders.generation < self.of.0 || self.first.is_empty() {
+        if self.of.1 != of.1 || self.first.is_empty() {
             self.first.clone_from(&shaders.texts);
         }
         self.graph = IncludeGraph::new(&shaders.texts, std::mem::take(&mut self.graph));

@@ -213,7 +213,7 @@ pub(in crate::app) struct Asked {
     /// Number of the request.
     pub(in crate::app) number: u64,
     pub(in crate::app) material: Material,
-    /// Generation numbers may restart at 1.
+    /// The shaders, and those of the version before.
     pub(in crate::app) shaders: [Identity; 2],
     /// The author's constants and parameters, in a comparable form.
     pub(in crate::app) settings: String,

@@ -84,12 +84,13 @@ impl ShaderLog {
 
     /// Records a finished reload.
     pub(in crate::app) fn finished(&mut self, reload: &ReloadEvent) {
-        if self.edits.front().is_some_and(|last| last.reload.generation > reload.generation) {
-            // Another tree, or the worker has started again.
-            self.edits.clear();
-        }
         self.edits.push_front(Edit { at: Local::now(), reload: reload.clone(), rest: None });
         self.edits.truncate(MOST);
+    }
+
+    /// Forgets the edits, since another tree was opened.
+    pub(in crate::app) fn forget(&mut self) {
+        *self = Self::default();
     }
 
     /// Records the stages that were compiled after the picture was on screen.
@@ -156,6 +157,7 @@ mod tests {
         let generations = |log: &ShaderLog| log.edits().map(|edit| edit.reload.generation).collect::<Vec<_>>();
         assert_eq!(generations(&log), [3, 2, 1]);
         assert_eq!(log.edits().map(|edit| edit.rest.is_some()).collect::<Vec<_>>(), [false, true, false]);
+        log.forget();
         log.finished(&of(1));
         assert_eq!(generations(&log), [1]);
     }

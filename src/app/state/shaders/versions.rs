@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use chrono::{DateTime, Local};
@@ -12,6 +13,8 @@ use crate::shader::ShaderSet;
 
 /// Number of versions that are kept. Each has pipelines, and after an edit of D also the light that was baked with it.
 const MOST: usize = 12;
+/// Number of trees beside the open one whose versions are kept.
+const MOST_TREES: usize = 3;
 
 /// A picture in small.
 pub(in crate::app) struct Thumbnail {
@@ -57,10 +60,23 @@ impl Version {
     }
 }
 
-/// The newest versions, the oldest first.
+/// A tree that was open before, with its versions.
+struct Aside {
+    place: PathBuf,
+    tree: usize,
+    list: VecDeque<Version>,
+}
+
+/// The newest versions of the tree that is open, the oldest first. Those of other trees are kept until these are opened again.
 #[derive(Default)]
 pub(in crate::app) struct Versions {
+    /// Number of the tree: [`ShaderSet::tree`].
+    tree: usize,
     list: VecDeque<Version>,
+    /// The trees that were open last, the newest first.
+    aside: VecDeque<Aside>,
+    /// Number of trees that were opened after the first.
+    opened: usize,
     /// The shaders of an older version that was shown again. They are on screen for some frames after that has ended.
     again: Option<Arc<ShaderSet>>,
 }
@@ -84,13 +100,34 @@ impl Versions {
         self.list.iter_mut().find(|version| version.generation == generation)
     }
 
-    /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
-    /// started again; the versions before are then dropped.
+    /// Whether a generation is that of a version that is kept, of this tree or another one.
+    pub(in crate::app) fn keeps(&self, generation: u64) -> bool {
+        let others = self.aside.iter().flat_map(|of| &of.list);
+        self.list.iter().chain(others).any(|version| version.generation == generation)
+    }
+
+    /// Sets the versions of the tree at `from` aside, and takes those of the tree at `to` if they are kept. `None`: a tree that is not on
+    /// disk. Returns the number of the tree at `to`.
+    pub(in crate::app) fn change_tree(&mut self, from: Option<&Path>, to: Option<&Path>) -> usize {
+        let list = std::mem::take(&mut self.list);
+        if let Some(place) = from.filter(|_| !list.is_empty()) {
+            self.aside.push_front(Aside { place: place.to_owned(), tree: self.tree, list });
+        }
+        let again = self.aside.iter().position(|of| Some(&*of.place) == to).and_then(|index| self.aside.remove(index));
+        if let Some(again) = again {
+            (self.tree, self.list) = (again.tree, again.list);
+        } else {
+            self.opened += 1;
+            self.tree = self.opened;
+        }
+        self.aside.truncate(MOST_TREES);
+        self.again = None;
+        self.tree
+    }
+
+    /// Adds the version that has just come on screen.
     pub(in crate::app) fn add(&mut self, shaders: &Arc<ShaderSet>, reload: ReloadEvent, is_draft: bool) {
         let generation = shaders.generation;
-        if self.list.back().is_some_and(|last| last.generation >= generation) {
-            self.list.clear();
-        }
         if self.list.back().is_some_and(|last| last.is_draft) {
             self.list.pop_back();
         }
@@ -157,7 +194,7 @@ impl Versions {
         }
     }
 
-    /// Whether a version is the one of these shaders: generation numbers may restart.
+    /// Whether a version is the one of these shaders.
     pub(in crate::app) fn has(&self, shaders: &Arc<ShaderSet>) -> bool {
         self.list.iter().any(|version| Arc::ptr_eq(&version.shaders, shaders))
     }
@@ -170,7 +207,7 @@ impl Versions {
     /// Whether these shaders make a version.
     pub(in crate::app) fn is_new(&self, shaders: &Arc<ShaderSet>) -> bool {
         let is_again = |again: &Arc<ShaderSet>| again.generation == shaders.generation && again.texts == shaders.texts;
-        !self.has(shaders) && !self.again.as_ref().is_some_and(is_again)
+        shaders.tree == self.tree && !self.has(shaders) && !self.again.as_ref().is_some_and(is_again)
     }
 
     /// Versions that lack a thumbnail, the newest first.
@@ -203,6 +240,7 @@ impl Versions {
 
     /// Drops all versions but the newest, while memory is short.
     pub(in crate::app) fn drop_old(&mut self) {
+        self.aside.clear();
         self.list.drain(..self.list.len().saturating_sub(1));
     }
 }
@@ -234,9 +272,37 @@ mod tests {
         assert_eq!(numbers(&versions), (4..=15).collect::<Vec<_>>());
         versions.drop_old();
         assert_eq!(numbers(&versions), [15]);
-        // Another tree begins again at 1.
-        versions.add(&shaders(1, "another"), ReloadEvent::default(), false);
-        assert_eq!(numbers(&versions), [1]);
+    }
+
+    #[test]
+    fn a_tree_has_its_versions_when_it_is_opened_again() {
+        let of =
+            |tree, generation, text: &str| Arc::new(ShaderSet { tree, ..ShaderSet::clone(&shaders(generation, text)) });
+        let [a, b] = [Path::new("/a"), Path::new("/b")];
+        let mut versions = Versions::default();
+        (1..=2).for_each(|number| versions.add(&of(0, number, &number.to_string()), save(), false));
+        assert_eq!(versions.change_tree(Some(a), Some(b)), 1);
+        assert!(numbers(&versions).is_empty());
+        // The tree before is still on screen.
+        assert!(!versions.is_new(&of(0, 2, "2")) && versions.is_new(&of(1, 3, "other")));
+        versions.add(&of(1, 3, "other"), save(), false);
+        assert_eq!(numbers(&versions), [3]);
+        assert!(versions.keeps(2) && versions.keeps(3) && !versions.keeps(4));
+        assert_eq!(versions.change_tree(Some(b), Some(a)), 0);
+        // Nothing was edited meanwhile, so the newest version is on screen again.
+        versions.add(&of(0, 4, "2"), save(), false);
+        assert_eq!(numbers(&versions), [1, 2]);
+        assert!(versions.of_generation(4).is_some() && versions.before(4).is_some_and(|version| version.number == 1));
+        // The same tree from scratch.
+        assert_eq!(versions.change_tree(Some(a), Some(a)), 0);
+        assert_eq!(numbers(&versions), [1, 2]);
+        // A tree that is not on disk is another one each time.
+        for number in 2..8 {
+            assert_eq!(versions.change_tree(None, None), number);
+        }
+        versions.drop_old();
+        assert_eq!(versions.change_tree(None, Some(a)), 8);
+        assert!(!versions.keeps(1));
     }
 
     #[test]

@@ -68,9 +68,6 @@ impl Tracker {
             };
             self.before = self.of_value(earlier.iter().rev().filter(is_before).take(FRAMES).cloned().collect());
             self.after.clear();
-        } else if newest.is_some_and(|last| last.generation > sample.shown.generation) {
-            // Another tree, or the worker has started again.
-            *self = Self { compiles_in_frame: self.compiles_in_frame, ..Self::default() };
         }
         let is_like = |shown: &Shown| shown.is_like(&sample.shown) && shown.generation < sample.shown.generation;
         if self.before.first().is_some_and(|before| is_like(&before.shown)) {
@@ -198,8 +195,8 @@ mod tests {
         draw(&mut timing, &shown(3), &[("model", 1.0)]);
         let cost = timing.cost().unwrap();
         assert_eq!((cost.rows[0].before, cost.rows[0].after), (Some(9.0), Some(7.0)));
-        // Another tree counts from 1 again.
-        draw(&mut timing, &shown(1), &[("model", 1.0)]);
+        // Another tree.
+        draw(&mut timing, &Shown { tree: 1, ..shown(4) }, &[("model", 1.0)]);
         assert_eq!(timing.cost(), None);
     }
 }

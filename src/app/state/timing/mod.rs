@@ -146,7 +146,7 @@ pub(in crate::app) mod tests {
     use super::*;
 
     pub(in crate::app) fn shown(generation: u64) -> Shown {
-        Shown { generation, mode: "final".into(), size: (640, 480), model: "ball".into() }
+        Shown { tree: 0, generation, mode: "final".into(), size: (640, 480), model: "ball".into() }
     }
 
     pub(in crate::app) fn passes(times: &[(&str, f64)]) -> Vec<PassTime> {

@@ -8,6 +8,8 @@ const NOT_OF_PICTURE: [&str; 4] = ["tone map", "ui", "outline", "texture"];
 /// Inputs of a frame. Times can be compared between frames with equal inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::app) struct Shown {
+    /// Number of the shader tree.
+    pub(in crate::app) tree: usize,
     /// Generation of the shaders.
     pub(in crate::app) generation: u64,
     /// Slug of the mode.
@@ -19,9 +21,9 @@ pub(in crate::app) struct Shown {
 }
 
 impl Shown {
-    /// Whether only the shaders differ.
+    /// Whether only the generations differ.
     pub(super) fn is_like(&self, other: &Self) -> bool {
-        (&self.mode, self.size, &self.model) == (&other.mode, other.size, &other.model)
+        (self.tree, &self.mode, self.size, &self.model) == (other.tree, &other.mode, other.size, &other.model)
     }
 }
 
