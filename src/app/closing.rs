@@ -21,7 +21,7 @@ impl Closing {
         if unsaved.is_empty() || unsaved == self.refused {
             return true;
         }
-        state.say(reason(&unsaved, state.source.root()));
+        state.say(reason(&unsaved, state.source.folder_of_files()));
         self.refused = unsaved;
         false
     }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use specula::control::socket_path;
 use specula::mcp::{Config, Connection, Start, serve};
 
-use super::common::{Common, Models};
+use super::common::{BUILT_IN, Common, Models};
 use super::{Failure, limits};
 
 /// Size of the picture without `--size`: agents pay for each pixel that they see.
@@ -18,8 +18,8 @@ const SIZE: &str = "640x360";
 #[command(
     after_help = "An agent's program starts this command and talks to it on stdin and stdout, by the Model Context Protocol. Model and \
     options choose the picture, as for `specula render`; the size is 640x360 without --size.\n\
-    Tools write to the files of the shader tree and to the output folder, nowhere else. Without --shaders, edits of the built-in \
-    shaders stay in memory."
+    Tools write to the files of the shader tree and to the output folder, nowhere else. Without --shaders, an agent works on the \
+    built-in shaders, and its edits stay in memory."
 )]
 pub struct Args {
     #[command(flatten)]
@@ -48,6 +48,10 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
             let mut arguments = vec![OsString::from("serve")];
             if args.common.size.is_none() {
                 arguments.extend(["--size", SIZE].map(OsString::from));
+            }
+            if args.common.shaders.is_none() {
+                // A tree that the agent was not given is never written, although other commands take one in the working directory.
+                arguments.extend(["--shaders", BUILT_IN].map(OsString::from));
             }
             arguments.extend(without(given, "--out-folder"));
             Connection::Start(Start { program, arguments })

@@ -145,8 +145,8 @@ async def cancels(client):
 
 async def main():
     here = Path.cwd()
-    # Not ./shaders, which a program takes by itself.
-    tree, out = here / "tree", here / "out"
+    # Other commands take ./shaders by themselves; an agent must be given it.
+    tree, out = here / "shaders", here / "out"
     assert os.spawnl(os.P_WAIT, os.environ["SPECULA"], "specula", "new", str(tree)) == 0
     steps = [
         ("looks", looks, ()), ("edits", edits, (tree,)), ("measures", measures, (out,)), ("cancels", cancels, ()),

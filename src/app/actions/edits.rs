@@ -91,12 +91,14 @@ pub(in crate::app) fn follow_edits(state: &mut State, engine: &mut Engine, shade
 
 /// Writes edits into the files of the tree, on a thread of its own.
 pub(in crate::app) fn write_edits(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) {
-    let Some(root) = state.source.root().map(Path::to_owned) else { return state.say(NO_FOLDER) };
+    let Some(root) = state.source.folder_of_files().map(Path::to_owned) else { return state.say(NO_FOLDER) };
     let values = &state.session.settings.shader;
     let names = edits.iter().filter_map(|edit| Some((edit.name.clone(), values.get(&edit.name)?.clone())));
     state.edits.written.extend(names);
+    let of_file = |edit: &Edit| Some(Edit { path: state.source.path_of_file(&edit.path)?, ..edit.clone() });
+    let on_disk: Vec<Edit> = edits.iter().filter_map(of_file).collect();
     engine.threads.wait(move || {
-        let written = write_back::write(&root, &edits);
+        let written = write_back::write(&root, &on_disk);
         Some(Message::Written(written.map(|written| (told(&edits), written))))
     });
 }
@@ -122,7 +124,7 @@ pub(in crate::app) fn save_typed(
 
 /// Refuses a file of another tree than the one that is open: a text must never be written into the file of the same name there.
 fn check_open(state: &State, file: &TreeFile) -> Result<(), String> {
-    match state.source.root() {
+    match state.source.folder_of_files() {
         Some(root) if root == file.root => Ok(()),
         Some(_) => {
             let TreeFile { root, path } = file;

@@ -47,7 +47,7 @@ pub(in crate::app) fn write_text(
     if let Some(restored) = &state.edits.restored {
         return Err(format!("version {} is shown; show the newest one first", restored.number));
     }
-    if let Some(root) = state.source.root() {
+    if let Some((root, path)) = state.source.folder_of_files().zip(state.source.path_of_file(&path)) {
         let file = TreeFile { root: root.to_owned(), path };
         let text = text.ok_or(
             "`text` is missing: the tree is on disk, and its files have only the text that is written to them",
@@ -67,8 +67,8 @@ pub(in crate::app) fn write_text(
         });
         return Ok(Outcome::Writing(number));
     }
-    if let Some(file) = state.source.location() {
-        return Err(format!("the shader is a single file: write {} itself, and the picture follows", file.display()));
+    if let Some(opened) = state.source.opened() {
+        return Err(format!("the shader is a single file, {opened}; the files around it are the program's"));
     }
     state.text_writes.put_over(path.clone(), text);
     let source = state.text_writes.over(state.source.clone());

@@ -110,7 +110,7 @@ fn read_saved(state: &mut State, engine: &Engine) {
     }
     let source = state.source.clone();
     engine.threads.wait(move || {
-        let text = source.read(&path).ok()?;
+        let text = source.author_text(&path).ok()?;
         Some(Message::SourceText(path, text.into()))
     });
 }
@@ -141,7 +141,7 @@ pub(in crate::app) fn final_picture(
 ) -> Option<PictureSubject> {
     let (shown, shaders) = (state.shown()?, state.session.shaders.clone()?);
     // The picture of the tree before stays while a new one does not compile.
-    let is_final = state.shader.root.as_deref() == state.source.root()
+    let is_final = state.is_tree_in_use()
         && shown.shaders.generation == shaders.generation
         && shaders.is_complete()
         && !awaits_edit(state, engine)

@@ -174,7 +174,7 @@ fn write_defaults(state: &mut State, engine: &mut Engine, WriteDefaults { names 
 
 /// Writes edits into the files. The result lists them.
 pub(super) fn write_listed(state: &mut State, engine: &mut Engine, edits: Vec<Edit>) -> Outcome {
-    if !state.has_folder() {
+    if edits.iter().any(|edit| state.source.path_of_file(&edit.path).is_none()) {
         return Err(NO_FOLDER.into());
     }
     let told = edits.iter().map(|edit| json!({ "name": edit.name, "file": edit.path, "line": edit.line }));

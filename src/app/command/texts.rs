@@ -62,7 +62,7 @@ fn read(state: &mut State, _: &mut Engine, file: String) -> Outcome {
     let source = state.source.clone();
     let run = move || {
         let path = TreePath::parse(&file).ok_or_else(|| format!("{file} is not in the shader tree"))?;
-        let text = source.read(&path).map_err(|error| {
+        let text = source.author_text(&path).map_err(|error| {
             let files = source.list();
             let hint = did_you_mean(&file, files.iter().map(TreePath::as_str));
             format!("cannot read {}: {error}.{hint}", source.display_path(&path))
@@ -74,6 +74,9 @@ fn read(state: &mut State, _: &mut Engine, file: String) -> Outcome {
 
 fn list(state: &mut State, _: &mut Engine, (): ()) -> Outcome {
     let source = state.source.clone();
-    let run = move || Ok(json!({ "tree": source.location().map(Path::to_owned), "files": source.list() }));
+    let run = move || {
+        let files: Vec<TreePath> = source.opened().into_iter().chain(source.list()).collect();
+        Ok(json!({ "tree": source.location().map(Path::to_owned), "files": files }))
+    };
     Ok(Until::Work(Work { uses_device: false, run: Box::new(run) }))
 }

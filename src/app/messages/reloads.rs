@@ -110,7 +110,7 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             }
             // The worker drops requests for older sets, so those of a comparison are sent again.
             engine.threads.worker.built();
-            state.shader.root = state.source.root().map(Into::into);
+            state.shader.in_use = state.source.location().map(Into::into);
             let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
             tell_expression(state, &set.shaders);
@@ -160,7 +160,7 @@ pub(in crate::app) fn report(state: &mut State, event: ReloadEvent) {
     let is_of_watch = |stage: &String| expression::is_watched(&stage.as_str().into());
     let is_watch = event.changed.is_empty() && !event.stages.is_empty() && event.stages.iter().all(is_of_watch);
     // Numbers that are dragged, and an older version in place of the newest, are no saves.
-    if state.has_folder() && state.edits.draft.as_ref().is_none() && state.edits.restored.is_none() {
+    if state.has_files() && state.edits.draft.as_ref().is_none() && state.edits.restored.is_none() {
         state.hint.saved(&event);
     }
     let changed = if is_watch { vec![expression::MODE.to_owned()] } else { event.changed.clone() };

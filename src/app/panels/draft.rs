@@ -16,7 +16,7 @@ pub(super) fn show_draft(ui: &mut Ui, state: &State, draft: &Draft, place: bool,
         let file = draft.path.as_str().rsplit('/').next().unwrap_or_default();
         ui.label(RichText::new(format!("{file}:{}  {changes}", draft.line)).small().color(ACCENT));
     }
-    let write = ui.add_enabled(state.has_folder(), Button::new("Write").small());
+    let write = ui.add_enabled(state.has_files(), Button::new("Write").small());
     let write = write.on_hover_text(format!("Write to the file: {changes}")).on_disabled_hover_text(NO_FOLDER);
     if write.clicked() {
         commands.push(WRITE_EDITS.with(draft.edits.clone()));

@@ -339,9 +339,14 @@ impl State {
         (generation == self.shown_generation() && pixels.count > 0).then_some(pixels)
     }
 
-    /// Whether the tree is a folder on disk, so that its files can be written.
-    pub(in crate::app) fn has_folder(&self) -> bool {
-        self.source.root().is_some()
+    /// Whether the tree is a folder or a file on disk, so that it can be written.
+    pub(in crate::app) fn has_files(&self) -> bool {
+        self.source.location().is_some()
+    }
+
+    /// Whether the shaders in use are those of the open tree, which may still be compiled, or not compile.
+    pub(in crate::app) fn is_tree_in_use(&self) -> bool {
+        self.shader.in_use.as_deref() == self.source.location()
     }
 
     /// The state of the picture on screen.

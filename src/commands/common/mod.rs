@@ -36,7 +36,7 @@ pub const TIMEOUT_S: u32 = 60;
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
-    /// Shader tree: a folder, an example such as examples:fur, or a shader written for Shadertoy or glslViewer [default: ./shaders or the working directory, if one is a Specula tree, else the built-in one]
+    /// Shader tree: a folder, an example such as examples:fur, built-in for that of the program, or a shader written for Shadertoy or glslViewer [default: ./shaders or the working directory, if one is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR|FILE")]
     pub shaders: Option<PathBuf>,
     /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, model (the light of the model's file), or none [default: studio]
@@ -313,13 +313,17 @@ pub fn example(name: &str) -> Result<Example, Failure> {
     })
 }
 
-/// The shader tree in a folder, or the example NAME in `examples:NAME`. Without a folder, the tree in ./shaders or else the
+/// The name of the built-in shader tree; `./built-in` is a folder.
+pub const BUILT_IN: &str = "built-in";
+
+/// The shader tree in a folder, [`BUILT_IN`], or the example NAME in `examples:NAME`. Without a folder, the tree in ./shaders or else the
 /// built-in one.
 pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
     if let Some(name) = directory.and_then(Path::to_str).and_then(|name| name.strip_prefix("examples:")) {
         return Ok(Source::example(Some(example(name)?)));
     }
     match directory {
+        Some(name) if name == Path::new(BUILT_IN) => Ok(Source::embedded()),
         Some(directory) if is_specula_tree(directory) => open(directory),
         Some(file) if Source::is_file(file) && file.exists() => open(file),
         Some(directory) if !directory.exists() => Err(Failure::Input(format!(

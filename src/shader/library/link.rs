@@ -147,6 +147,10 @@ impl Library {
         let dependencies = self.dependencies().into_iter();
         let texts: BTreeMap<_, _> =
             dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
+        let own = |path: &TreePath| snapshot.source().author_text(path).ok().map(Arc::<str>::from);
+        let is_adapted = snapshot.source().is_toy();
+        let with_own = texts.keys().filter(|_| is_adapted).filter_map(|path| Some((path.clone(), own(path)?)));
+        let author_texts = with_own.filter(|(path, own)| texts[path] != *own).collect();
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         let has_broken_watch = self.has_broken_watch();
         for slot in &mut self.slots {
@@ -185,6 +189,7 @@ impl Library {
             graph,
             warnings,
             texts,
+            author_texts,
             watched,
         });
         self.set = Some(Arc::clone(&set));

@@ -60,13 +60,20 @@ pub struct ShaderSet {
     pub graph: Graph,
     /// The compiler's warnings, and an error for each file whose text is refused ([`crate::shader::Source::quarantined`]).
     pub warnings: Vec<Diagnostic>,
-    /// The texts of all files that the stages depend on.
+    /// The texts of all files that the stages depend on, as they are compiled.
     pub texts: BTreeMap<TreePath, Arc<str>>,
+    /// The texts of those files whose author wrote another one, with the same lines: see [`Source::author_text`].
+    pub author_texts: BTreeMap<TreePath, Arc<str>>,
     /// The watched expression.
     pub watched: Option<Watching>,
 }
 
 impl ShaderSet {
+    /// The text of a file as its author wrote it.
+    pub fn author_text(&self, path: &TreePath) -> Option<&Arc<str>> {
+        self.author_texts.get(path).or_else(|| self.texts.get(path))
+    }
+
     /// Whether no stage is still to be compiled.
     pub fn is_complete(&self) -> bool {
         self.pending.is_empty()

@@ -145,6 +145,13 @@ impl Source {
         Ok(draft.map_or(own, |draft| draft.text.to_string()))
     }
 
+    /// The text of a file to be shown and typed: as its author wrote it. A dragged number is in place of the file's.
+    pub fn author_text(&self, path: &TreePath) -> Result<String, SourceError> {
+        let is_dragged = self.draft.as_ref().is_some_and(|texts| texts.contains_key(path));
+        let own = if is_dragged { None } else { self.tree.author_text(path) };
+        own.map_or_else(|| self.read(path), Ok)
+    }
+
     /// The errors of a single opened file that are known before anything is compiled.
     pub fn problems(&self) -> Vec<Diagnostic> {
         // Texts that are quarantined are not those on disk.

@@ -113,6 +113,30 @@ impl Tree {
         }
     }
 
+    /// The folder that holds the files of the tree that can be written.
+    pub fn folder_of_files(&self) -> Option<&Path> {
+        match self {
+            Self::Toy(toy) => Some(toy.folder()),
+            _ => self.root(),
+        }
+    }
+
+    /// The path of a file below [`Self::folder_of_files`]; `None` if it is not on disk.
+    pub fn path_of_file(&self, path: &TreePath) -> Option<TreePath> {
+        match self {
+            Self::Toy(toy) => toy.path_of_file(path),
+            _ => self.root().map(|_| path.clone()),
+        }
+    }
+
+    /// The text of a file as its author wrote it, where [`Self::read`] returns another one. Both have the same lines.
+    pub fn author_text(&self, path: &TreePath) -> Option<String> {
+        match self {
+            Self::Toy(toy) => toy.author_text(path),
+            _ => None,
+        }
+    }
+
     /// The files to watch of a tree that has no directory of its own. They change with the texts.
     pub fn files(&self) -> Vec<PathBuf> {
         match self {

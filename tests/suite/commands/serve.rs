@@ -444,3 +444,27 @@ fn there_is_no_picture_without_the_model_that_was_asked_for() {
     served.picture("a.npy", &json!({}));
     served.quit();
 }
+
+/// A file of another playground is compiled with some words changed; a program reads and writes it as its author wrote it.
+#[test]
+fn a_single_file_is_read_and_written_as_its_author_wrote_it() {
+    const WAVE: &str = "uniform vec2 u_resolution;\nvoid main() {\n    float sum;\n    for (int i = 0; i < 4; i++) sum += 0.1;\n    gl_FragColor = vec4(sum, 0.5, 0.0, 1.0);\n}\n";
+    let tree = Tree::new();
+    std::fs::write(tree.beside("wave.frag"), WAVE).unwrap();
+    let mut served = Served::start(tree, &["--shaders", "wave.frag"]);
+    let files = served.running.done(json!({"command": "files"}));
+    assert_eq!(files["files"][0], "opened/wave.frag", "{files}");
+    let read = served.running.done(json!({"command": "file", "file": "opened/wave.frag"}));
+    assert_eq!(read["text"], WAVE);
+    let picture = served.picture("a.npy", &json!({}));
+    let text = WAVE.replace("sum += 0.1", "sum += 0.2");
+    served.running.done(json!({"command": "edit", "file": "opened/wave.frag", "text": text, "base": WAVE}));
+    assert_eq!(std::fs::read_to_string(served.tree.beside("wave.frag")).unwrap(), text);
+    assert!(served.picture("a.npy", &json!({})) != picture, "the edit changes nothing");
+    served.running.done(json!({"command": "undo"}));
+    assert_eq!(std::fs::read_to_string(served.tree.beside("wave.frag")).unwrap(), WAVE);
+    assert!(served.picture("a.npy", &json!({})) == picture);
+    let around = served.running.refused(json!({"command": "edit", "file": "toy.glsl", "text": "float x;\n"}));
+    assert!(around.contains("single file, opened/wave.frag"), "{around}");
+    served.quit();
+}

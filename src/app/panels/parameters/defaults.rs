@@ -62,7 +62,7 @@ pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut AskedD
     }
     let Some(only) = own.about.clone() else { return };
     let edits = state.edits_of_defaults(only.as_deref());
-    let has_folder = state.has_folder();
+    let has_files = state.has_files();
     let mut closes = false;
     let modal = Modal::new(Id::new("write defaults dialog")).show(egui, |ui| {
         ui.set_max_width(560.0);
@@ -90,10 +90,10 @@ pub(in crate::app) fn show(egui: &egui::Context, state: &State, own: &mut AskedD
                         }
                     });
                 });
-                if !has_folder {
+                if !has_files {
                     ui.add(Label::new(RichText::new(NO_FOLDER).small().color(ERROR)).wrap());
                 }
-                has_folder
+                has_files
             }
         };
         ui.horizontal(|ui| {

@@ -1,7 +1,6 @@
 //! The file as the user types it: text in colors, with the values beside it. Ctrl+S saves it.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::text::{CCursor, CCursorRange, LayoutJob};
@@ -22,7 +21,7 @@ use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::small_mono_font;
-use crate::shader::{TreePath, highlights};
+use crate::shader::{Source, TreePath, highlights};
 use crate::write_back::TreeFile;
 
 /// The spaces that Tab types.
@@ -30,6 +29,8 @@ const INDENT: &str = "    ";
 
 /// A file that is typed.
 struct Typing {
+    /// Its path in the tree, which for a single file is not the one on disk.
+    path: TreePath,
     /// The text with which the typing began, or that was saved last.
     base: Arc<str>,
     text: String,
@@ -64,8 +65,8 @@ impl Typing {
 #[derive(Default)]
 pub(super) struct Editor {
     files: BTreeMap<TreeFile, Typing>,
-    /// The folder of the open tree, if the shown files are of it and can be written.
-    root: Option<PathBuf>,
+    /// The open tree, if the shown files are of it and can be written.
+    source: Option<Source>,
     /// The character where the cursor goes, once the file is shown.
     cursor: Option<usize>,
     /// The last text in colors.
@@ -79,19 +80,20 @@ impl Editor {
         self.cursor = Some(text.split_inclusive('\n').take(line).map(|line| line.chars().count()).sum());
         let new = || {
             let (base, known) = (text.clone(), text.clone());
-            Typing { base, text: text.to_string(), sent: None, known, older: Vec::new() }
+            Typing { path: path.clone(), base, text: text.to_string(), sent: None, known, older: Vec::new() }
         };
         self.files.entry(file).or_insert_with(new);
     }
 
-    /// Whether files can be typed.
-    pub(super) fn can_begin(&self) -> bool {
-        self.root.is_some()
+    /// Whether a file can be typed.
+    pub(super) fn can_begin(&self, path: &TreePath) -> bool {
+        self.file(path).is_some()
     }
 
     /// A file of the open tree.
     fn file(&self, path: &TreePath) -> Option<TreeFile> {
-        Some(TreeFile { root: self.root.clone()?, path: path.clone() })
+        let source = self.source.as_ref()?;
+        Some(TreeFile { root: source.folder_of_files()?.to_owned(), path: source.path_of_file(path)? })
     }
 
     /// A file of the open tree as it is typed.
@@ -128,8 +130,7 @@ impl Editor {
     /// Follows what was written, and what other programs write to files that have no changes of the user.
     pub(super) fn update(&mut self, state: &State) {
         let Some(shaders) = &state.session.shaders else { return };
-        let in_use = state.source.root().filter(|root| state.shader.root.as_deref() == Some(*root));
-        self.root = in_use.map(Path::to_owned);
+        self.source = state.is_tree_in_use().then(|| state.source.clone());
         if let Some(saved) = &state.traces.written
             && let Some(file) = self.files.get_mut(&saved.file)
             && let Some(sent) = file.sent.take_if(|sent| *sent == saved.typed)
@@ -144,10 +145,9 @@ impl Editor {
                 None => {}
             }
         }
-        for (TreeFile { path, .. }, file) in
-            self.files.iter_mut().filter(|(of, _)| Some(&of.root) == self.root.as_ref())
-        {
-            let now = state.traces.saved.of(path).or_else(|| shaders.texts.get(path));
+        let root = self.source.as_ref().and_then(|source| source.folder_of_files());
+        for (_, file) in self.files.iter_mut().filter(|(of, _)| Some(&*of.root) == root) {
+            let now = state.traces.saved.of(&file.path).or_else(|| shaders.author_text(&file.path));
             now.filter(|now| **now != file.known).into_iter().for_each(|now| file.take(now));
         }
     }
@@ -275,8 +275,14 @@ mod tests {
     #[test]
     fn an_older_text_of_the_tree_is_no_change_of_another_program() {
         let text = |text: &str| Arc::<str>::from(text);
-        let mut file =
-            Typing { base: text("a"), text: "b".to_owned(), sent: None, known: text("a"), older: Vec::new() };
+        let mut file = Typing {
+            path: "a.glsl".into(),
+            base: text("a"),
+            text: "b".to_owned(),
+            sent: None,
+            known: text("a"),
+            older: Vec::new(),
+        };
         file.saved(text("b"));
         file.text = "c".to_owned();
         file.saved(text("c"));

@@ -229,10 +229,14 @@ fn edit(
 ) {
     let Some((path, text)) = model.path().zip(model.text()) else { return };
     if !editor.has(path) {
-        let button = ui.add_enabled(editor.can_begin(), egui::Button::new("Edit").small());
+        let button = ui.add_enabled(editor.can_begin(path), egui::Button::new("Edit").small());
         let hint = "Type into the file. A double click on a line does the same";
         let of_other = "This is a file of the tree before: the shaders of the open one do not compile yet";
-        let why_not = if state.has_folder() { of_other } else { NO_FOLDER };
+        let why_not = match (state.has_files(), state.is_tree_in_use()) {
+            (false, _) => NO_FOLDER,
+            (true, false) => of_other,
+            (true, true) => "The program has added this file to the one that you opened",
+        };
         if button.on_hover_text(hint).on_disabled_hover_text(why_not).clicked() {
             editor.begin(path, text, scroll.first);
             scroll.keep();

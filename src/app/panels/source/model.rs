@@ -154,7 +154,7 @@ impl CodeModel {
 fn shown_file(state: &State, shaders: &ShaderSet) -> Option<(TreePath, Arc<str>)> {
     let known = |path: &TreePath| {
         let saved = state.traces.saved.of(path);
-        Some((path.clone(), saved.or_else(|| shaders.texts.get(path))?.clone()))
+        Some((path.clone(), saved.or_else(|| shaders.author_text(path))?.clone()))
     };
     let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
     let first = || shaders.texts.keys().next().and_then(known);

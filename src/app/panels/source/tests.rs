@@ -212,7 +212,7 @@ fn calls_stand_below_their_callers_with_their_lights() {
 /// Opens a tree whose shaders are in use.
 fn open(harness: &mut Harness<'_, Window>, root: &Path) {
     let state = &mut harness.state_mut().state;
-    (state.source, state.shader.root) = (Source::disk(root.to_owned()), Some(root.to_owned()));
+    (state.source, state.shader.in_use) = (Source::disk(root.to_owned()), Some(root.to_owned()));
 }
 
 #[test]
@@ -249,6 +249,33 @@ fn a_file_is_typed_and_saved() {
     harness.get_by_role_and_label(Role::Button, "Done").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("Text of the file").is_none());
+}
+
+/// A file of another playground is compiled with some words changed. It is shown and typed as its author wrote it.
+#[test]
+fn a_single_file_is_typed_as_its_author_wrote_it() {
+    const OWN: &str = "void main() {\n    float a;\n}\n";
+    let mut harness = window(TEXT, events(2.0), &[2, 3]);
+    let file = Path::new("toys/wave.frag");
+    let opened = TreePath::from("opened/wave.frag");
+    let state = &mut harness.state_mut().state;
+    (state.source, state.shader.in_use) = (Source::open(file.to_owned()), Some(file.to_owned()));
+    state.traces.file = Some(opened.clone());
+    let texts = BTreeMap::from([(opened.clone(), "void Main() {\n    float a = 0.0;\n}\n".into())]);
+    let author_texts = BTreeMap::from([(opened, OWN.into())]);
+    state.session.shaders = Some(Arc::new(ShaderSet { generation: 2, texts, author_texts, ..ShaderSet::default() }));
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    let field = harness.get_by_label("Text of the file");
+    assert_eq!(field.accesskit_node().value().unwrap(), OWN);
+    field.type_text("// new ");
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(2);
+    let file = TreeFile { root: "toys".into(), path: "wave.frag".into() };
+    let text = format!("// new {OWN}").into();
+    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file, base: OWN.into(), text })]);
 }
 
 #[test]

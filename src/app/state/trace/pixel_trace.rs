@@ -25,7 +25,7 @@ pub(in crate::app) struct PixelTrace {
 impl PixelTrace {
     /// The text of the traced file.
     pub(in crate::app) fn text(&self) -> Arc<str> {
-        self.of.picture.shaders.texts.get(&self.file).cloned().unwrap_or_default()
+        self.of.picture.shaders.author_text(&self.file).cloned().unwrap_or_default()
     }
 
     pub(super) fn side(&self) -> Option<Side<'_>> {

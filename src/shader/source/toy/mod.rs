@@ -119,6 +119,16 @@ impl Toy {
         check_text(bytes.to_vec())
     }
 
+    /// The path of a file of the tree below [`Self::folder`], if it is one of those on disk.
+    pub fn path_of_file(&self, path: &TreePath) -> Option<TreePath> {
+        TreePath::parse(below(path.as_str(), OPENED)?)
+    }
+
+    /// The text of a file on disk, before lines that Vulkan does not compile are changed.
+    pub fn author_text(&self, path: &TreePath) -> Option<String> {
+        self.text(below(path.as_str(), OPENED)?).ok()
+    }
+
     /// The bytes of an image.
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match below(path.as_str(), OPENED) {
