@@ -136,12 +136,13 @@ built_shaderc() {
 
 host_triple() { rustc -vV | sed -n 's/^host: //p'; }
 
-# Prints the folder that caches the shaderc library between checkouts: one per version, target and C++ compiler.
+# Prints the folder that caches the shaderc library between checkouts: one per version, files of scripts/shaderc, target and C++ compiler.
 shaderc_cache() {
-    local version gxx
+    local version gxx files
     version=$(sed -n '/^name = "shaderc-sys"$/{n;s/^version = "\(.*\)"$/\1/p;}' "$ROOT/Cargo.lock")
     gxx=$(g++ -dumpversion 2>/dev/null | cut -d . -f 1)
-    printf '%s\n' "$(cache_folder)/shaderc-$version-$(host_triple)-g++$gxx"
+    files=$(cat "$ROOT"/scripts/shaderc/* | sha256sum | cut -c 1-8)
+    printf '%s\n' "$(cache_folder)/shaderc-$version-$files-$(host_triple)-g++$gxx"
 }
 
 # Sets SHADERC_CONFIG: cargo options that link the cached shaderc library instead of building it.
