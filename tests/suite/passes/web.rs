@@ -60,6 +60,14 @@ fn names_and_macros_of_webgl_work() {
         ),
         ("lib/a.glsl", "#pragma once\nfloat one() { return 1.0; }\n"),
     ]);
+    // Names of the stage, words of later GLSL, and macros for what the stage replaces.
+    is_green(&[(
+        "toy.frag",
+        "precision mediump float;\n#define U uniform\n#define MAIN void main()\nU vec2 u_resolution;\nstruct Pass { float a; };\nvec3 toy;\n\
+         float toy_begin(float uint) { return uint; }\nvec4 texture(vec2 p) { return vec4(0.0, p.y, 0.0, 1.0); }\n\
+         MAIN {\n    float case = 0.5, layout = 0.5; Pass own = Pass(case);\n    toy = vec3(0.0, toy_begin(own.a) + layout, 0.0);\n    \
+         gl_FragColor = texture(vec2(u_resolution.x / u_resolution.x, toy.y));\n}\n",
+    )]);
     // A channel without a file may be read as a cube map.
     is_green(&[(
         "toy.glsl",
@@ -165,6 +173,13 @@ fn a_sampler_without_an_image_is_black() {
         0,
         &["toy.frag:1:19: warning: nothing gives the image `photo`", "`//@texture photo \"image.png\"`", "`unused`"],
     );
+    assert_eq!(pixel(folder.path(), 9, 9), GREEN);
+    // The name is the author's, although it is a function of later GLSL.
+    let text = "uniform sampler2D texture;\nuniform samplerCube sky;\nuniform sampler3D fog;\nvoid main() {\n    gl_FragColor = vec4(0, 1, 0, 0) + \
+                texture2D(texture, vec2(0.0)) + textureCube(sky, vec3(1.0)) + textureLod(fog, vec3(0.0), 0.0);\n}\n";
+    let texts = [("toy.frag", text)];
+    render(folder.path(), &texts, &[])
+        .expect(0, &["1:19: warning: nothing gives the image `texture`", "`sky`", "`fog`"]);
     assert_eq!(pixel(folder.path(), 9, 9), GREEN);
 }
 

@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use super::channel::{Channel, channel, channels, samplers};
 use super::declared::{Storage, declarations, has_texture, is_built_in};
-use super::initial::{Edit, initial_values};
+use super::initial::{Edit, apply, initial_values};
+use super::plain::{renamed, with_plain_names};
 use crate::shader::glsl::{Token, TokenKind, code, find_word, includes, lines, tokens};
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
@@ -65,9 +66,10 @@ pub(super) fn is_shadertoy(text: &str) -> bool {
     uses(text, "mainImage") && !has_main(text)
 }
 
-/// Whether a text defines `main`.
+/// Whether a text defines `main`, which a macro may do for it.
 pub(super) fn has_main(text: &str) -> bool {
-    text.contains("main") && code(text).windows(3).any(|t| (t[0].text, t[1].text, t[2].text) == ("void", "main", "("))
+    let all = || tokens(text).filter(|token| token.kind != TokenKind::Comment).collect::<Vec<_>>();
+    text.contains("main") && all().windows(3).any(|t| (t[0].text, t[1].text, t[2].text) == ("void", "main", "("))
 }
 
 /// The version of GLSL that a text is written in.
@@ -128,25 +130,8 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
 pub(super) fn with_names(message: &str) -> String {
     let names = NAMES_OF_ES.iter().map(|name| (*name, renamed(name)));
     let webgl = WEBGL.iter().map(|(name, own)| (*name, (*own).to_owned()));
-    names.chain(webgl).fold(message.replace("'Main'", "'main'"), |message, (name, own)| message.replace(&own, name))
-}
-
-fn renamed(name: &str) -> String {
-    format!("{}_", &name[..name.len() - 1])
-}
-
-fn apply(text: &str, mut edits: Vec<Edit>) -> String {
-    // Of two edits that overlap, the one that begins first or is longer holds.
-    edits.sort_by_key(|(bytes, _)| (bytes.start, std::cmp::Reverse(bytes.end)));
-    let (mut out, mut end) = (String::with_capacity(text.len() + 64), 0);
-    for (bytes, by) in edits.into_iter().filter(|(bytes, by)| !bytes.is_empty() || !by.is_empty()) {
-        if bytes.start >= end {
-            out += &text[end..bytes.start];
-            out += &by;
-            end = bytes.end;
-        }
-    }
-    out + &text[end..]
+    let message = with_plain_names(message).replace("'Main'", "'main'");
+    names.chain(webgl).fold(message, |message, (name, own)| message.replace(&own, name))
 }
 
 /// Spaces in place of these bytes; line breaks stay.

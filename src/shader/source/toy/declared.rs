@@ -127,10 +127,15 @@ pub(super) fn outputs<'a>(code: &[Token<'a>]) -> Vec<&'a str> {
     outputs.flat_map(|declaration| declaration.names).map(|name| name.text).collect()
 }
 
-/// The names of the 2D images that a text declares.
-pub(super) fn samplers<'a>(code: &[Token<'a>]) -> Vec<&'a str> {
-    let flat = declarations(code).into_iter().filter(|declaration| declaration.kind == "sampler2D");
-    flat.flat_map(|declaration| declaration.names).filter(|name| name.is_plain).map(|name| name.text).collect()
+/// The images that a text declares: the type and the name of each.
+pub(super) fn samplers<'a>(code: &[Token<'a>]) -> Vec<(&'a str, &'a str)> {
+    let kinds = ["sampler2D", "samplerCube", "sampler3D", "sampler2DArray"];
+    let images = declarations(code).into_iter().filter(|declaration| kinds.contains(&declaration.kind));
+    let named = |declaration: Declaration<'a>| {
+        let plain = declaration.names.into_iter().filter(|name| name.is_plain);
+        plain.map(move |name| (declaration.kind, name.text)).collect::<Vec<_>>()
+    };
+    images.flat_map(named).collect()
 }
 
 fn declaration<'a>(statement: &[Token<'a>]) -> Option<Declaration<'a>> {

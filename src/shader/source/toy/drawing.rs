@@ -65,19 +65,19 @@ pub(super) fn keeps_image(drawings: &[Drawing]) -> bool {
     drawings.iter().any(reads) || BEFORE.iter().any(|name| uses(&image.text, name))
 }
 
-/// The samplers of drawings whose image nothing names, each with the index of the first drawing that declares it.
-pub(super) fn without_image(drawings: &[Drawing]) -> Vec<(usize, String)> {
+/// The samplers of drawings whose image nothing names, as type and name, each with the index of the first drawing that declares it.
+pub(super) fn without_image(drawings: &[Drawing]) -> Vec<(usize, [String; 2])> {
     let is_named = |name: &str| {
         let pass = name.strip_prefix("before_").unwrap_or(name);
         IMAGES.contains(&pass)
             || declared::is_built_in(name)
             || drawings.iter().any(|drawing| drawing.pass == pass || declared::has_texture(&drawing.text, name))
     };
-    let mut out: Vec<(usize, String)> = Vec::new();
+    let mut out: Vec<(usize, [String; 2])> = Vec::new();
     for (place, drawing) in drawings.iter().enumerate() {
-        for name in declared::samplers(&code(&drawing.text)) {
-            if !is_named(name) && out.iter().all(|(_, other)| other != name) {
-                out.push((place, name.to_owned()));
+        for (kind, name) in declared::samplers(&code(&drawing.text)) {
+            if !is_named(name) && out.iter().all(|(_, [_, other])| other != name) {
+                out.push((place, [kind, name].map(str::to_owned)));
             }
         }
     }
@@ -137,7 +137,8 @@ pub(super) fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> 
         lines.insert(format!("uniform sampler2D {KEYBOARD};\n"));
     }
     let black = without_image(drawings).into_iter().filter(|(place, _)| *place == index);
-    lines.extend(black.map(|(_, name)| format!("//@texture {name} \"{BLACK}\"\n")));
+    let layers = |kind: &str| if matches!(kind, "sampler3D" | "sampler2DArray") { " layers=2" } else { "" };
+    lines.extend(black.map(|(_, [kind, name])| format!("//@texture {name} \"{BLACK}\"{}\n", layers(&kind))));
     lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
     lines.into_iter().collect()
 }

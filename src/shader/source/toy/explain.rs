@@ -45,7 +45,7 @@ impl Toy {
         let Some(file) = Path::new(&diagnostic.file).strip_prefix(self.folder()).ok().and_then(slashes) else {
             return diagnostic;
         };
-        let Ok(text) = self.text(&file) else { return diagnostic };
+        let Ok(text) = self.own_text(&file) else { return diagnostic };
         let pass = self.drawings().into_iter().find(|drawing| drawing.file == file).map(|drawing| drawing.pass);
         let pass = pass.as_deref().unwrap_or(COMMON);
         self.with_help(without_body(with_words(quoted(diagnostic, &text, pass), &text), &text), &text)

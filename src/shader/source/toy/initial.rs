@@ -70,6 +70,21 @@ fn declare(tokens: &[Token<'_>], edits: &mut Vec<Edit>) {
     }
 }
 
+/// A text with its edits.
+pub(super) fn apply(text: &str, mut edits: Vec<Edit>) -> String {
+    // Of two edits that overlap, the one that begins first or is longer holds.
+    edits.sort_by_key(|(bytes, _)| (bytes.start, std::cmp::Reverse(bytes.end)));
+    let (mut out, mut end) = (String::with_capacity(text.len() + 64), 0);
+    for (bytes, by) in edits.into_iter().filter(|(bytes, by)| !bytes.is_empty() || !by.is_empty()) {
+        if bytes.start >= end {
+            out += &text[end..bytes.start];
+            out += &by;
+            end = bytes.end;
+        }
+    }
+    out + &text[end..]
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::adapt::adapted;

@@ -20,6 +20,7 @@ mod explain;
 mod initial;
 mod noise;
 mod own;
+mod plain;
 mod problems;
 
 use std::collections::BTreeSet;
@@ -36,6 +37,7 @@ use channel::{Channel, channels};
 use declared::{add_standard, assignments, globals, outputs, sliders, variables_of};
 use drawing::{BLACK, BUFFERS, Drawing, KEYBOARD, NOISE, declarations, keeps_image, parts, without_image};
 use own::OwnNames;
+use plain::{plain, with_plain_names};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -83,8 +85,13 @@ impl Toy {
         self.file.parent().unwrap_or(Path::new("."))
     }
 
-    /// The text of a file beside the toy. The toy itself, which the user has named, may be a link to anywhere.
+    /// The text of a file beside the toy, as [`plain`] leaves it.
     fn text(&self, file: &str) -> Result<String, SourceError> {
+        self.own_text(file).map(|text| plain(&text))
+    }
+
+    /// The text of a file beside the toy. The toy itself, which the user has named, may be a link to anywhere.
+    fn own_text(&self, file: &str) -> Result<String, SourceError> {
         if file == self.name() {
             return check_text(read_anywhere(&self.file, MAX_FILE_BYTES)?);
         }
@@ -126,7 +133,7 @@ impl Toy {
 
     /// The text of a file on disk, before lines that Vulkan does not compile are changed.
     pub fn author_text(&self, path: &TreePath) -> Option<String> {
-        self.text(below(path.as_str(), OPENED)?).ok()
+        self.own_text(below(path.as_str(), OPENED)?).ok()
     }
 
     /// The bytes of an image.
@@ -199,10 +206,10 @@ impl Toy {
     pub fn warnings(&self) -> Vec<Diagnostic> {
         let drawings = self.drawings();
         let unknown = without_image(&drawings);
-        let warning = |(place, name): &(usize, String)| {
+        let warning = |(place, [_, name]): &(usize, [String; 2])| {
             let Drawing { file, text, .. } = &drawings[*place];
             let shown = self.folder().join(file).display().to_string();
-            problems::black(&shown, text, name)
+            problems::black(&shown, self.own_text(file).as_ref().unwrap_or(text), &with_plain_names(name))
         };
         unknown.iter().map(warning).collect()
     }

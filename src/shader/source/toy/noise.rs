@@ -15,9 +15,9 @@ pub(super) fn png() -> Result<Vec<u8>, String> {
     encoded(&image)
 }
 
-/// A black pixel as a PNG file, which WebGL reads from a sampler without an image.
+/// A black image as a PNG file, which WebGL reads from a sampler without one. It is twice as wide as high, so that it can be a cube map, or two layers.
 pub(super) fn black() -> Result<Vec<u8>, String> {
-    encoded(&RgbaImage::from_pixel(1, 1, Rgba([0, 0, 0, 255])))
+    encoded(&RgbaImage::from_pixel(2, 1, Rgba([0, 0, 0, 255])))
 }
 
 fn encoded(image: &RgbaImage) -> Result<Vec<u8>, String> {

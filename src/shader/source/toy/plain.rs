@@ -1,0 +1,79 @@
+//! The text of an opened file with words that WebGL has as names, and macros that stand for `uniform`, replaced by what the rest of this
+//! module knows. Each line keeps its number, and all but those with such a macro their columns.
+
+use super::initial::{Edit, apply};
+use crate::shader::glsl::{Token, TokenKind, tokens};
+
+/// Names that toy.glsl declares for itself.
+const OURS: [&str; 9] =
+    ["toy", "Pass", "toy_begin", "toy_end", "toy_variables", "toy_uv", "toy_color", "toyFragCoord", "toyFragColor"];
+/// Types, words and functions of later GLSL that may be names of variables in GLSL ES 1.00.
+const LATER: [&str; 7] = ["uint", "uvec2", "uvec3", "uvec4", "case", "layout", "texture"];
+
+/// A text in which no name is one of toy.glsl's, and no variable a word of GLSL 4.60.
+pub(super) fn plain(text: &str) -> String {
+    let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).collect();
+    let mut edits = with_uniforms(&all);
+    let later: Vec<&str> = LATER.into_iter().filter(|name| is_declared(&all, name)).collect();
+    let is_name = |token: &&Token<'_>| OURS.contains(&token.text) || later.contains(&token.text);
+    edits.extend(all.iter().filter(is_name).map(|token| (token.bytes.clone(), renamed(token.text))));
+    if edits.is_empty() { text.to_owned() } else { apply(text, edits) }
+}
+
+/// A message with the names that the author has written.
+pub(super) fn with_plain_names(message: &str) -> String {
+    OURS.iter().chain(&LATER).fold(message.to_owned(), |message, name| message.replace(&renamed(name), name))
+}
+
+/// Another name of the same length.
+pub(super) fn renamed(name: &str) -> String {
+    format!("{}_", &name[..name.len() - 1])
+}
+
+/// Whether a text declares a variable of this name: a type or another name stands before it, and none behind it.
+fn is_declared(all: &[Token<'_>], name: &str) -> bool {
+    let ends = |token: &Token<'_>| matches!(token.text, ";" | "=" | "," | ")" | "[");
+    let is_type = |text: &str| !matches!(text, "return" | "switch" | "else");
+    let leads = |token: &Token<'_>| token.kind == TokenKind::Word && is_type(token.text) || token.text == ",";
+    all.windows(3).any(|three| three[1].text == name && leads(&three[0]) && ends(&three[2]))
+}
+
+/// `uniform` in place of the macros that stand for it alone.
+fn with_uniforms(all: &[Token<'_>]) -> Vec<Edit> {
+    let is_end = |at: usize| all.get(at).is_none_or(|next| !next.in_directive || next.kind == TokenKind::Directive);
+    let names = (0..all.len().saturating_sub(3)).filter(|at| {
+        all[*at].kind == TokenKind::Directive
+            && all[at + 1].text == "define"
+            && all[at + 3].text == "uniform"
+            && is_end(at + 4)
+    });
+    let names: Vec<&str> = names.map(|at| all[at + 2].text).collect();
+    let used = all.iter().filter(|token| !token.in_directive && names.contains(&token.text));
+    used.map(|token| (token.bytes.clone(), "uniform".to_owned())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_later_glsl_and_of_the_stage_are_replaced() {
+        let text = "uniform sampler2D texture;\nfloat f(float case) { uvec2 = 1.0; return texture2D(texture, p).x + case; }\nvec3 toy;\n";
+        let found = "uniform sampler2D textur_;\nfloat f(float cas_) { uvec2 = 1.0; return texture2D(textur_, p).x + cas_; }\nvec3 to_;\n";
+        assert_eq!(plain(text), found);
+        assert_eq!(with_plain_names("'textur_' : no 'to_'"), "'texture' : no 'toy'");
+        for text in [
+            "void f(in uint x) { uint a = uint(1); switch (a) { case 1u: return; } }\n",
+            "layout(location = 0) out vec4 color;\nvec4 texture(vec2 p) { return texture(noise, p); }\n",
+        ] {
+            assert_eq!(plain(text), text);
+        }
+    }
+
+    #[test]
+    fn a_macro_may_stand_for_uniform() {
+        assert_eq!(plain("#define U uniform\nU float a; // U\n"), "#define U uniform\nuniform float a; // U\n");
+        let more = "#define U uniform float\nU a;\n";
+        assert_eq!(plain(more), more);
+    }
+}
