@@ -18,6 +18,11 @@ use text_form::TextForm;
 pub struct Written(Vec<(PathBuf, [Option<Vec<u8>>; 2])>);
 
 impl Written {
+    /// Files with their bytes before and after they were written.
+    pub fn new(files: Vec<(PathBuf, [Option<Vec<u8>>; 2])>) -> Self {
+        Self(files)
+    }
+
     /// Writes the bytes before, or with `again` those after. Files that have changed since stay.
     ///
     /// # Errors

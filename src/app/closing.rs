@@ -34,11 +34,11 @@ fn reason(unsaved: &Unsaved, root: Option<&Path>) -> String {
         false => of.join(path.as_str()).display().to_string(),
     };
     let names: Vec<String> = unsaved.keys().map(name).collect();
-    let (are, them, saves) = match names.len() {
-        1 => ("is", "it", "saves it"),
-        _ => ("are", "them", "saves the one in sight"),
+    let (are, saves) = match names.len() {
+        1 => ("is", "saves it"),
+        _ => ("are", "saves the one in sight"),
     };
-    format!("{} {are} not saved: Ctrl+S {saves}; close again to leave {them}", names.join(", "))
+    format!("{} {are} not saved: Ctrl+S {saves}; close again to drop the changes", names.join(", "))
 }
 
 #[cfg(test)]
@@ -57,7 +57,7 @@ mod tests {
         let file = |root: &str, path: &str| TreeFile { root: root.into(), path: path.into() };
         let mut unsaved = Unsaved::from([(file("trees/a", "brdf/ndf.glsl"), "one".to_owned())]);
         assert!(!closing.may_close(&mut state, unsaved.clone()));
-        let told = "brdf/ndf.glsl is not saved: Ctrl+S saves it; close again to leave it";
+        let told = "brdf/ndf.glsl is not saved: Ctrl+S saves it; close again to drop the changes";
         assert_eq!(last(&state).as_deref(), Some(told));
         assert!(closing.may_close(&mut state, unsaved.clone()));
         // More was typed since, and into a file of another tree, too.

@@ -61,7 +61,9 @@ pub(crate) enum Message {
     /// The tree of the comparison with this number, or why there is none.
     SecondTreeFound(u64, Result<Source, String>),
     /// The texts of a version of the shaders have been written to its files, or the reason why not.
-    VersionWritten(u64, Result<String, String>),
+    VersionWritten(u64, Result<(String, Written), String>),
+    /// The files of an exercise have been written, or the reason why not.
+    FilesWritten(Result<(String, Written), String>),
     /// A summary of the edits that were written to the shader files with the files, or the reason why none were.
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.

@@ -64,8 +64,11 @@ pub(in crate::app) fn end_draft(state: &mut State, engine: &mut Engine) {
 /// Ends the dragging if the file has changed otherwise. Keeps the line of the watched expression. Drops settings whose values have become defaults.
 pub(in crate::app) fn follow_edits(state: &mut State, engine: &mut Engine, shaders: &ShaderSet) {
     let is_other = |draft: &Draft| shaders.texts.get(&draft.path).is_none_or(|text| !draft.is_of(text));
-    if state.edits.draft.as_ref().is_some_and(is_other) {
+    if let Some(draft) = state.edits.draft.as_ref().filter(|draft| is_other(draft)) {
+        let lost = draft.edits.iter().map(|edit| edit.new.as_str()).collect::<Vec<_>>().join(", ");
+        let told = format!("{} was saved with other changes; the dragged {lost} was not in it", draft.path);
         end_draft(state, engine);
+        state.say(told);
     }
     follow_restored(state, engine, shaders);
     let expression = &mut state.session.settings.expression;

@@ -152,7 +152,7 @@ fn edit_exercise(state: &mut State, engine: &mut Engine, exercise: &Exercise) {
     let text = state.session.shaders.as_ref().and_then(|shaders| shaders.texts.get(&path));
     let line = text.and_then(|text| exercise.line_to_open(text));
     let file = state.learning.folder.join(path.as_str());
-    edit(engine, &Place { file, line, column: None }).unwrap_or_else(|message| state.say(message));
+    edit(state, engine, &Place { file, line, column: None }).unwrap_or_else(|message| state.say(message));
 }
 
 /// Writes files of the exercise, on a thread of its own.
@@ -162,7 +162,7 @@ fn write_exercise(state: &mut State, engine: &mut Engine, files: Vec<(TreePath, 
         let shown = |path: &TreePath| shaders.as_ref()?.texts.get(path).cloned();
         let write = |(path, text): (TreePath, String)| (shown(&path), folder.join(path.as_str()), Arc::from(text));
         let writes: Vec<_> = files.into_iter().map(write).collect();
-        Some(Message::Say(write_files(&folder, &writes).map_or_else(|message| message, |()| done.to_owned())))
+        Some(Message::FilesWritten(write_files(&folder, &writes).map(|written| (done.to_owned(), written))))
     });
 }
 

@@ -6,8 +6,10 @@ use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
 use crate::app::source_line::stop;
 use crate::app::state::State;
+use crate::app::state::arrangement::Panel;
+use crate::app::state::workspace::PanelRequest;
 use crate::settings::{AddedModel, Settings};
-use crate::shader::{Change, Source};
+use crate::shader::{Change, Source, TreePath};
 use crate::threads::Message;
 use std::path::Path;
 use std::path::PathBuf;
@@ -106,7 +108,7 @@ pub(in crate::app) fn on_tree_found(
     state.picture.settled = None;
     state.edits.forget_draft();
     // Nor is the text of a file that of the same file in another tree.
-    state.traces.saved.forget();
+    state.traces.leave_tree();
     watch_tree(state, engine, &source);
     engine.threads.worker.open_tree(source, tree);
     engine.threads.worker.reloaded(edits);
@@ -115,12 +117,24 @@ pub(in crate::app) fn on_tree_found(
     }
 }
 
-/// Opens a file or folder in the user's editor.
+/// Opens a file or folder in the user's editor. If there is none, the panel Source shows a file of the shaders.
 ///
 /// # Errors
-/// A message: there is no editor.
-pub(in crate::app) fn edit(engine: &Engine, place: &Place) -> Result<(), String> {
-    let editor = editor::open(place)?;
+/// A message: there is no editor, and no stage has the file.
+pub(in crate::app) fn edit(state: &mut State, engine: &Engine, place: &Place) -> Result<(), String> {
+    let editor = match editor::open(place) {
+        Ok(editor) => editor,
+        Err(message) => {
+            let shaders = state.session.shaders.as_ref();
+            let is_shown = |path: &TreePath| shaders.is_some_and(|shaders| shaders.texts.contains_key(path));
+            let Some(file) = state.source.changed(&place.file).into_iter().find(is_shown) else { return Err(message) };
+            state.traces.seeks = place.line.map(|line| (file.clone(), line));
+            state.traces.file = Some(file);
+            state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
+            state.say(format!("The panel Source shows the file: {message}"));
+            return Ok(());
+        }
+    };
     engine.threads.wait(|| editor.failure().map(Message::Say));
     Ok(())
 }

@@ -9,12 +9,16 @@ use crate::scene::environment::MODEL;
 use crate::scene::{CameraController, CameraView, Model, pick};
 use crate::settings::{EnvironmentSettings, LightSource};
 
-/// Selects what a pixel of the picture on screen shows, or nothing, also if that is selected already.
+/// Selects what a pixel of the picture on screen shows, or nothing, also if that is selected already, unless a panel shows the values of the
+/// pixel: then the click is for these.
 pub(in crate::app) fn select_at(state: &mut State, [x, y]: [u32; 2]) {
     let Some(frame_state) = state.shown().filter(|frame_state| frame_state.pipelines.draws_model) else { return };
     let Some(scene) = frame_state.scene.clone() else { return };
     let hit = pick(scene.model(), &frame_state.camera, frame_state.size, (x, y), |instance| scene.sides(instance));
-    state.select(state.selected.clicked(hit.map(|hit| hit.instance)));
+    let hit = hit.map(|hit| hit.instance);
+    let sight = &state.workspace.sight;
+    let is_same = (sight.source || sight.inspector) && hit.map(Selected::Instance) == Some(state.selected);
+    state.select(if is_same { state.selected } else { state.selected.clicked(hit) });
     state.workspace.request(PanelRequest::FollowSelection);
 }
 

@@ -1,7 +1,7 @@
 //! Has the pinned pixel traced while the panel Source, or the list of the evaluations of an expression, is in sight.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::app::engine::Engine;
 use crate::app::frames::progress::{awaits_edit, is_settled, lacks_nothing, moves};
@@ -96,9 +96,9 @@ pub(in crate::app) fn request_of(
     }
 }
 
-/// Has the shown file read while there are errors: the shaders in use have older texts, of files without an error, too.
+/// Has the shown file read while the shaders in use have older texts: there are errors, also of other files, or comments alone were edited.
 fn read_saved(state: &mut State, engine: &Engine) {
-    if !state.has_errors() {
+    if !state.has_errors() && !state.traces.saved.is_behind() {
         return state.traces.saved.forget();
     }
     let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
@@ -117,8 +117,10 @@ fn read_saved(state: &mut State, engine: &Engine) {
 
 /// The pixel, the stage and the frame to trace; `None` while the picture is not final.
 fn subject(state: &State, engine: &Engine, at: [u32; 2]) -> Option<Subject> {
-    // While the picture moves, the trace of a moment stays.
-    let last = state.traces.asked().filter(|_| moves(state)).map(|asked| &asked.picture);
+    // While the picture moves, the trace of a moment stays: that of a click, so that an edit shows its values before and after at one time.
+    let is_old = engine.gpu_is_fast() && state.traces.before().is_none() && state.traces.is_old();
+    let last = state.traces.asked().filter(|asked| moves(state) && asked.at == at && !is_old);
+    let last = last.map(|asked| &asked.picture);
     let picture = final_picture(state, engine, last)?;
     let shown = state.shown()?;
     let sight = &state.workspace.sight;
@@ -201,6 +203,7 @@ pub(in crate::app) fn on_traced(state: &mut State, number: u64, traced: Traced) 
     if !state.traces.take(number, place, trace) {
         return;
     }
+    state.traces.taken = Some((Instant::now(), Duration::from_secs_f64(ms / 1e3)));
     let Some(newest) = state.traces.newest() else { return };
     let fragment = newest.trace.as_ref().ok().and_then(|trace| Some((trace, trace.visible()?)));
     let event = Event::Traced {

@@ -119,7 +119,8 @@ pub(in crate::app) static OPEN_PATH: Spec<()> =
 
 /// Opens a file or folder in the user's editor.
 pub(in crate::app) static OPEN_EDITOR: Spec<Place> =
-    Spec::new("open-editor", |_, engine, place: Place| edit(engine, &place).map(|()| Until::DONE)).of_window();
+    Spec::new("open-editor", |state, engine, place: Place| edit(state, engine, &place).map(|()| Until::DONE))
+        .of_window();
 
 /// The commands for files and folders that were dropped together. The first model is opened, and the others stand beside it; all do if the drop
 /// `adds`. While pictures are compared, another picture takes part.

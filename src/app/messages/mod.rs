@@ -9,7 +9,7 @@ use crate::app::actions::checks::on_operations_checked;
 use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
 use crate::app::actions::compare::tree::{on_second_tree, on_second_tree_found};
-use crate::app::actions::compare::write::on_version_written;
+use crate::app::actions::compare::write::{on_files_written, on_version_written};
 use crate::app::actions::costs::{on_functions_timed, on_version_timed};
 use crate::app::actions::edits::{on_typed_written, on_written};
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
@@ -108,7 +108,8 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::PictureFits(number, still) => on_picture_fits(state, engine, number, still),
         Message::SecondTreeFound(number, found) => on_second_tree_found(state, engine, number, found),
         Message::SecondTree(number, message) => on_second_tree(state, engine, number, message),
-        Message::VersionWritten(number, written) => on_version_written(state, engine, number, &written),
+        Message::VersionWritten(number, written) => on_version_written(state, engine, number, written),
+        Message::FilesWritten(written) => on_files_written(state, written),
         Message::Chosen(answer) => {
             let dialog = state.choosing.take();
             match answer {

@@ -86,6 +86,11 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
     state.shader.told = None;
     state.stages.invalidate();
     match &reload.outcome {
+        Outcome::Unchanged { .. } => state.traces.saved.edited_silently(),
+        Outcome::Ready(_) => state.traces.saved.forget(),
+        Outcome::Failed(_) => {}
+    }
+    match &reload.outcome {
         Outcome::Unchanged { cleared: false } => check_again(state, engine),
         Outcome::Unchanged { cleared: true } => {
             check_again(state, engine);

@@ -131,7 +131,8 @@ fn messages(ui: &mut Ui, notices: &Notices) {
         ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
             for Notice { text, at, .. } in notices.past() {
                 ui.label(small_mono(at.format("%H:%M:%S").to_string()).color(QUIET));
-                ui.add(Label::new(text).wrap());
+                // Menus justify their texts.
+                ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| ui.add(Label::new(text).wrap()));
             }
         });
     });

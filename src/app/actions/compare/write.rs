@@ -11,6 +11,7 @@ use crate::app::state::State;
 use crate::picture;
 use crate::shader::{SourceError, TreePath, leads_out};
 use crate::threads::Message;
+use crate::write_back::Written;
 
 /// Writes the texts of a version over the files that differ from it, on a thread of its own. A text on disk that was never shown, such
 /// as an edit with an error, is kept beside its file.
@@ -25,7 +26,7 @@ pub(in crate::app) fn write_version(state: &mut State, engine: &mut Engine, numb
         let files: Vec<_> = files.into_iter().map(|(path, text)| (shown(&path), path, text)).collect();
         let names: Vec<&str> = files.iter().filter_map(|(_, path, _)| path.file_name()?.to_str()).collect();
         let done = format!("Wrote version {number} of {}", names.join(", "));
-        Some(Message::VersionWritten(number, write_files(&root, &files).map(|()| done)))
+        Some(Message::VersionWritten(number, write_files(&root, &files).map(|written| (done, written))))
     });
 }
 
@@ -34,21 +35,33 @@ pub(in crate::app) fn on_version_written(
     state: &mut State,
     engine: &mut Engine,
     number: u64,
-    written: &Result<String, String>,
+    written: Result<(String, Written), String>,
 ) {
     state.waiting.answer_written(number, written.as_ref().err().map(String::as_str));
     if written.is_ok() {
         // The files have its texts now, so nothing is compiled.
         show_newest(state, engine);
     }
-    state.say(written.clone().unwrap_or_else(|message| message));
+    on_files_written(state, written);
+}
+
+/// Tells that files have been written, which an undo takes back, or why not.
+pub(in crate::app) fn on_files_written(state: &mut State, written: Result<(String, Written), String>) {
+    let told = match written {
+        Ok((told, written)) => {
+            state.history.record_files(&state.session.shared_settings(), written);
+            told
+        }
+        Err(message) => message,
+    };
+    state.say(told);
 }
 
 /// A file to write: the text that is shown, its path, and the new text.
 pub(in crate::app) type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
 
 /// Writes files below `root` whole, all or none as far as reading them tells. A file keeps its byte order mark.
-pub(in crate::app) fn write_files(root: &Path, files: &[Write]) -> Result<(), String> {
+pub(in crate::app) fn write_files(root: &Path, files: &[Write]) -> Result<Written, String> {
     let mark: &[u8] = b"\xef\xbb\xbf";
     let mut writes = Vec::new();
     for (shown, path, text) in files {
@@ -57,19 +70,24 @@ pub(in crate::app) fn write_files(root: &Path, files: &[Write]) -> Result<(), St
         }
         let error = |error: std::io::Error| format!("cannot write {}: {error}. Nothing was written", path.display());
         let old = match std::fs::read(path) {
-            Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            read => read.map_err(error)?,
+            Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => None,
+            read => Some(read.map_err(error)?),
         };
+        let before = old.clone();
+        let old = old.unwrap_or_default();
         let (has_mark, old_text) = (old.starts_with(mark), old.strip_prefix(mark).unwrap_or(&old));
         let is_known = old.is_empty() || old_text == text.as_bytes();
         if !is_known && shown.as_ref().is_none_or(|shown| old_text != shown.as_bytes()) {
             keep_beside(path, &old).map_err(error)?;
         }
-        writes.push((path, [if has_mark { mark } else { b"" }, text.as_bytes()].concat()));
+        let after = [if has_mark { mark } else { b"" }, text.as_bytes()].concat();
+        writes.push((path.clone(), [before, Some(after)]));
     }
-    writes.iter().try_for_each(|(path, bytes)| {
-        picture::replace_file(path, bytes).map_err(|error| format!("cannot write {}: {error}", path.display()))
-    })
+    writes.iter().try_for_each(|(path, [_, after])| {
+        let written = picture::replace_file(path, after.as_deref().unwrap_or_default());
+        written.map_err(|error| format!("cannot write {}: {error}", path.display()))
+    })?;
+    Ok(Written::new(writes))
 }
 
 /// Writes a copy beside `path`, as `NAME.bak`, or as `NAME.1.bak`, `NAME.2.bak`, ... if there are copies already.

@@ -12,6 +12,8 @@ use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, QUIET, small_font, small_m
 use crate::app::widgets::with_powers;
 use crate::shader::{Mode, PixelValue};
 
+/// The mode of the picture.
+const FINAL: &str = "final";
 /// Height of a row, points.
 pub(super) const HEIGHT: f32 = 18.0;
 /// Width and height of a swatch, points.
@@ -45,10 +47,14 @@ pub(super) fn show(
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut more = Some(more);
+        let is_background = reading.is_complete && !reading.is_hit();
         for modes in found.chunk_by(|a, b| a.group == b.group) {
-            // Alpha of a pass is a number as the others.
-            let has_data =
-                |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| reading.is_of_toy || has_data(&value));
+            // Where there is no surface, modes of light show the background, of which the picture has the color. Alpha of a pass is a number
+            // as the others.
+            let has_data = |mode: &&Mode| {
+                let is_seen = !is_background || mode.slug == FINAL;
+                reading.value(&mode.slug).is_some_and(|value| reading.is_of_toy || is_seen && has_data(&value))
+            };
             let (shown, folded): (Vec<&Mode>, Vec<&Mode>) = modes.iter().copied().partition(has_data);
             ui.add_space(6.0);
             let group = &modes[0].group;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, TextureHandle, Vec2,
-    pos2, vec2,
+    Align, Align2, Area, Color32, CursorIcon, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, TextureHandle,
+    Vec2, pos2, vec2,
 };
 use image::RgbImage;
 
@@ -20,6 +20,8 @@ const GRIP: f32 = 16.0;
 const MARK: f32 = 9.0;
 /// Space around a name, in points.
 const MARGIN: Vec2 = vec2(8.0, 4.0);
+/// Least width of a name, in points.
+const LEAST_ROOM: f32 = 60.0;
 
 /// Shows the border over the picture, and moves it with the mouse. It lies below messages and errors.
 pub(super) fn show(
@@ -85,9 +87,16 @@ impl ShownMap {
     }
 }
 
-/// Writes the name of one of the pictures.
+/// Writes the name of one of the pictures, in several lines where there is little room.
 fn name(painter: &Painter, at: Pos2, corner: Align2, text: &str) {
-    let text = painter.layout_no_wrap(text.to_owned(), small_font(), Color32::from_gray(220));
+    let picture = painter.clip_rect();
+    let room = match corner.x() {
+        Align::Min => picture.max.x - at.x,
+        Align::Center => picture.width(),
+        Align::Max => at.x - picture.min.x,
+    };
+    let room = (room - 2.0 * MARGIN.x).max(LEAST_ROOM);
+    let text = painter.layout(text.to_owned(), small_font(), Color32::from_gray(220), room);
     let inner = corner.anchor_size(at, text.size() + 2.0 * MARGIN);
     painter.rect_filled(inner, 4.0, Color32::from_black_alpha(200));
     painter.galley(inner.min + MARGIN, text, Color32::WHITE);

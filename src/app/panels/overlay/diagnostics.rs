@@ -68,6 +68,8 @@ pub(super) fn show(
             });
             // The fade has the color of panels, and would lie over the card as a bar.
             ui.spacing_mut().scroll.fade.strength = 0.0;
+            // A bar that is in sight tells that there is more.
+            ui.spacing_mut().scroll.dormant_handle_opacity = 0.6;
             egui::ScrollArea::vertical().max_height((picture.height() * PART).max(40.0)).show(ui, |ui| {
                 for diagnostic in diagnostics {
                     one(ui, diagnostic, files.is_file(&diagnostic.file), commands);
@@ -78,6 +80,7 @@ pub(super) fn show(
                 };
                 if failed {
                     ui.label(RichText::new(picture).small().color(QUIET));
+                    ui.add_space(4.0);
                 }
             });
         });

@@ -112,11 +112,14 @@ fn files(
             if let Some(newest) = newest.filter(|_| !of_stage.is_empty()) {
                 ui.label(RichText::new(format!("In {} at this pixel", newest.stage)).small().color(QUIET));
                 of_stage.iter().for_each(|path| file(ui, path, true));
+            }
+            let others = shaders.texts.keys().filter(|path| !of_stage.contains(path) && !is_hidden(path));
+            let others: Vec<&TreePath> = others.filter(|path| words.are_in(path.as_str())).collect();
+            if !of_stage.is_empty() && !others.is_empty() {
                 ui.separator();
                 ui.label(RichText::new("Other files").small().color(QUIET));
             }
-            let others = shaders.texts.keys().filter(|path| !of_stage.contains(path) && !is_hidden(path));
-            others.for_each(|path| file(ui, path, false));
+            others.into_iter().for_each(|path| file(ui, path, false));
         });
     });
     if list.inner.is_none() {
@@ -190,14 +193,23 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
             let Some(fragment) = state.traces.fragment() else {
                 return quiet(ui, "every fragment is discarded here; choose one below");
             };
-            let text = trace.proof_text(fragment);
+            let (text, moment) = (trace.proof_text(fragment), moment(state));
             let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
             let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
-            let text = RichText::new(format!("{mark}{text}")).small().color(color);
-            ui.add(Label::new(text).truncate()).on_hover_text(hint);
+            let later = moment
+                .as_ref()
+                .map_or("", |_| ". The picture has moved on since: pause, or click another pixel, for values of now");
+            let text = RichText::new(format!("{mark}{text}{}", moment.unwrap_or_default())).small().color(color);
+            ui.add(Label::new(text).truncate()).on_hover_text(format!("{hint}{later}"));
         }
         _ => {}
     }
+}
+
+/// The time of the traced picture, if the picture on screen is of another.
+fn moment(state: &State) -> Option<String> {
+    let traced = state.traces.newest()?.of.picture.clock.time_s;
+    (traced != state.picture.clock.time_s).then(|| format!(" of {traced:.2} s"))
 }
 
 /// How many lines the last edit has changed, and the first of them.

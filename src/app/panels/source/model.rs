@@ -10,6 +10,7 @@ use crate::app::state::trace::Progress;
 use crate::app::state::trace::choice::Choice;
 use crate::app::state::trace::rows::{Note, Reach, Row};
 use crate::identity::Identity;
+use crate::shader::expression::lines_before;
 use crate::shader::rewrite::literals_by_line;
 use crate::shader::trace::Act;
 use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
@@ -86,13 +87,16 @@ impl CodeModel {
         let Some((path, text)) = shown_file(state, shaders) else {
             return *self = Self::default();
         };
-        let (text, folded) = match typed(&path) {
-            Some(text) => (text, BTreeSet::new()),
-            None => (text, folds(&path)),
-        };
         let display = state.source.display_path(&path);
         let diagnostics = state.session.diagnostics.iter().chain(state.checks.diagnostics());
-        let diagnostics = diagnostics.filter(|found| found.file == display);
+        let diagnostics = diagnostics.filter(|found| found.file == display).cloned().collect();
+        let (text, folded, diagnostics) = match typed(&path) {
+            Some(typed) => {
+                let moved = in_typed(diagnostics, &text, &typed);
+                (typed, BTreeSet::new(), moved)
+            }
+            None => (text, folds(&path), diagnostics),
+        };
         let inputs = Inputs {
             path,
             text,
@@ -101,7 +105,7 @@ impl CodeModel {
                 state.traces.progress == Progress::NoPixel,
             ),
             choice: state.traces.choice.clone(),
-            diagnostics: diagnostics.cloned().collect(),
+            diagnostics,
             folded,
         };
         if self.inputs.as_ref() == Some(&inputs) {
@@ -219,6 +223,27 @@ fn fold(lines: &mut [CodeLine], function: &Function, is_folded: bool) {
             (false, false) => first.row.reach,
         };
     }
+}
+
+/// Diagnostics about the saved text at the lines of the typed one. Those about lines that were typed over are left out.
+fn in_typed(mut diagnostics: Vec<Diagnostic>, saved: &str, typed: &str) -> Vec<Diagnostic> {
+    if diagnostics.is_empty() || saved == typed {
+        return diagnostics;
+    }
+    let before = lines_before(saved, typed);
+    let lines: [Vec<&str>; 2] = [saved, typed].map(|text| text.lines().collect());
+    let line = |old: u32| {
+        let new = before.iter().position(|before| *before == Some(old))?;
+        (lines[0].get(old as usize - 1) == lines[1].get(new)).then_some(new as u32 + 1)
+    };
+    diagnostics.retain_mut(|found| match found.line.map(line) {
+        Some(None) => false,
+        moved => {
+            found.line = moved.flatten();
+            true
+        }
+    });
+    diagnostics
 }
 
 /// The lines with the messages about them, without those that are folded.

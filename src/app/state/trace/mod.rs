@@ -12,7 +12,7 @@ pub(in crate::app) mod subject;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -27,6 +27,10 @@ pub(in crate::app) use pixel_trace::PixelTrace;
 use rows::{Row, Sources, rows};
 use saved::{SavedText, WrittenText};
 use subject::Subject;
+
+/// How long a trace of a moving picture stands at least, and how many times as long as it took, before the next moment is traced.
+const MOMENT: Duration = Duration::from_secs(1);
+const TIMES: u32 = 4;
 
 /// Frames within which the panel comes into sight after it was asked for.
 const MOST_UNSEEN: u32 = 8;
@@ -75,6 +79,8 @@ pub(in crate::app) struct Traces {
     resting: Resting<Subject>,
     /// Frames in which the panel was out of sight since a command asked for a trace.
     unseen: u32,
+    /// When the newest trace came, and how long it took.
+    pub(in crate::app) taken: Option<(Instant, Duration)>,
     /// The newest trace. It stays while a newer one is under way.
     newest: Option<Arc<PixelTrace>>,
     /// The trace of the version before, at the same pixel of the same picture.
@@ -105,6 +111,26 @@ impl Traces {
     /// The file that the panel shows: the chosen one, or that of the stage.
     pub(in crate::app) fn file_shown(&self) -> Option<&TreePath> {
         self.file.as_ref().or(self.newest.as_ref().map(|newest| &newest.file))
+    }
+
+    /// The first line of a call in the traced file.
+    pub(in crate::app) fn begin_of(&self, call: &str) -> Option<(TreePath, u32)> {
+        let newest = self.newest.as_ref()?;
+        let lines = newest.trace.as_ref().ok()?.lines_where(self.fragment()?, |event| *event.calls == *call);
+        let line = lines.iter().find(|line| line.file == newest.file.as_str())?.line;
+        Some((newest.file.clone(), line))
+    }
+
+    /// Whether a trace of a moving picture may be replaced by one of the picture now.
+    pub(in crate::app) fn is_old(&self) -> bool {
+        let is_old = |(at, took): (Instant, Duration)| at.elapsed() > MOMENT.max(took * TIMES);
+        !self.is_awaited && self.taken.is_some_and(is_old)
+    }
+
+    /// Forgets what was chosen in another tree.
+    pub(in crate::app) fn leave_tree(&mut self) {
+        (self.stage, self.file, self.choice, self.seeks) = (None, None, Choice::default(), None);
+        self.saved.forget();
     }
 
     /// Notes that a trace of `subject` was asked for, by the number of the request.

@@ -1,4 +1,4 @@
-//! The text of a file as it was saved, while it does not compile: the shaders in use have an older one.
+//! The text of a file as it was saved, while the shaders in use have an older one: it does not compile, or differs in comments alone.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -22,6 +22,8 @@ pub(in crate::app) struct SavedText {
     /// The file that was asked for, and a hash of the last edit and its errors.
     asked: Option<(TreePath, u64)>,
     text: Option<(TreePath, Arc<str>)>,
+    /// Number of edits that have compiled nothing since the shaders in use: of comments alone.
+    silent: u64,
 }
 
 impl SavedText {
@@ -34,7 +36,7 @@ impl SavedText {
         last_edit: Option<DateTime<Local>>,
     ) -> bool {
         let mut hasher = DefaultHasher::new();
-        last_edit.hash(&mut hasher);
+        (last_edit, self.silent).hash(&mut hasher);
         errors.for_each(|error| error.hash(&mut hasher));
         let asked = (path.clone(), hasher.finish());
         if self.asked.as_ref() == Some(&asked) {
@@ -54,6 +56,16 @@ impl SavedText {
     /// The text of a file.
     pub(in crate::app) fn of(&self, path: &TreePath) -> Option<&Arc<str>> {
         self.text.as_ref().filter(|(of, _)| of == path).map(|(_, text)| text)
+    }
+
+    /// Notes an edit after which the shaders are those from before: its texts differ from theirs.
+    pub(in crate::app) fn edited_silently(&mut self) {
+        self.silent += 1;
+    }
+
+    /// Whether the shaders in use lack such an edit.
+    pub(in crate::app) fn is_behind(&self) -> bool {
+        self.silent > 0
     }
 
     /// Forgets the text: the shaders in use have it.
@@ -79,7 +91,10 @@ mod tests {
         assert_eq!(saved.of(&"b.glsl".into()), None, "nobody has asked for it");
         saved.take(path.clone(), "text".into());
         assert_eq!(saved.of(&path).map(|text| &**text), Some("text"));
+        assert!(!saved.is_behind() && !saved.lacks(&path, errors.iter(), at));
+        saved.edited_silently();
+        assert!(saved.is_behind() && saved.lacks(&path, errors.iter(), at), "an edit of a comment");
         saved.forget();
-        assert_eq!(saved.of(&path), None);
+        assert!(saved.of(&path).is_none() && !saved.is_behind());
     }
 }
