@@ -37,14 +37,14 @@ impl Choice {
         if call.is_none() && self.time.is_none() {
             return trace.lines(fragment);
         }
-        let mut times: HashMap<Doing, usize> = HashMap::new();
+        // The time of the first event of each statement in the chosen call.
+        let mut first: HashMap<Doing, u32> = HashMap::new();
         trace.lines_where(fragment, |event| {
             if call.is_some_and(|call| !is_related(&event.calls, call)) {
                 return false;
             }
-            let time = times.entry(event.doing.clone()).or_default();
-            *time += 1;
-            self.time.is_none_or(|chosen| chosen == *time)
+            let first = *first.entry(event.doing.clone()).or_insert(event.time);
+            self.time.is_none_or(|chosen| chosen == (event.time - first + 1) as usize)
         })
     }
 }
@@ -64,10 +64,11 @@ impl Choice {
         }
         let is_it = |doing: &Doing| (doing.act, &doing.name) == (done.act, &done.name);
         let events = events_of(trace, fragment, (file, line), is_it);
-        let chosen = (1..).zip(events).filter(|(_, event)| call.is_none_or(|call| is_related(&event.calls, call)));
-        let numbers: Vec<u32> = chosen.map(|(number, _)| number).collect();
-        let at = self.time.map_or(numbers.len(), |time| time.min(numbers.len()));
-        at.checked_sub(1).map_or(0, |at| numbers[at])
+        let chosen = events.filter(|event| call.is_none_or(|call| is_related(&event.calls, call)));
+        let numbers: Vec<u32> = chosen.map(|event| event.time).collect();
+        let (Some(first), Some(last)) = (numbers.first(), numbers.last()) else { return 0 };
+        self.time
+            .map_or(*last, |time| (*last).min(first + u32::try_from(time).map_or(0, |time| time.saturating_sub(1))))
     }
 }
 
@@ -82,19 +83,26 @@ fn events_of<'a>(
     events.filter(move |event| event.doing.file == file && event.doing.line == line && is_it(&event.doing))
 }
 
-/// The evaluations of an expression in a fragment, in order: the values that a line gave to a variable, or returned for `return`.
+/// The evaluations of an expression in a fragment, in order, with their numbers from 1: the values that a line gave to a variable, or returned
+/// for `return`.
 pub(in crate::app) fn evaluations<'a>(
     trace: &'a Trace,
     fragment: usize,
     place: (&'a str, u32),
     expression: &'a str,
-) -> Vec<&'a Event> {
+) -> Vec<(u32, &'a Event)> {
     let is_it = move |doing: &Doing| match doing.act {
         Act::Store | Act::Argument => doing.name == expression,
         Act::Return => expression == "return",
         Act::Condition | Act::Discard => false,
     };
-    events_of(trace, fragment, place, is_it).collect()
+    // A line may give a value to an argument and store to it.
+    let (mut last, mut number): (HashMap<&Doing, u32>, u32) = (HashMap::new(), 0);
+    let numbered = events_of(trace, fragment, place, is_it).map(|event| {
+        number += event.time - last.insert(&event.doing, event.time).unwrap_or(0);
+        (number, event)
+    });
+    numbered.collect()
 }
 
 /// The paths of calls in a fragment, in their order.
