@@ -13,6 +13,7 @@ mod assertion;
 mod calls;
 mod conditions;
 mod events;
+mod history;
 mod invocations;
 mod lights;
 pub mod log;
@@ -33,6 +34,7 @@ use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 pub use calls::{is_related, last_call, light_of, paths_to};
+pub use history::FragmentState;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use lights::TracedLight;
@@ -299,15 +301,6 @@ impl Trace {
             self.redrawn = other.redrawn;
         }
         Ok(())
-    }
-
-    /// Whether a fragment ends with the color of the picture, bit by bit. Of a vertex or a compute invocation, whether its stage draws the
-    /// same picture.
-    pub fn is_proven(&self, fragment: usize) -> bool {
-        match self.has_color() {
-            true => self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment)),
-            false => self.redrawn == self.picture,
-        }
     }
 
     /// Whether the result of the stage is a color that can be read.

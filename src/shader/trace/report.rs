@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::history::ulps;
 use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
-use crate::shader::StageKind;
 
 /// Values that are kept of each place from the begin, and from the end.
 const MOST_KEPT: usize = 16;
@@ -119,6 +119,9 @@ impl Trace {
             let not_logged = found.not_logged;
             let mut json = json!({ "depth": found.depth, "color": found.color.map(floats),
                 "discarded": found.color.is_none(), "visible": self.visible() == Some(index), "not_logged": not_logged });
+            if let Some(state) = self.state(index) {
+                (json["state"], json["covered_by"]) = (json!(state.name()), json!(state.covered_by()));
+            }
             if let Some(vertex) = found.vertex {
                 json = json!({ "vertex": vertex, "position": found.color.map(floats), "not_logged": not_logged });
             }
@@ -128,79 +131,17 @@ impl Trace {
         let traced = if self.has_color() { color } else { Some(self.redrawn) };
         let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
             "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
-            "redrawn": floats(self.redrawn) });
+            "redrawn": floats(self.redrawn), "blended_ulp": self.blended(fragment).map(|color| ulps(color, self.picture)) });
         json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
             "stage": self.stage, "fragment": fragment, "proof": proof,
             "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
             "not_reached": self.not_reached(fragment) })
     }
-
-    /// How the color of a fragment compares with the picture's, in words.
-    pub fn proof_text(&self, fragment: usize) -> String {
-        let with = self.target.name();
-        if !self.has_color() {
-            return match self.redrawn == self.picture {
-                true => "the picture is the same with the traced stage".to_owned(),
-                false => format!(
-                    "with the traced stage, {with} differs by {} ulp: passes read earlier frames, or the driver computes in another order",
-                    ulps(self.redrawn, self.picture)
-                ),
-            };
-        }
-        let found = self.fragments.get(fragment);
-        let Some((found, color)) = found.and_then(|found| Some((found, found.color?))) else {
-            return "discarded".to_owned();
-        };
-        if self.is_shown(found) {
-            return format!("equal to {with}{}", self.target.precision());
-        }
-        if self.visible() != Some(fragment) {
-            return "hidden, or blended over".to_owned();
-        }
-        let why = match self.redrawn == self.picture {
-            true => "a later pass changes it, or other surfaces are blended with it",
-            false => "the driver computes the traced stage in another order, or passes read earlier frames",
-        };
-        format!("{} ulp from {with}: {why}", ulps(color, self.picture))
-    }
-
-    /// The name of an invocation in a list of all.
-    pub fn name_of(&self, fragment: usize) -> String {
-        let Some(of) = self.fragments.get(fragment) else { return String::new() };
-        match (self.kind, of.vertex) {
-            (_, Some(vertex)) => {
-                let same = self.fragments[..fragment].iter().filter(|other| other.vertex == of.vertex).count();
-                let again = if same > 0 { format!(", draw {}", same + 1) } else { String::new() };
-                format!("Vertex {vertex}{again}")
-            }
-            (StageKind::Compute, None) => match self.fragments.len() {
-                1 => "Invocation".to_owned(),
-                _ => format!("Run {}", fragment + 1),
-            },
-            _ => {
-                let is = match (of.color, self.visible() == Some(fragment)) {
-                    (None, _) => "discarded",
-                    (_, true) => "seen",
-                    _ => "hidden or blended",
-                };
-                format!("Fragment {fragment}: {is}, depth {:.4}", of.depth)
-            }
-        }
-    }
 }
 
 fn floats(bits: [u32; 4]) -> Value {
     Value::Array(bits.map(|bits| TracedValue::float(f32::from_bits(bits)).json()).to_vec())
-}
-
-/// The largest distance of two numbers in steps of floats.
-fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
-    let place = |bits: u32| {
-        let magnitude = i64::from(bits & 0x7fff_ffff);
-        if bits >> 31 == 0 { magnitude } else { -magnitude }
-    };
-    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
 }
 
 /// The entry of what a statement does, among those of its line.
@@ -316,15 +257,5 @@ mod tests {
         let chosen = trace.lines_where(0, |event| event.time == 2 || event.time == 9999);
         assert_eq!(chosen[1].text(), "k = 2, 9999 ×2");
         assert_eq!(trace.not_reached(0), BTreeMap::from([("a.glsl", vec![7])]));
-    }
-
-    #[test]
-    fn the_proof_counts_steps_of_floats() {
-        let mut trace = trace(Vec::new(), &[]);
-        assert_eq!((trace.is_proven(0), trace.proof_text(0).as_str()), (true, "equal to the picture"));
-        trace.picture = [1.0, 0.0, 0.0, 0.0].map(f32::to_bits);
-        trace.fragments[0].color = Some([1.0 + f32::EPSILON * 2.0, 0.0, -0.0, 0.0].map(f32::to_bits));
-        assert!(!trace.is_proven(0) && trace.proof_text(0).starts_with("2 ulp from the picture"));
-        assert_eq!(ulps([0x8000_0001; 4], [1; 4]), 2);
     }
 }
