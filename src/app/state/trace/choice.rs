@@ -1,8 +1,9 @@
-//! Which of a pixel's fragments, calls and times the values are of.
+//! Which of a pixel's fragments, calls, rounds and times the values are of.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::rounds::{Round, TracedLoop, traced_loops};
 use crate::shader::trace::{
     Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related, last_call, light_of, paths_to,
 };
@@ -14,6 +15,8 @@ pub(in crate::app) struct Choice {
     pub(in crate::app) fragment: Option<usize>,
     /// The path of a call, as `shade > add_light [light 2]`: it, the calls that led to it, and those that it makes. `None` for all.
     pub(in crate::app) call: Option<String>,
+    /// The round of a loop, of those in the traced file. What is outside of the loop stays. `None` for all.
+    pub(in crate::app) round: Option<Round>,
     /// Of a statement that ran more than once, the time that counts, from 1. `None` for all.
     pub(in crate::app) time: Option<usize>,
 }
@@ -30,21 +33,30 @@ impl Choice {
         calls(trace, fragment).iter().any(|of| paths_to(of).any(|path| path == call)).then_some(call)
     }
 
-    /// The lines of the chosen fragment, call and time.
-    pub(in crate::app) fn lines(&self, trace: &Trace) -> Vec<LineOfTrace> {
+    /// The chosen round, if the fragment has it.
+    fn round_of(&self, trace: &Trace, fragment: usize, text: &str) -> Option<(TracedLoop, u32)> {
+        let Round { line, number } = self.round?;
+        let found = traced_loops(trace, fragment, text, None).into_iter().find(|of| of.line == line)?;
+        found.rounds.iter().any(|(of, _)| *of == number).then_some((found, number))
+    }
+
+    /// The lines of the chosen fragment, call, round and time. `text`: that of the traced file.
+    pub(in crate::app) fn lines(&self, trace: &Trace, text: &str) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragment_of(trace) else { return Vec::new() };
         let call = self.call_of(trace, fragment);
-        if call.is_none() && self.time.is_none() {
-            return trace.lines(fragment);
-        }
-        // The time of the first event of each statement in the chosen call.
+        let round = self.round_of(trace, fragment, text);
+        // The time of the first event of each statement in the chosen call and round.
         let mut first: HashMap<Doing, u32> = HashMap::new();
+        let mut events = 0..;
         trace.lines_where(fragment, |event| {
-            if call.is_some_and(|call| !is_related(&event.calls, call)) {
+            let at = events.next().unwrap_or_default();
+            let is_of_round = round.as_ref().is_none_or(|(of, number)| of.is_shown(at, *number));
+            if !is_of_round || call.is_some_and(|call| !is_related(&event.calls, call)) {
                 return false;
             }
+            let Some(chosen) = self.time else { return true };
             let first = *first.entry(event.doing.clone()).or_insert(event.time);
-            self.time.is_none_or(|chosen| chosen == (event.time - first + 1) as usize)
+            chosen == (event.time - first + 1) as usize
         })
     }
 }
@@ -55,20 +67,11 @@ impl Choice {
         Which { call: self.call.as_deref(), time: self.time }
     }
 
-    /// The number of the evaluation, from 1, whose value is shown last for a statement of a line. 0 without a choice: the last one counts.
-    pub(in crate::app) fn evaluation(&self, trace: &Trace, file: &str, line: u32, done: &Done) -> u32 {
-        let Some(fragment) = self.fragment_of(trace) else { return 0 };
-        let call = self.call_of(trace, fragment);
-        if call.is_none() && self.time.is_none() {
-            return 0;
-        }
-        let is_it = |doing: &Doing| (doing.act, &doing.name) == (done.act, &done.name);
-        let events = events_of(trace, fragment, (file, line), is_it);
-        let chosen = events.filter(|event| call.is_none_or(|call| is_related(&event.calls, call)));
-        let numbers: Vec<u32> = chosen.map(|event| event.time).collect();
-        let (Some(first), Some(last)) = (numbers.first(), numbers.last()) else { return 0 };
-        self.time
-            .map_or(*last, |time| (*last).min(first + u32::try_from(time).map_or(0, |time| time.saturating_sub(1))))
+    /// The number of the evaluation, from 1, whose value is shown last for a statement. 0 without a choice: the last one counts.
+    pub(in crate::app) fn evaluation(&self, shown: &Done) -> u32 {
+        let is_chosen = self.call.is_some() || self.round.is_some() || self.time.is_some();
+        let last = shown.last.last().or(shown.first.last()).filter(|_| is_chosen);
+        last.map_or(0, |once| once.time)
     }
 }
 
@@ -146,8 +149,8 @@ pub(in crate::app) fn listed_calls(trace: &Trace, fragment: usize) -> Vec<Listed
     listed
 }
 
-/// How often the statement ran that ran most often in the chosen call.
-pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace) -> usize {
+/// How often the statement ran that ran most often in the chosen call and round.
+pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace, text: &str) -> usize {
     let all = Choice { time: None, ..choice.clone() };
-    all.lines(trace).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
+    all.lines(trace, text).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
 }

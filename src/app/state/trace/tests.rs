@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::choice::evaluations;
+use super::rounds::Round;
 use super::rows::Reach;
 use super::sample::{add, subject};
 use super::*;
 use crate::shader::trace::sample::{called, event, trace};
-use crate::shader::trace::{Act, Event};
+use crate::shader::trace::{Act, Doing, Event};
 
 const OLD: &str = "float f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 const NEW: &str = "float f(float x) {\n    float b = 1.0;\n    float a = x * 4.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
@@ -148,6 +149,40 @@ fn evaluations_of_an_expression_are_in_the_order_of_their_calls() {
     assert!(of(3, "").is_empty() && of(9, "a").is_empty());
 }
 
+#[test]
+fn a_round_of_a_loop_is_chosen() {
+    let mut traces = Traces::default();
+    let text = "float f(float x) {\n    for (int i = 0; i < 2; i++)\n        x += 1.0;\n    return x;\n}\n";
+    let events = |step: f32| {
+        let mut events = vec![event(1, Act::Argument, "x", &[1.0])];
+        for round in [0.0, 1.0, 2.0] {
+            events.push(event(2, Act::Store, "i", &[round]));
+            events.push(event(2, Act::Condition, "", &[f32::from(round < 2.0)]));
+            if round < 2.0 {
+                events.push(event(3, Act::Store, "x", &[1.0 + step * (round + 1.0)]));
+            }
+        }
+        events.push(event(4, Act::Return, "", &[1.0 + 2.0 * step]));
+        events
+    };
+    add(&mut traces, &shaders(1, text), 1, events(1.0), &[1, 2, 3, 4]);
+    assert_eq!(texts(&traces, text)[..4], ["x = 1", "i = 0, 1, 2 ×3; 2 rounds", "x = 2, 3 ×2", "return 3"]);
+    traces.choice.round = Some(Round { line: 2, number: 2 });
+    assert_eq!(texts(&traces, text)[..4], ["x = 1", "i = 1; 1 round", "x = 3", "return 3"]);
+    let done = traces.rows(&"a.glsl".into(), text)[2].notes[0].done.clone();
+    assert_eq!((done.first[0].time, traces.choice.evaluation(&done)), (2, 2));
+    // The version before has the same round, where its loop stands one line higher.
+    let moved = format!("// A comment.\n{}", text.replace("1.0;", "2.0;"));
+    let below = |event: Event| Event { doing: Doing { line: event.doing.line + 1, ..event.doing }, ..event };
+    add(&mut traces, &shaders(2, &moved), 2, events(2.0).into_iter().map(below).collect(), &[2, 3, 4, 5]);
+    traces.choice.round = Some(Round { line: 3, number: 2 });
+    let expected = ["", "x = 1", "i = 1; 1 round", "x = 3 → 5", "return 3 → 5"];
+    assert_eq!(texts(&traces, &moved)[..5], expected);
+    // A round that the trace does not have counts no more.
+    traces.choice.round = Some(Round { line: 4, number: 2 });
+    assert_eq!(texts(&traces, &moved)[2], "i = 0, 1, 2 ×3; 2 rounds");
+}
+
 /// The log has the first and the last rounds of a long loop, in the second of three calls.
 #[test]
 fn times_count_rounds_that_were_not_logged() {
@@ -164,7 +199,7 @@ fn times_count_rounds_that_were_not_logged() {
     let chosen = |traces: &mut Traces, call: Option<&str>, time: Option<usize>| {
         traces.choice = Choice { call: call.map(str::to_owned), time, ..Choice::default() };
         let done = traces.rows(&"a.glsl".into(), text)[2].notes.first().map(|note| note.done.clone());
-        let evaluation = done.map(|done| traces.choice.evaluation(&trace, "a.glsl", 3, &done));
+        let evaluation = done.map(|done| traces.choice.evaluation(&done));
         (texts(traces, text)[2].clone(), evaluation)
     };
     let all = chosen(&mut traces, None, None);
