@@ -127,6 +127,9 @@ impl Trace {
         if self.is_shown(found) {
             return format!("equal to {with}{}", self.target.precision());
         }
+        if color.iter().any(|bits| !f32::from_bits(*bits).is_finite()) && self.visible() == Some(fragment) {
+            return format!("NaN or infinity, for which {with} has another number");
+        }
         let is = match self.state(fragment) {
             Some(FragmentState::Covered(by)) => return format!("covered by fragment {by}"),
             Some(FragmentState::Blended) => "blended with what is behind it",
