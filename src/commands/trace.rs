@@ -7,6 +7,7 @@ use specula::headless::TraceRequest;
 use specula::shader::trace::{Assertion, Trace};
 use specula::shader::{ShaderSet, StageKind, TreePath};
 
+use super::common::asserts::Asserted;
 use super::common::frames::Frames;
 use super::common::opened::Opened;
 use super::common::parse::{inside, pixel};
@@ -30,7 +31,8 @@ const CODE: usize = 60;
     In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [light 2]`: the call about \
     the second of `lights`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \
-    a component, as n.x. NAME can be `return` or `condition`. It traces its file alone."
+    a component, as n.x. NAME can be `return` or `condition`. It traces its file alone.\n\
+    If the shaders have assert() or print(), those of the whole picture are checked, too: a failed one is exit code 1."
 )]
 pub struct Args {
     #[command(flatten)]
@@ -87,6 +89,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
     let trace = headless.trace(&request)?;
     let around = if args.around { Some(headless.trace_around(&request)?) } else { None };
+    let asserted = Asserted::draw(&mut headless)?;
     drop(progress);
     let fragment = chosen(&trace, args.fragment)?;
     let failed: Vec<String> =
@@ -100,6 +103,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         if !args.assert.is_empty() {
             value["failed"] = json!(failed);
         }
+        if let Some(checks) = asserted.json() {
+            value["checks"] = checks;
+        }
         print_json(&value);
     } else {
         print(args.at, &trace, fragment);
@@ -107,8 +113,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     // The validation layers also report errors when objects are destroyed.
     drop(headless);
     check_validation(&gpu)?;
+    let told = asserted.tell(args.common.emits());
     match failed.is_empty() {
-        true => Ok(()),
+        true => told,
         false => Err(Failure::Input(failed.join("\n"))),
     }
 }
