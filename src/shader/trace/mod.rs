@@ -12,6 +12,7 @@ mod around;
 mod assertion;
 mod calls;
 mod conditions;
+mod elements;
 mod invocations;
 mod lights;
 pub mod log;
@@ -33,6 +34,7 @@ pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 use calls::Calls;
 pub use calls::{is_related, last_call, light_of, paths_to};
+use elements::Elements;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use lights::TracedLight;
@@ -233,7 +235,12 @@ impl Trace {
         let (logged, left_out) = log::decode(words);
         let fragment = |logged: log::LoggedFragment| {
             let mut calls = Calls::default();
-            let events = logged.events.iter().filter_map(|(number, bits)| event(stage, *number, *bits, &mut calls));
+            let elements = Elements::new(stage, logged.events.iter().map(|(number, bits)| (*number, *bits)));
+            let events = logged.events.iter().filter_map(|(number, bits)| {
+                let mut event = event(stage, *number, *bits, &mut calls)?;
+                elements.complete(&mut event.doing.name, (*number, *bits));
+                Some(event)
+            });
             let events = events.collect();
             let more = logged.left_out.iter().filter_map(|(number, count)| Some((doing(stage, *number)?, *count)));
             let left_out = more.collect();

@@ -59,10 +59,11 @@ impl Tracer<'_> {
     ) {
         let (purpose, value) = match (i.op, &self.module[i][1..]) {
             (Op::Store, [pointer, value, ..]) => {
-                let (name, path) = self.stored(*pointer);
+                let (name, path, indices) = self.stored_at(*pointer);
                 if name == ARGUMENT || name.is_empty() {
                     return;
                 }
+                self.indices = indices;
                 (Purpose::Store(name + &path), Some(*value))
             }
             (Op::ReturnValue, [value]) if self.is_short(self.module.type_of(*value)) => (Purpose::Return, Some(*value)),
@@ -83,6 +84,7 @@ impl Tracer<'_> {
             }
             None => {}
         }
+        self.indices.clear();
     }
 
     /// Whether the statements of a file are logged.
