@@ -163,6 +163,8 @@ pub struct Trace {
     pub redrawn: [u32; 4],
     /// The lights of the frame, which calls number from 1. Suns of the environment are not among them.
     pub lights: Vec<TracedLight>,
+    /// The words of a loop that did not end in the picture: pixels where its rounds ran out are magenta there.
+    pub endless_loop: Option<[u32; 2]>,
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
@@ -275,6 +277,7 @@ impl Trace {
             picture: bits(picture),
             redrawn: bits(redrawn),
             lights: Vec::new(),
+            endless_loop: None,
             code: code.collect(),
         }
     }
@@ -316,6 +319,16 @@ impl Trace {
         match self.has_color() {
             true => self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment)),
             false => self.redrawn == self.picture,
+        }
+    }
+
+    /// How the color of a fragment compares with the picture's, in words, and why it differs.
+    pub fn proof(&self, fragment: usize) -> String {
+        // The log ends with the color before the mark.
+        let is_marked = self.endless_loop.is_some() && self.redrawn == self.picture && self.has_color();
+        match is_marked && self.visible() == Some(fragment) && !self.is_proven(fragment) {
+            true => format!("a loop was cut short, so {} is magenta there", self.target.name()),
+            false => self.proof_text(fragment),
         }
     }
 

@@ -1,6 +1,7 @@
 //! `specula trace`: the values of statements at a pixel.
 
 mod oracle;
+mod pitfalls;
 mod stages;
 mod statements;
 

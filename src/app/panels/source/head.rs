@@ -190,7 +190,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
             let Some(fragment) = state.traces.fragment() else {
                 return quiet(ui, "every fragment is discarded here; choose one below");
             };
-            let text = trace.proof_text(fragment);
+            let text = trace.proof(fragment);
             let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
             let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
             let text = RichText::new(format!("{mark}{text}")).small().color(color);
