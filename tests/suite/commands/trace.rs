@@ -2,6 +2,7 @@
 
 mod oracle;
 mod pitfalls;
+mod planted;
 mod stages;
 mod statements;
 
