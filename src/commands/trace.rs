@@ -167,7 +167,7 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
 
 fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
     let count = trace.fragments.len() + trace.left_out as usize;
-    let (stage, proof) = (&trace.stage, trace.proof(fragment));
+    let (stage, proof) = (&trace.stage, trace.proof_text(fragment));
     match trace.kind {
         StageKind::Fragment => out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}"),
         _ => out!("pixel {x} {y}, {stage}, {}, {fragment} of {count}: {proof}", trace.name_of(fragment).to_lowercase()),

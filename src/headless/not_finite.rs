@@ -49,7 +49,7 @@ pub fn first_not_finite(
     let plain = FrameState::of_modes(&inputs(shaders), &[mode]);
     let listener = not_finite::listener();
     let stage = ListeningStage::new(shaders, &plain.pipelines.stage, (compiler, search.source), &listener)?;
-    let traced = stage.traced(&listener, None, Some)?;
+    let traced = stage.traced(&listener, None, |words, _| Some(words))?;
     let check = || if (search.is_canceled)() { Err("canceled") } else { Ok(()) };
     check()?;
     let state = Arc::new(FrameState::of_modes(&inputs(&traced.shaders), &[mode]));

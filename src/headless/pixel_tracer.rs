@@ -301,14 +301,21 @@ impl PixelTracer {
             }
         };
         group.set = Some(set.clone());
+        let layout = group.stage.layout();
         kept.groups.push_front(group);
         kept.groups.truncate(MOST_FILES);
+        for (offset, length) in layout.cleared() {
+            self.log.fill(offset, length, |bytes| bytes.fill(0));
+        }
         let empty: Vec<u8> = log::empty(plan.stage.of).iter().flat_map(|word| word.to_le_bytes()).collect();
-        self.log.fill(0, self.log.size() as usize, |bytes| bytes.fill(0));
         self.log.write(0, &empty);
         let value = self.draw_pixel(plan, tools, &set, true)?;
-        let bytes = self.log.read();
-        Ok((bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect(), value))
+        let words = |length: u64| -> Vec<u32> {
+            let bytes = self.log.read_part(0, length);
+            bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
+        };
+        let invocations = words(layout.used(0)).first().copied().unwrap_or(0);
+        Ok((words(layout.used(invocations)), value))
     }
 
     /// Draws a pixel with the pipelines of `set`, after the frames before it, and returns its value. A loop that did not end was cut in the

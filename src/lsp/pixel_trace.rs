@@ -84,7 +84,7 @@ impl Thread {
             match headless.trace(&request) {
                 Ok(trace) => match trace.visible() {
                     Some(fragment) => {
-                        proof = trace.proof(fragment);
+                        proof = trace.proof_text(fragment);
                         files.push(TracedFile {
                             path: path.clone(),
                             text,

@@ -54,7 +54,7 @@ pub(in crate::app) fn on_guest_traced(state: &mut State, number: u64, traced: Tr
         let fragment = trace.visible().ok_or("every fragment is discarded at this pixel")?;
         let mut json = trace.json(fragment);
         (json["pixel"], json["mode"], json["file"]) = (json!(guest.at), json!(mode), json!(place.file));
-        json["proof"]["text"] = json!(trace.proof(fragment));
+        json["proof"]["text"] = json!(trace.proof_text(fragment));
         Ok(json)
     });
 }

@@ -57,6 +57,10 @@ pub(in crate::app) static SHOW_FILE: Spec<TreePath> = Spec::act("show-file", |st
     if state.traces.newest().is_some_and(|newest| !newest.files.iter().any(|of| *of == *file.as_str())) {
         state.traces.stage = None;
     }
+    // Lines of another file name other loops.
+    if state.traces.file_shown() != Some(&file) {
+        state.traces.choice.round = None;
+    }
     state.traces.file = Some(file);
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
 })
@@ -80,7 +84,7 @@ pub(in crate::app) static SHOW_LINE: Spec<SourcePlace> = Spec::act("show-line", 
 
 /// Chooses the stage whose statements the panel Source shows, with its own file.
 pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage", |state, _, stage| {
-    (state.traces.stage, state.traces.file) = (Some(stage), None);
+    (state.traces.stage, state.traces.file, state.traces.choice.round) = (Some(stage), None, None);
 });
 
 /// Chooses the fragment, the call and the time whose values the panel Source shows.
@@ -110,7 +114,7 @@ fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment,
         (None, None) => (state.traces.stage.take(), state.traces.file.take()),
         chosen => chosen,
     };
-    state.traces.choice = Choice { fragment, call, time: time.filter(|time| *time > 0) };
+    state.traces.choice = Choice { fragment, call, round: None, time: time.filter(|time| *time > 0) };
     state.traces.expect();
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
     Ok(Until::Found(Box::new(|state| state.traces.answer())))

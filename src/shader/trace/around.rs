@@ -14,8 +14,8 @@ pub const SIDE: u32 = 8;
 /// A statement of a file: its line, from 1, what it does, and the variable.
 type Statement = (u32, Act, String);
 
-/// The values of a statement in order, each with the calls that led to it.
-type Values = Vec<(Arc<str>, TracedValue)>;
+/// The values of a statement in order, each with the calls that led to it and its time, from 1.
+type Values = Vec<(Arc<str>, u32, TracedValue)>;
 
 /// Which value counts of a statement that runs more than once.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,12 +60,15 @@ impl Neighborhood {
     pub fn values(&self, line: u32, act: Act, name: &str, which: Which<'_>) -> Vec<Option<TracedValue>> {
         let statement = (line, act, name.to_owned());
         let chosen = |values: &Values| {
-            let of_call = |(calls, _): &&(Arc<str>, TracedValue)| which.call.is_none_or(|call| is_related(calls, call));
-            let mut values = values.iter().filter(of_call).map(|(_, value)| *value);
-            match which.time {
-                Some(time) => values.nth(time.saturating_sub(1)),
+            let of_call =
+                |(calls, ..): &&(Arc<str>, u32, TracedValue)| which.call.is_none_or(|call| is_related(calls, call));
+            let mut values = values.iter().filter(of_call);
+            let (_, first, _) = values.clone().next()?;
+            let found = match which.time {
+                Some(chosen) => values.find(|(_, time, _)| (time - first + 1) as usize == chosen.max(1)),
                 None => values.next_back(),
-            }
+            };
+            found.map(|(.., value)| *value)
         };
         self.pixels.iter().map(|pixel| pixel.get(&statement).and_then(chosen)).collect()
     }
@@ -95,7 +98,7 @@ fn values(trace: &Trace, file: &str) -> BTreeMap<Statement, Values> {
         let doing = &event.doing;
         if let (Some(value), true) = (event.value, doing.file == file) {
             let statement = (doing.line, doing.act, doing.name.clone());
-            all.entry(statement).or_default().push((event.calls.clone(), value));
+            all.entry(statement).or_default().push((event.calls.clone(), event.time, value));
         }
     }
     all

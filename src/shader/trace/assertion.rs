@@ -1,5 +1,7 @@
 //! Conditions that the values of a line must fulfill.
 
+use std::collections::HashMap;
+
 use super::{Act, Doing, Event, Fragment, TracedValue};
 
 /// A condition about the values at a line: `FILE:LINE NAME > NUMBER`. `NAME` may end in a component, as `n.x`, or be `return` or
@@ -98,19 +100,19 @@ impl Assertion {
     /// Checks the values of all times. NaN fulfills nothing but `!=`.
     ///
     /// # Errors
-    /// The first value that does not fulfill it, or that no value was computed there, or that not all were kept.
+    /// The first value that does not fulfill it, or that no value was computed there, or that not all were logged.
     pub fn check(&self, fragment: &Fragment) -> Result<(), String> {
-        let named = fragment.events.iter().filter_map(|event| Some((event, self.finds(&event.doing)?)));
+        let named = || fragment.events.iter().filter_map(|event| Some((event, self.finds(&event.doing)?)));
         let value = |(event, component): (&Event, Option<usize>)| match component {
             Some(at) => event.value?.component(at),
             None => event.value,
         };
-        let values: Vec<TracedValue> = named.filter_map(value).collect();
+        let values: Vec<TracedValue> = named().filter_map(value).collect();
         let fails = |value: &&TracedValue| !value.numbers().all(|number| self.comparison.holds(number, self.limit));
         let failed: Vec<&TracedValue> = values.iter().filter(fails).collect();
-        let left_out = fragment.left_out.iter().filter(|(doing, _)| self.finds(doing).is_some());
-        let left_out: u32 = left_out.map(|(_, count)| count).sum();
-        match (failed.first(), left_out) {
+        let last: HashMap<&Doing, u32> = named().map(|(event, _)| (&event.doing, event.time)).collect();
+        let not_logged = (last.values().sum::<u32>() as usize).saturating_sub(named().count());
+        match (failed.first(), not_logged) {
             (Some(first), _) => Err(format!(
                 "{}: failed for {} of {} values; the first is {}",
                 self.text,
@@ -120,7 +122,11 @@ impl Assertion {
             )),
             (None, 0) if values.is_empty() => Err(self.nothing(fragment)),
             (None, 0) => Ok(()),
-            (None, count) => Err(format!("{}: {count} of its values were not kept, since the log was full", self.text)),
+            (None, count) => Err(format!(
+                "{}: holds for the first and the last of {} values, but {count} between them were not logged",
+                self.text,
+                values.len() + count
+            )),
         }
     }
 
@@ -148,7 +154,7 @@ impl Assertion {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample::event;
+    use super::super::sample::{event, trace};
     use super::*;
 
     #[test]
@@ -161,9 +167,9 @@ mod tests {
         ];
         // The middle of a long loop counts, too.
         events.extend((0..99).map(|round| event(6, Act::Store, "i", &[if round == 50 { -3.0 } else { 1.0 }])));
-        let left_out = vec![(event(8, Act::Store, "j", &[]).doing, 2)];
-        let fragment = Fragment { depth: 0.5, vertex: None, color: None, events, left_out };
-        let check = |text: &str| Assertion::parse(text).unwrap().check(&fragment);
+        events.extend([1, 2, 5].map(|time| Event { time, ..event(8, Act::Store, "j", &[1.0]) }));
+        let trace = trace(events, &[]);
+        let check = |text: &str| Assertion::parse(text).unwrap().check(&trace.fragments[0]);
         for text in
             ["a.glsl:3 n >= 0", "a.glsl:3 n.y > 0.5", "a.glsl:3 n.r == 0", "a.glsl:4 d < 1", "a.glsl:5 return != 0"]
         {
@@ -178,7 +184,8 @@ mod tests {
             ("a.glsl:6 i > 0", "failed for 1 of 99 values; the first is -3"),
             ("a.glsl:4 e > 0", "no value of `e` was computed at this pixel; the line has d"),
             ("a.glsl:7 e > 0", "the line was not reached"),
-            ("a.glsl:8 j > 0", "2 of its values were not kept"),
+            ("a.glsl:8 j > 0", "the first and the last of 5 values, but 2 between them were not logged"),
+            ("a.glsl:8 j < 0", "failed for 3 of 3 values"),
         ] {
             let error = check(text).unwrap_err();
             assert!(error.contains(words), "{text}: {error}");

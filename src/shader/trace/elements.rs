@@ -1,36 +1,41 @@
 //! Names of the elements that statements store to by computed indices: `list[2]` for `list[i]`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{HashMap, HashSet};
 
 use super::TracedStage;
+use super::log::LoggedEvent;
 use crate::shader::spirv::trace::{INDEX, LogPoint};
 
 /// Most elements of a statement that have names of their own. A loop over an array has one name.
 const MOST: usize = 4;
 
-/// The elements to which the log points of an invocation store.
+/// The elements to which the log points of an invocation store. `None`: too many, or not all are known.
 pub(super) struct Elements<'a> {
     stage: &'a TracedStage,
-    of_points: BTreeMap<u32, BTreeSet<Vec<u32>>>,
+    of_points: HashMap<u32, Option<HashSet<Vec<u32>>>>,
 }
 
 impl<'a> Elements<'a> {
-    /// The elements of events, which are the number of a log point and its bits.
-    pub(super) fn new(stage: &'a TracedStage, events: impl Iterator<Item = (u32, [u32; 4])>) -> Self {
-        let mut of_points: BTreeMap<u32, BTreeSet<Vec<u32>>> = BTreeMap::new();
-        for (number, bits) in events {
-            if let Some(point) = stage.point(number).filter(|point| point.indices > 0) {
-                of_points.entry(number).or_default().insert(indices(point, &bits).to_vec());
+    /// The elements of an invocation's events.
+    pub(super) fn new(stage: &'a TracedStage, events: &[LoggedEvent]) -> Self {
+        let mut of_points: HashMap<u32, Option<HashSet<Vec<u32>>>> = HashMap::new();
+        for event in events {
+            if let Some(point) = stage.point(event.point).filter(|point| point.indices > 0) {
+                let elements = of_points.entry(event.point).or_insert_with(|| Some(HashSet::new()));
+                if let Some(known) = elements {
+                    known.insert(indices(point, &event.bits).to_vec());
+                }
+                elements.take_if(|known| event.lost > 0 || known.len() > MOST);
             }
         }
         Self { stage, of_points }
     }
 
     /// Puts the indices of an event into its name.
-    pub(super) fn complete(&self, name: &mut String, (number, bits): (u32, [u32; 4])) {
-        let is_few = self.of_points.get(&number).is_some_and(|elements| elements.len() <= MOST);
-        let Some(point) = self.stage.point(number).filter(|_| is_few) else { return };
-        for index in indices(point, &bits) {
+    pub(super) fn complete(&self, name: &mut String, event: &LoggedEvent) {
+        let is_few = self.of_points.get(&event.point).is_some_and(Option::is_some);
+        let Some(point) = self.stage.point(event.point).filter(|_| is_few) else { return };
+        for index in indices(point, &event.bits) {
             *name = name.replacen(INDEX, &format!("[{}]", index.cast_signed()), 1);
         }
     }

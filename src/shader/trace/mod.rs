@@ -13,6 +13,8 @@ mod assertion;
 mod calls;
 mod conditions;
 mod elements;
+mod events;
+mod history;
 mod invocations;
 mod lights;
 pub mod log;
@@ -32,9 +34,8 @@ use super::spirv::trace::Purpose;
 use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
-use calls::Calls;
 pub use calls::{is_related, last_call, light_of, paths_to};
-use elements::Elements;
+pub use history::FragmentState;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use lights::TracedLight;
@@ -74,7 +75,7 @@ impl LoggingStage {
         let listener = log::listener(kind, color)
             .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
-        let whole = stage.traced(&listener, None, Some)?;
+        let whole = stage.traced(&listener, None, |words, _| Some(words))?;
         Ok(Self { stage, whole, listener, address })
     }
 
@@ -133,7 +134,7 @@ impl LoggingStage {
     /// # Errors
     /// A message why the stage cannot be traced.
     pub fn of(&self, files: &BTreeSet<String>) -> Result<TracedStage, String> {
-        let finish = |words: Vec<u32>| log::with_address(&words, self.address);
+        let finish = |words: Vec<u32>, points: usize| log::Layout::new(points).finish(&words, self.address);
         let traced = self.stage.traced(&self.listener, Some(files), finish)?;
         let names = || files.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
         match traced.point_count() < log::MOST_POINTS as usize {
@@ -178,10 +179,10 @@ pub struct Fragment {
     pub vertex: Option<u32>,
     /// The bits of its color, or of a vertex's position in clip space; `None` if it was discarded.
     pub color: Option<[u32; 4]>,
-    /// Its events, in the order of execution for each group of files.
+    /// Its events, in the order of execution for each group of files: of each statement, the first and the last.
     pub events: Vec<Event>,
-    /// Statements that ran once the log was full, and how often.
-    pub left_out: Vec<(Doing, u32)>,
+    /// How many events between these were not logged.
+    pub not_logged: u32,
 }
 
 /// A statement, and the kind of its effect.
@@ -206,6 +207,8 @@ pub struct Event {
     pub value: Option<TracedValue>,
     /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
     pub calls: Arc<str>,
+    /// The time that the statement does this, from 1. Those between the first and the last times may be missing.
+    pub time: u32,
 }
 
 /// The kinds of what statements do.
@@ -234,18 +237,9 @@ impl Trace {
         redrawn: &PixelValue,
     ) -> Self {
         let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
-        let (logged, left_out) = log::decode(words);
+        let (logged, left_out) = stage.layout().decode(words);
         let fragment = |logged: log::LoggedFragment| {
-            let mut calls = Calls::default();
-            let elements = Elements::new(stage, logged.events.iter().map(|(number, bits)| (*number, *bits)));
-            let events = logged.events.iter().filter_map(|(number, bits)| {
-                let mut event = event(stage, *number, *bits, &mut calls)?;
-                elements.complete(&mut event.doing.name, (*number, *bits));
-                Some(event)
-            });
-            let events = events.collect();
-            let more = logged.left_out.iter().filter_map(|(number, count)| Some((doing(stage, *number)?, *count)));
-            let left_out = more.collect();
+            let (events, not_logged) = events::of(stage, &logged);
             // As the pixel is read: without flags in alpha.
             let color = logged.color.map(|color| match target {
                 Target::Picture => bits(&PixelValue::decode(color.map(f32::from_bits))),
@@ -256,7 +250,7 @@ impl Trace {
                 Invocations::Triangle(_) => (0.0, Some(logged.number)),
                 Invocations::Compute(_) => (0.0, None),
             };
-            Fragment { depth, vertex, color, events, left_out }
+            Fragment { depth, vertex, color, events, not_logged }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
         // A device may draw them in any order.
@@ -264,7 +258,7 @@ impl Trace {
             Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
             _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
         }
-        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..) | Purpose::Leave);
+        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
         let places = stage.places().filter(|place| is_shown(&place.purpose));
         let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
         let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
@@ -304,32 +298,13 @@ impl Trace {
         }
         for (fragment, more) in self.fragments.iter_mut().zip(other.fragments) {
             fragment.events.extend(more.events);
-            fragment.left_out.extend(more.left_out);
+            fragment.not_logged += more.not_logged;
         }
         self.code.extend(other.code);
         if other.redrawn != self.picture {
             self.redrawn = other.redrawn;
         }
         Ok(())
-    }
-
-    /// Whether a fragment ends with the color of the picture, bit by bit. Of a vertex or a compute invocation, whether its stage draws the
-    /// same picture.
-    pub fn is_proven(&self, fragment: usize) -> bool {
-        match self.has_color() {
-            true => self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment)),
-            false => self.redrawn == self.picture,
-        }
-    }
-
-    /// How the color of a fragment compares with the picture's, in words, and why it differs.
-    pub fn proof(&self, fragment: usize) -> String {
-        // The log ends with the color before the mark.
-        let is_marked = self.endless_loop.is_some() && self.redrawn == self.picture && self.has_color();
-        match is_marked && self.visible() == Some(fragment) && !self.is_proven(fragment) {
-            true => format!("a loop was cut short, so {} is magenta there", self.target.name()),
-            false => self.proof_text(fragment),
-        }
     }
 
     /// Whether the result of the stage is a color that can be read.
@@ -353,37 +328,4 @@ fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
     }
     kept.sort_by_key(corner);
     *fragments = kept;
-}
-
-/// The action of the statement of a log point. `None` for the begin and the end of a function.
-fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
-    let point = stage.point(number)?;
-    let place = stage.place(point);
-    if place.line == 0 {
-        return None;
-    }
-    let (act, name) = match &place.purpose {
-        Purpose::Argument(name) => (Act::Argument, name.as_str()),
-        Purpose::Store(name) => (Act::Store, name.as_str()),
-        Purpose::Condition => (Act::Condition, ""),
-        Purpose::Constant { .. } => return None,
-        Purpose::Return => (Act::Return, ""),
-        Purpose::Discard => (Act::Discard, ""),
-        Purpose::Enter(..) | Purpose::Leave | Purpose::Input(_) | Purpose::Use => return None,
-    };
-    Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
-}
-
-/// An event of a log. `None` for the begin and the end of a function, which change `calls`.
-fn event(stage: &TracedStage, number: u32, bits: [u32; 4], calls: &mut Calls) -> Option<Event> {
-    let point = stage.point(number)?;
-    let (path, count) = (calls.path(), point.count as usize);
-    match &stage.place(point).purpose {
-        Purpose::Enter(name, list) => calls.enter(name, list.map(|list| (list, bits[0]))),
-        Purpose::Leave => calls.leave(),
-        Purpose::Return if stage.is_last_of_place(number) => calls.leave(),
-        _ => {}
-    }
-    let value = (count > 0).then(|| TracedValue::new(point.kind, &bits[..count]));
-    Some(Event { doing: doing(stage, number)?, value, calls: path })
 }

@@ -1,12 +1,12 @@
 //! A trace by lines of its sources, as text and JSON.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::history::ulps;
 use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
-use crate::shader::StageKind;
 
 /// Values that are kept of each place from the begin, and from the end.
 const MOST_KEPT: usize = 16;
@@ -33,8 +33,8 @@ pub struct Done {
     pub name: String,
     /// How often.
     pub count: usize,
-    /// How often after the log was full: those values are not kept.
-    pub left_out: usize,
+    /// How often between the first and the last times that were logged.
+    pub not_logged: usize,
     /// The first times.
     pub first: Vec<Once>,
     /// The last times, as far as they are not among the first.
@@ -48,21 +48,44 @@ pub struct Once {
     pub value: Option<TracedValue>,
     /// The calls that led to it.
     pub calls: Arc<str>,
+    /// Which time, from 1.
+    pub time: u32,
 }
 
 impl Trace {
     /// The lines of a fragment, file by file in the order in which they were reached.
     pub fn lines(&self, fragment: usize) -> Vec<LineOfTrace> {
-        let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
-        let events = fragment.events.iter().map(|event| (&event.doing, Ok(event)));
-        let left_out = fragment.left_out.iter().map(|(doing, count)| (doing, Err(*count)));
-        self.gather(events.chain(left_out))
+        self.lines_where(fragment, |_| true)
     }
 
-    /// The same of the events that `is_shown` accepts. Those that were not kept do not count.
+    /// The same of the events that `is_shown` accepts. Those that were not logged count between two of these.
     pub fn lines_where(&self, fragment: usize, mut is_shown: impl FnMut(&Event) -> bool) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
-        self.gather(fragment.events.iter().filter(|event| is_shown(event)).map(|event| (&event.doing, Ok(event))))
+        let mut files: Vec<&str> = Vec::new();
+        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
+        // The last event of each statement, if it was shown.
+        let mut last: HashMap<&Doing, Option<u32>> = HashMap::new();
+        for event in &fragment.events {
+            let doing = &event.doing;
+            let is_shown = is_shown(event);
+            let last = last.insert(doing, is_shown.then_some(event.time)).flatten();
+            if !is_shown {
+                continue;
+            }
+            if !files.contains(&doing.file.as_str()) {
+                files.push(&doing.file);
+            }
+            let done = done_of(lines.entry((doing.file.as_str(), doing.line)).or_default(), doing);
+            let not_logged = last.map_or(0, |last| event.time.saturating_sub(last + 1));
+            done.add(event, not_logged as usize);
+        }
+        let line = |((file, line), done): ((&str, u32), Vec<Done>)| {
+            let code = self.code.get(&(file.to_owned(), line)).cloned().unwrap_or_default();
+            LineOfTrace { file: file.to_owned(), line, code, done }
+        };
+        let mut lines: Vec<LineOfTrace> = lines.into_iter().map(line).collect();
+        lines.sort_by_key(|line| (files.iter().position(|file| *file == line.file), line.line));
+        lines
     }
 
     /// The files with statements that log.
@@ -76,37 +99,10 @@ impl Trace {
         self.code.keys().filter(move |(of, _)| of == file).map(|(_, line)| *line)
     }
 
-    /// Gathers events, or how many were not kept, by their lines.
-    fn gather<'a>(&self, events: impl Iterator<Item = (&'a Doing, Result<&'a Event, u32>)>) -> Vec<LineOfTrace> {
-        let mut files: Vec<&str> = Vec::new();
-        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
-        for (doing, event) in events {
-            if !files.contains(&doing.file.as_str()) {
-                files.push(&doing.file);
-            }
-            let done = done_of(lines.entry((doing.file.as_str(), doing.line)).or_default(), doing);
-            match event {
-                Ok(event) => done.add(event),
-                Err(count) => {
-                    done.count += count as usize;
-                    done.left_out += count as usize;
-                }
-            }
-        }
-        let line = |((file, line), done): ((&str, u32), Vec<Done>)| {
-            let code = self.code.get(&(file.to_owned(), line)).cloned().unwrap_or_default();
-            LineOfTrace { file: file.to_owned(), line, code, done }
-        };
-        let mut lines: Vec<LineOfTrace> = lines.into_iter().map(line).collect();
-        lines.sort_by_key(|line| (files.iter().position(|file| *file == line.file), line.line));
-        lines
-    }
-
     /// The lines with statements that a fragment did not reach, by file.
     pub fn not_reached(&self, fragment: usize) -> BTreeMap<&str, Vec<u32>> {
         let Some(fragment) = self.fragments.get(fragment) else { return BTreeMap::new() };
-        let events = fragment.events.iter().map(|event| &event.doing);
-        let all = events.chain(fragment.left_out.iter().map(|(doing, _)| doing));
+        let all = fragment.events.iter().map(|event| &event.doing);
         let reached: BTreeSet<(&str, u32)> = all.map(|doing| (doing.file.as_str(), doing.line)).collect();
         let mut found: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
         for (file, line) in self.code.keys().map(|(file, line)| (file.as_str(), *line)) {
@@ -120,11 +116,14 @@ impl Trace {
     /// The trace of a fragment for programs.
     pub fn json(&self, fragment: usize) -> Value {
         let of = |(index, found): (usize, &Fragment)| {
-            let left_out: u32 = found.left_out.iter().map(|(_, count)| count).sum();
+            let not_logged = found.not_logged;
             let mut json = json!({ "depth": found.depth, "color": found.color.map(floats),
-                "discarded": found.color.is_none(), "visible": self.visible() == Some(index), "left_out": left_out });
+                "discarded": found.color.is_none(), "visible": self.visible() == Some(index), "not_logged": not_logged });
+            if let Some(state) = self.state(index) {
+                (json["state"], json["covered_by"]) = (json!(state.name()), json!(state.covered_by()));
+            }
             if let Some(vertex) = found.vertex {
-                json = json!({ "vertex": vertex, "position": found.color.map(floats), "left_out": left_out });
+                json = json!({ "vertex": vertex, "position": found.color.map(floats), "not_logged": not_logged });
             }
             json
         };
@@ -132,65 +131,12 @@ impl Trace {
         let traced = if self.has_color() { color } else { Some(self.redrawn) };
         let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
             "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
-            "redrawn": floats(self.redrawn) });
+            "redrawn": floats(self.redrawn), "blended_ulp": self.blended(fragment).map(|color| ulps(color, self.picture)) });
         json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
             "stage": self.stage, "fragment": fragment, "proof": proof,
             "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
             "not_reached": self.not_reached(fragment) })
-    }
-
-    /// How the color of a fragment compares with the picture's, in words.
-    pub fn proof_text(&self, fragment: usize) -> String {
-        let with = self.target.name();
-        if !self.has_color() {
-            return match self.redrawn == self.picture {
-                true => "the picture is the same with the traced stage".to_owned(),
-                false => format!(
-                    "with the traced stage, {with} differs by {} ulp: passes read earlier frames, or the driver computes in another order",
-                    ulps(self.redrawn, self.picture)
-                ),
-            };
-        }
-        let found = self.fragments.get(fragment);
-        let Some((found, color)) = found.and_then(|found| Some((found, found.color?))) else {
-            return "discarded".to_owned();
-        };
-        if self.is_shown(found) {
-            return format!("equal to {with}{}", self.target.precision());
-        }
-        if self.visible() != Some(fragment) {
-            return "hidden, or blended over".to_owned();
-        }
-        let why = match self.redrawn == self.picture {
-            true => "a later pass changes it, or other surfaces are blended with it",
-            false => "the driver computes the traced stage in another order, or passes read earlier frames",
-        };
-        format!("{} ulp from {with}: {why}", ulps(color, self.picture))
-    }
-
-    /// The name of an invocation in a list of all.
-    pub fn name_of(&self, fragment: usize) -> String {
-        let Some(of) = self.fragments.get(fragment) else { return String::new() };
-        match (self.kind, of.vertex) {
-            (_, Some(vertex)) => {
-                let same = self.fragments[..fragment].iter().filter(|other| other.vertex == of.vertex).count();
-                let again = if same > 0 { format!(", draw {}", same + 1) } else { String::new() };
-                format!("Vertex {vertex}{again}")
-            }
-            (StageKind::Compute, None) => match self.fragments.len() {
-                1 => "Invocation".to_owned(),
-                _ => format!("Run {}", fragment + 1),
-            },
-            _ => {
-                let is = match (of.color, self.visible() == Some(fragment)) {
-                    (None, _) => "discarded",
-                    (_, true) => "seen",
-                    _ => "hidden or blended",
-                };
-                format!("Fragment {fragment}: {is}, depth {:.4}", of.depth)
-            }
-        }
     }
 }
 
@@ -198,21 +144,12 @@ fn floats(bits: [u32; 4]) -> Value {
     Value::Array(bits.map(|bits| TracedValue::float(f32::from_bits(bits)).json()).to_vec())
 }
 
-/// The largest distance of two numbers in steps of floats.
-fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
-    let place = |bits: u32| {
-        let magnitude = i64::from(bits & 0x7fff_ffff);
-        if bits >> 31 == 0 { magnitude } else { -magnitude }
-    };
-    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
-}
-
 /// The entry of what a statement does, among those of its line.
 fn done_of<'a>(all: &'a mut Vec<Done>, doing: &Doing) -> &'a mut Done {
     let known = all.iter().position(|done| (done.act, &done.name) == (doing.act, &doing.name));
     let at = known.unwrap_or_else(|| {
         let (act, name) = (doing.act, doing.name.clone());
-        all.push(Done { act, name, count: 0, left_out: 0, first: Vec::new(), last: Vec::new() });
+        all.push(Done { act, name, count: 0, not_logged: 0, first: Vec::new(), last: Vec::new() });
         all.len() - 1
     });
     &mut all[at]
@@ -220,10 +157,10 @@ fn done_of<'a>(all: &'a mut Vec<Done>, doing: &Doing) -> &'a mut Done {
 
 impl LineOfTrace {
     fn json(&self) -> Value {
-        let once = |once: &Once| json!({ "value": once.value.map(|value| value.json()), "calls": *once.calls });
+        let once = |once: &Once| json!({ "value": once.value.map(|value| value.json()), "calls": *once.calls, "time": once.time });
         let done = |done: &Done| {
             let kind = done.first.first().and_then(|once| once.value).map(|value| value.type_name());
-            json!({ "act": done.act, "name": done.name, "type": kind, "text": done.text(), "count": done.count, "left_out": done.left_out,
+            json!({ "act": done.act, "name": done.name, "type": kind, "text": done.text(), "count": done.count, "left_out": done.left_out(), "not_logged": done.not_logged,
                 "first": done.first.iter().map(once).collect::<Vec<_>>(), "last": done.last.iter().map(once).collect::<Vec<_>>() })
         };
         json!({ "file": self.file, "line": self.line, "code": self.code, "text": self.text(),
@@ -237,9 +174,11 @@ impl LineOfTrace {
 }
 
 impl Done {
-    fn add(&mut self, event: &Event) {
-        let once = Once { value: event.value, calls: event.calls.clone() };
-        self.count += 1;
+    /// `not_logged`: how many events were not, between the last one and this.
+    fn add(&mut self, event: &Event, not_logged: usize) {
+        let once = Once { value: event.value, calls: event.calls.clone(), time: event.time };
+        self.count += 1 + not_logged;
+        self.not_logged += not_logged;
         if self.first.len() < MOST_KEPT {
             return self.first.push(once);
         }
@@ -249,7 +188,12 @@ impl Done {
         self.last.push(once);
     }
 
-    /// The values that were kept, in order.
+    /// How often between the first and the last times.
+    pub fn left_out(&self) -> usize {
+        self.count.saturating_sub(self.first.len() + self.last.len())
+    }
+
+    /// The first and the last values, in order.
     pub fn values(&self) -> impl Iterator<Item = TracedValue> {
         self.first.iter().chain(&self.last).filter_map(|once| once.value)
     }
@@ -274,11 +218,11 @@ impl Done {
             few => few.join(", "),
         };
         let times = if self.count > 1 { format!(" ×{}", self.count) } else { String::new() };
-        let left_out = match self.left_out {
+        let not_logged = match self.not_logged {
             0 => String::new(),
-            count => format!(" (the last {count} not kept)"),
+            count => format!(" ({count} of them not logged)"),
         };
-        format!("{values}{times}{left_out}")
+        format!("{values}{times}{not_logged}")
     }
 }
 
@@ -291,26 +235,27 @@ mod tests {
     fn events_are_gathered_by_line() {
         let mut events = vec![event(9, Act::Return, "", &[2.0]), event(3, Act::Store, "n", &[0.0, 1.0, 0.5])];
         events.extend((0..40).map(|round| event(5, Act::Store, "i", &[round as f32])));
-        let mut trace = trace(events, &[3, 5, 7, 9]);
-        trace.fragments[0].left_out = vec![(event(5, Act::Store, "i", &[]).doing, 7)];
+        // A log keeps the first and the last events of a long loop, and those behind it.
+        let ends = (1..=20).chain(9981..=10_000);
+        events.extend(ends.map(|time| Event { time, ..event(6, Act::Store, "k", &[time as f32]) }));
+        events.push(event(8, Act::Store, "sum", &[4.0]));
+        let trace = trace(events, &[3, 5, 6, 7, 8, 9]);
         let lines = trace.lines(0);
         let texts: Vec<(u32, String)> = lines.iter().map(|line| (line.line, line.text())).collect();
         assert_eq!(texts[0], (3, "n = (0, 1, 0.5)".to_owned()));
-        assert_eq!(texts[1], (5, "i = 0, 1, …, 39 ×47 (the last 7 not kept)".to_owned()));
-        assert_eq!(texts[2], (9, "return 2".to_owned()));
-        let done = &lines[1].done[0];
-        let ends = [done.first[0].value, done.first[15].value, done.last[0].value, done.last[15].value];
-        assert_eq!(ends.map(|value| value.unwrap().text()), ["0", "15", "24", "39"]);
+        assert_eq!(texts[1], (5, "i = 0, 1, …, 39 ×40".to_owned()));
+        assert_eq!(texts[2], (6, "k = 1, 2, …, 10000 ×10000 (9960 of them not logged)".to_owned()));
+        assert_eq!(texts[3..], [(8, "sum = 4".to_owned()), (9, "return 2".to_owned())]);
+        let kept = |done: &Done| {
+            let ends = [&done.first[0], &done.first[15], &done.last[0], &done.last[15]];
+            (ends.map(|once| once.value.unwrap().text()), ends.map(|once| once.time), done.left_out())
+        };
+        let of = |texts: [&str; 4], times, left_out| (texts.map(str::to_owned), times, left_out);
+        assert_eq!(kept(&lines[1].done[0]), of(["0", "15", "24", "39"], [1, 16, 25, 40], 8));
+        assert_eq!(kept(&lines[2].done[0]), of(["1", "16", "9985", "10000"], [1, 16, 9985, 10_000], 9968));
+        // Between events that are not shown, none count.
+        let chosen = trace.lines_where(0, |event| event.time == 2 || event.time == 9999);
+        assert_eq!(chosen[1].text(), "k = 2, 9999 ×2");
         assert_eq!(trace.not_reached(0), BTreeMap::from([("a.glsl", vec![7])]));
-    }
-
-    #[test]
-    fn the_proof_counts_steps_of_floats() {
-        let mut trace = trace(Vec::new(), &[]);
-        assert_eq!((trace.is_proven(0), trace.proof_text(0).as_str()), (true, "equal to the picture"));
-        trace.picture = [1.0, 0.0, 0.0, 0.0].map(f32::to_bits);
-        trace.fragments[0].color = Some([1.0 + f32::EPSILON * 2.0, 0.0, -0.0, 0.0].map(f32::to_bits));
-        assert!(!trace.is_proven(0) && trace.proof_text(0).starts_with("2 ulp from the picture"));
-        assert_eq!(ulps([0x8000_0001; 4], [1; 4]), 2);
     }
 }

@@ -1,5 +1,7 @@
 //! Traces for tests.
 
+use std::collections::HashMap;
+
 use super::{Act, Doing, Event, Fragment, Target, Trace, TracedValue};
 use crate::shader::StageKind;
 
@@ -15,13 +17,20 @@ pub(crate) fn called(calls: &str, line: u32, act: Act, name: &str, numbers: &[f3
         [number] => Some(TracedValue::float(*number)),
         numbers => Some(TracedValue::floats(numbers)),
     };
-    Event { doing: Doing { file: "a.glsl".into(), line, act, name: name.into() }, value, calls: calls.into() }
+    Event { doing: Doing { file: "a.glsl".into(), line, act, name: name.into() }, value, calls: calls.into(), time: 0 }
 }
 
-/// A trace of one fragment, whose color is the picture's. These lines of `a.glsl` have statements.
-pub(crate) fn trace(events: Vec<Event>, statements: &[u32]) -> Trace {
+/// A trace of one fragment, whose color is the picture's. These lines of `a.glsl` have statements. Events without a time follow the one before.
+pub(crate) fn trace(mut events: Vec<Event>, statements: &[u32]) -> Trace {
+    let (mut last, mut not_logged) = (HashMap::new(), 0);
+    for event in &mut events {
+        let last = last.entry(event.doing.clone()).or_insert(0);
+        event.time = if event.time == 0 { *last + 1 } else { event.time };
+        not_logged += event.time - *last - 1;
+        *last = event.time;
+    }
     let code = statements.iter().map(|line| (("a.glsl".to_owned(), *line), format!("line {line};")));
-    let fragment = Fragment { depth: 0.5, vertex: None, color: Some([0; 4]), events, left_out: Vec::new() };
+    let fragment = Fragment { depth: 0.5, vertex: None, color: Some([0; 4]), events, not_logged };
     Trace {
         stage: "a.frag".into(),
         kind: StageKind::Fragment,

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::conditions::line_of_condition;
+use super::log::Layout;
 use super::statement::{self, Site};
 use crate::shader::contract::Texts;
 use crate::shader::glsl::syntax::{Function, functions};
@@ -92,7 +93,7 @@ impl ListeningStage {
         Ok(Self { texts: Arc::new(texts), words })
     }
 
-    /// Its module, instrumented, after `finish`. `only`: the files whose statements are logged.
+    /// Its module, instrumented, after `finish`, which also gets the number of its log points. `only`: the files whose statements are logged.
     ///
     /// # Errors
     /// A message why it cannot be traced.
@@ -100,12 +101,12 @@ impl ListeningStage {
         &self,
         listener: &Listener,
         only: Option<&BTreeSet<String>>,
-        finish: impl FnOnce(Vec<u32>) -> Option<Vec<u32>>,
+        finish: impl FnOnce(Vec<u32>, usize) -> Option<Vec<u32>>,
     ) -> Result<TracedStage, String> {
         let StageTexts { shaders, stage, .. } = &*self.texts;
         let lacks = || format!("the values of {} cannot be traced", stage.path);
         let mut traced = trace(&self.words, listener.function, listener.logged, only).ok_or_else(lacks)?;
-        let words = finish(std::mem::take(&mut traced.words)).ok_or_else(lacks)?;
+        let words = finish(std::mem::take(&mut traced.words), traced.points.len()).ok_or_else(lacks)?;
         self.move_places(&mut traced.places);
         let mut shaders = ShaderSet::clone(shaders);
         shaders.stages.insert(stage.path.to_string(), Arc::new(stage.with_module(words)));
@@ -165,10 +166,9 @@ impl TracedStage {
         self.traced.points.len()
     }
 
-    /// Whether a log point is the last one of its place.
-    pub(super) fn is_last_of_place(&self, number: u32) -> bool {
-        let place = |number: u32| self.point(number).map(|point| point.place);
-        place(number) != place(number + 1)
+    /// The places of the log that it writes.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.point_count())
     }
 
     /// The places that log values, in the order of the module.

@@ -1,5 +1,7 @@
 //! `specula trace`: the values of statements at a pixel.
 
+mod fragments;
+mod long_loops;
 mod oracle;
 mod pitfalls;
 mod planted;

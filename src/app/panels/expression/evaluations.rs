@@ -47,28 +47,29 @@ pub(super) fn show(
     }
     let shared = shared_calls(&found);
     let chosen = match settings.expression.evaluation {
-        0 => found.len(),
-        number => number as usize,
+        0 => found.last().map_or(0, |(last, _)| *last),
+        number => number,
     };
     ScrollArea::vertical().id_salt("evaluations").max_height(HEIGHT).show_rows(ui, ROW, found.len(), |ui, rows| {
         for index in rows {
-            let Event { value, calls, .. } = found[index];
+            let (number, Event { value, calls, .. }) = found[index];
             let value = value.map(|value| value.text()).unwrap_or_default();
             let own: Vec<&str> = calls.split(CALL).skip(shared).collect();
-            let text = small_mono(format!("{:>3}  {value}  {}", index + 1, own.join(CALL)));
-            let row = ui.add(Button::selectable(index + 1 == chosen, text).truncate());
-            if row.on_hover_text(format!("Show evaluation {} of {name} in each pixel: {calls}", index + 1)).clicked() {
-                settings.expression.evaluation = u32::try_from(index + 1).unwrap_or(0);
+            let text = small_mono(format!("{number:>3}  {value}  {}", own.join(CALL)));
+            let row = ui.add(Button::selectable(number == chosen, text).truncate());
+            if row.on_hover_text(format!("Show evaluation {number} of {name} in each pixel: {calls}")).clicked() {
+                settings.expression.evaluation = number;
             }
         }
     });
 }
 
 /// How many calls all evaluations have in common, from the outermost. A single one has its own.
-fn shared_calls(found: &[&Event]) -> usize {
-    let Some((first, others)) = found.split_first() else { return 0 };
-    let alike =
-        |other: &&Event| first.calls.split(CALL).zip(other.calls.split(CALL)).take_while(|(a, b)| a == b).count();
+fn shared_calls(found: &[(u32, &Event)]) -> usize {
+    let Some(((_, first), others)) = found.split_first() else { return 0 };
+    let alike = |(_, other): &(u32, &Event)| {
+        first.calls.split(CALL).zip(other.calls.split(CALL)).take_while(|(a, b)| a == b).count()
+    };
     others.iter().map(alike).min().unwrap_or(0)
 }
 

@@ -2,27 +2,26 @@
 
 use std::path::PathBuf;
 
-use egui::{Color32, ComboBox, Key, Label, PopupCloseBehavior, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
+use egui::{ComboBox, Key, Label, PopupCloseBehavior, RichText, ScrollArea, Ui};
 
+use super::choices;
 use super::edit::Editor;
 use super::fold::Folds;
 use super::model::CodeModel;
 use super::scroll::Scroll;
 use crate::app::command::file::OPEN_EDITOR;
 use crate::app::command::scene::UNPIN;
-use crate::app::command::source::{CHOOSE_STAGE, CHOOSE_TRACE, SAVE_FILE, SHOW_FILE};
+use crate::app::command::source::{CHOOSE_STAGE, SAVE_FILE, SHOW_FILE};
 use crate::app::commands::Commands;
 use crate::app::editor::Place;
 use crate::app::panels::draft::show_draft;
 use crate::app::state::State;
 use crate::app::state::shaders::edits::NO_FOLDER;
-use crate::app::state::trace::choice::{Choice, ListedCall, calls, listed_calls, most_times};
 use crate::app::state::trace::{PixelTrace, Progress};
-use crate::app::widgets::plural;
 use crate::app::widgets::search::{self, Words};
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{ACCENT, ERROR, GOOD, QUIET, WARNING, icon, small_mono};
-use crate::shader::trace::{Trace, TraceableStage, TracedLight, last_call};
+use crate::shader::trace::TraceableStage;
 use crate::shader::{ShaderSet, TreePath};
 
 /// Width of the list of files, points.
@@ -30,9 +29,7 @@ const FILES: f32 = 176.0;
 /// Width of the list of stages, points.
 const STAGES: f32 = 130.0;
 /// Height of the list of files, points.
-const MENU: f32 = 380.0;
-/// Points by which a call stands to the right of its caller.
-const INDENT: f32 = 12.0;
+pub(super) const MENU: f32 = 380.0;
 
 /// Shows the rows above the code.
 pub(super) fn show(
@@ -62,8 +59,10 @@ pub(super) fn show(
     ui.horizontal(|ui| {
         pixel(ui, state, commands);
         let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
-        if let Some((trace, fragment)) = trace.and_then(|trace| Some((trace, state.traces.fragment()?))) {
-            choices(ui, &state.traces.choice, trace, fragment, commands);
+        if let Some((newest, trace)) = newest.zip(trace)
+            && let Some(fragment) = state.traces.fragment()
+        {
+            choices::show(ui, &state.traces.choice, (trace, &newest.text()), fragment, commands);
         }
         changes(ui, state, model, scroll);
         progress(ui, state, newest.map(|newest| &**newest), is_unsaved);
@@ -190,7 +189,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
             let Some(fragment) = state.traces.fragment() else {
                 return quiet(ui, "every fragment is discarded here; choose one below");
             };
-            let text = trace.proof(fragment);
+            let text = trace.proof_text(fragment);
             let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
             let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
             let text = RichText::new(format!("{mark}{text}")).small().color(color);
@@ -270,97 +269,4 @@ fn open_in_editor(ui: &mut Ui, state: &State, model: &CodeModel, commands: &mut 
     {
         commands.push(OPEN_EDITOR.with(Place { file: PathBuf::from(display), line: None, column: None }));
     }
-}
-
-/// The fragment, the call and the time, where there is a choice.
-fn choices(ui: &mut Ui, now: &Choice, trace: &Trace, fragment: usize, commands: &mut Commands) {
-    let (calls, times) = (calls(trace, fragment), most_times(now, trace));
-    let has = [trace.fragments.len() > 1, calls.len() > 1 || now.call.is_some(), times > 1 || now.time.is_some()];
-    if has == [false; 3] {
-        return;
-    }
-    let mut choice = now.clone();
-    if has[0] {
-        choose_fragment(ui, &mut choice, trace, fragment);
-    }
-    if has[1] {
-        choose_call(ui, &mut choice, calls.len(), (trace, fragment));
-    }
-    if has[2] {
-        choose_time(ui, &mut choice, times);
-    }
-    if choice != *now {
-        commands.push(CHOOSE_TRACE.with(choice));
-    }
-}
-
-fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: usize) {
-    let name = |at: usize| trace.name_of(at);
-    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(name(fragment)).small());
-    let list = list.show_ui(ui, |ui| {
-        for at in 0..trace.fragments.len() {
-            if ui.selectable_label(at == fragment, name(at)).clicked() {
-                choice.fragment = Some(at);
-            }
-        }
-    });
-    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there");
-}
-
-/// `count`: calls with statements of the file.
-fn choose_call(ui: &mut Ui, choice: &mut Choice, count: usize, (trace, fragment): (&Trace, usize)) {
-    let all = format!("All {}", plural(count, "call"));
-    let now = choice.call.clone();
-    let shown = now.as_deref().map_or(all.as_str(), |call| last_call(call).0);
-    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(150.0).height(MENU);
-    let list = list.truncate().show_ui(ui, |ui| {
-        ui.set_min_width(MENU);
-        ui.selectable_value(&mut choice.call, None, &all);
-        for call in listed_calls(trace, fragment) {
-            let light = call.light.and_then(|light| trace.lights.get(light));
-            if call_row(ui, &call, light, now.as_deref() == Some(&call.path)) {
-                choice.call = Some(call.path);
-            }
-        }
-    });
-    let hint = "One call: the values of what led to it, of itself, and of what it calls";
-    named(list.response, "Call").on_hover_text(now.map_or(hint.to_owned(), |call| format!("{call}\n{hint}")));
-}
-
-/// A call in the list, indented below its caller, with the light that it is about. Returns whether it was clicked.
-fn call_row(ui: &mut Ui, call: &ListedCall, light: Option<&TracedLight>, is_chosen: bool) -> bool {
-    let row = ui.horizontal(|ui| {
-        ui.add_space(INDENT * call.depth as f32);
-        let button = ui.selectable_label(is_chosen, small_mono(&call.name));
-        if let Some(light) = light {
-            let (area, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
-            ui.painter().circle(area.center(), 4.0, light_color(light), Stroke::new(1.0, QUIET));
-            ui.label(RichText::new(light.text()).small().color(QUIET));
-        }
-        named(button, &call.path).clicked()
-    });
-    row.inner
-}
-
-/// The color of a light on the display, as bright as it can be.
-fn light_color(light: &TracedLight) -> Color32 {
-    let most = light.intensity.into_iter().fold(f32::MIN_POSITIVE, f32::max);
-    let [r, g, b] = light.intensity.map(|channel| ((channel / most).clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);
-    Color32::from_rgb(r, g, b)
-}
-
-fn choose_time(ui: &mut Ui, choice: &mut Choice, times: usize) {
-    let mut time = choice.time.unwrap_or(0);
-    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
-        0.0 => "all".to_owned(),
-        number => format!("{number:.0}"),
-    };
-    let parse = |text: &str| if text.trim() == "all" { Some(0.0) } else { text.trim().parse().ok() };
-    let most = times.max(time);
-    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1).prefix("Time ");
-    let drag = ui.add(drag.custom_formatter(text).custom_parser(parse));
-    named(drag, "Time").on_hover_text(
-        "Of a statement that ran more than once in the chosen call, as in a loop: which time. Drag, or type a number",
-    );
-    choice.time = (time > 0).then_some(time);
 }

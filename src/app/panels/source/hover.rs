@@ -49,11 +49,11 @@ pub(super) fn show(
     }
     let all: Vec<&Once> = done.first.iter().chain(&done.last).collect();
     Grid::new("values").num_columns(4).spacing([12.0, 1.0]).show(ui, |ui| {
-        for (index, once) in all.iter().take(MOST).enumerate() {
+        for once in all.iter().take(MOST) {
             let text = once.value.map(|value| value.text()).unwrap_or_default();
             let is_bad = once.value.is_some_and(|value| !value.is_finite());
             let value = small_mono(text);
-            ui.label(small_mono(format!("{}", index + 1)).color(QUIET));
+            ui.label(small_mono(once.time.to_string()).color(QUIET));
             ui.label(if is_bad { value.color(ERROR) } else { value });
             ui.label(small_mono(once.value.map(|value| value.float_bits()).unwrap_or_default()).color(QUIET));
             ui.label(RichText::new(calls_text(state, &once.calls)).small().color(QUIET));

@@ -1,6 +1,7 @@
 //! The panel Source: a file of the shader tree with the values that its statements have at the pinned pixel, now and before the last edit.
 
 mod bar;
+mod choices;
 mod code;
 mod colors;
 mod cost;

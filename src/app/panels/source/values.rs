@@ -86,7 +86,7 @@ impl<'a> Values<'a> {
             commands.sight.around |= response.hovered() && bar.is_some();
             if let Some(name) = expression.as_ref().filter(|_| response.clicked()) {
                 watch(&mut commands.settings, format!("{path}:{}:{name}", line.row.line));
-                commands.settings.expression.evaluation = evaluation(state, path, line, note);
+                commands.settings.expression.evaluation = state.traces.choice.evaluation(&note.done);
             }
             let is_link = expression.is_some();
             let response = if is_link { response.on_hover_cursor(CursorIcon::PointingHand) } else { response };
@@ -94,13 +94,6 @@ impl<'a> Values<'a> {
             x += size.x + GAP;
         }
     }
-}
-
-/// The number of the evaluation that a value is of, where the user has chosen a call or a time.
-fn evaluation(state: &State, path: &TreePath, line: &CodeLine, note: &Note) -> u32 {
-    let trace = state.traces.newest().and_then(|newest| newest.trace.as_ref().ok());
-    let place = trace.zip(line.row.traced);
-    place.map_or(0, |(trace, line)| state.traces.choice.evaluation(trace, path.as_str(), line, &note.done))
 }
 
 /// The expression that shows a value over the model.

@@ -1,8 +1,9 @@
-//! Which of a pixel's fragments, calls and times the values are of.
+//! Which of a pixel's fragments, calls, rounds and times the values are of.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::rounds::{Round, TracedLoop, traced_loops};
 use crate::shader::trace::{
     Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related, last_call, light_of, paths_to,
 };
@@ -14,6 +15,8 @@ pub(in crate::app) struct Choice {
     pub(in crate::app) fragment: Option<usize>,
     /// The path of a call, as `shade > add_light [light 2]`: it, the calls that led to it, and those that it makes. `None` for all.
     pub(in crate::app) call: Option<String>,
+    /// The round of a loop, of those in the traced file. What is outside of the loop stays. `None` for all.
+    pub(in crate::app) round: Option<Round>,
     /// Of a statement that ran more than once, the time that counts, from 1. `None` for all.
     pub(in crate::app) time: Option<usize>,
 }
@@ -30,21 +33,30 @@ impl Choice {
         calls(trace, fragment).iter().any(|of| paths_to(of).any(|path| path == call)).then_some(call)
     }
 
-    /// The lines of the chosen fragment, call and time.
-    pub(in crate::app) fn lines(&self, trace: &Trace) -> Vec<LineOfTrace> {
+    /// The chosen round, if the fragment has it.
+    fn round_of(&self, trace: &Trace, fragment: usize, text: &str) -> Option<(TracedLoop, u32)> {
+        let Round { line, number } = self.round?;
+        let found = traced_loops(trace, fragment, text, None).into_iter().find(|of| of.line == line)?;
+        found.rounds.iter().any(|(of, _)| *of == number).then_some((found, number))
+    }
+
+    /// The lines of the chosen fragment, call, round and time. `text`: that of the traced file.
+    pub(in crate::app) fn lines(&self, trace: &Trace, text: &str) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragment_of(trace) else { return Vec::new() };
         let call = self.call_of(trace, fragment);
-        if call.is_none() && self.time.is_none() {
-            return trace.lines(fragment);
-        }
-        let mut times: HashMap<Doing, usize> = HashMap::new();
+        let round = self.round_of(trace, fragment, text);
+        // The time of the first event of each statement in the chosen call and round.
+        let mut first: HashMap<Doing, u32> = HashMap::new();
+        let mut events = 0..;
         trace.lines_where(fragment, |event| {
-            if call.is_some_and(|call| !is_related(&event.calls, call)) {
+            let at = events.next().unwrap_or_default();
+            let is_of_round = round.as_ref().is_none_or(|(of, number)| of.is_shown(at, *number));
+            if !is_of_round || call.is_some_and(|call| !is_related(&event.calls, call)) {
                 return false;
             }
-            let time = times.entry(event.doing.clone()).or_default();
-            *time += 1;
-            self.time.is_none_or(|chosen| chosen == *time)
+            let Some(chosen) = self.time else { return true };
+            let first = *first.entry(event.doing.clone()).or_insert(event.time);
+            chosen == (event.time - first + 1) as usize
         })
     }
 }
@@ -55,19 +67,11 @@ impl Choice {
         Which { call: self.call.as_deref(), time: self.time }
     }
 
-    /// The number of the evaluation, from 1, whose value is shown last for a statement of a line. 0 without a choice: the last one counts.
-    pub(in crate::app) fn evaluation(&self, trace: &Trace, file: &str, line: u32, done: &Done) -> u32 {
-        let Some(fragment) = self.fragment_of(trace) else { return 0 };
-        let call = self.call_of(trace, fragment);
-        if call.is_none() && self.time.is_none() {
-            return 0;
-        }
-        let is_it = |doing: &Doing| (doing.act, &doing.name) == (done.act, &done.name);
-        let events = events_of(trace, fragment, (file, line), is_it);
-        let chosen = (1..).zip(events).filter(|(_, event)| call.is_none_or(|call| is_related(&event.calls, call)));
-        let numbers: Vec<u32> = chosen.map(|(number, _)| number).collect();
-        let at = self.time.map_or(numbers.len(), |time| time.min(numbers.len()));
-        at.checked_sub(1).map_or(0, |at| numbers[at])
+    /// The number of the evaluation, from 1, whose value is shown last for a statement. 0 without a choice: the last one counts.
+    pub(in crate::app) fn evaluation(&self, shown: &Done) -> u32 {
+        let is_chosen = self.call.is_some() || self.round.is_some() || self.time.is_some();
+        let last = shown.last.last().or(shown.first.last()).filter(|_| is_chosen);
+        last.map_or(0, |once| once.time)
     }
 }
 
@@ -82,19 +86,26 @@ fn events_of<'a>(
     events.filter(move |event| event.doing.file == file && event.doing.line == line && is_it(&event.doing))
 }
 
-/// The evaluations of an expression in a fragment, in order: the values that a line gave to a variable, or returned for `return`.
+/// The evaluations of an expression in a fragment, in order, with their numbers from 1: the values that a line gave to a variable, or returned
+/// for `return`.
 pub(in crate::app) fn evaluations<'a>(
     trace: &'a Trace,
     fragment: usize,
     place: (&'a str, u32),
     expression: &'a str,
-) -> Vec<&'a Event> {
+) -> Vec<(u32, &'a Event)> {
     let is_it = move |doing: &Doing| match doing.act {
         Act::Store | Act::Argument => doing.name == expression,
         Act::Return => expression == "return",
         Act::Condition | Act::Discard => false,
     };
-    events_of(trace, fragment, place, is_it).collect()
+    // A line may give a value to an argument and store to it.
+    let (mut last, mut number): (HashMap<&Doing, u32>, u32) = (HashMap::new(), 0);
+    let numbered = events_of(trace, fragment, place, is_it).map(|event| {
+        number += event.time - last.insert(&event.doing, event.time).unwrap_or(0);
+        (number, event)
+    });
+    numbered.collect()
 }
 
 /// The paths of calls in a fragment, in their order.
@@ -138,8 +149,8 @@ pub(in crate::app) fn listed_calls(trace: &Trace, fragment: usize) -> Vec<Listed
     listed
 }
 
-/// How often the statement ran that ran most often in the chosen call.
-pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace) -> usize {
+/// How often the statement ran that ran most often in the chosen call and round.
+pub(in crate::app) fn most_times(choice: &Choice, trace: &Trace, text: &str) -> usize {
     let all = Choice { time: None, ..choice.clone() };
-    all.lines(trace).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
+    all.lines(trace, text).iter().flat_map(|line| &line.done).map(|done| done.count).max().unwrap_or(0)
 }

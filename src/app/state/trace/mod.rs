@@ -4,6 +4,7 @@
 pub(in crate::app) mod around;
 pub(in crate::app) mod choice;
 mod pixel_trace;
+pub(in crate::app) mod rounds;
 pub(in crate::app) mod rows;
 #[cfg(test)]
 pub(in crate::app) mod sample;

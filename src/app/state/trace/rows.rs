@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::choice::Choice;
+use super::rounds::Round;
 use crate::shader::expression::lines_before;
 use crate::shader::trace::{Act, Done, LineOfTrace, Trace, is_related};
 
@@ -85,11 +86,15 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let texts: Vec<&str> = text.lines().collect();
     let mut rows: Vec<Row> = (1..).zip(&texts).map(|(line, _)| Row { line, ..Row::default() }).collect();
     let Some(now) = now else { return rows };
-    let lines = by_line(choice.lines(now.trace));
+    let lines = by_line(choice.lines(now.trace, &now.text));
     let earlier = before.as_ref().map(|before| {
+        let lines_before = lines_before(&before.text, &now.text);
+        let line_before = |line: u32| lines_before.get((line as usize).checked_sub(1)?).copied().flatten();
         // The number of a fragment of one version may be that of another in the other version.
-        let choice = Choice { fragment: choice.fragment_of(before.trace).and(choice.fragment), ..choice.clone() };
-        (by_line(choice.lines(before.trace)), lines_before(&before.text, &now.text))
+        let fragment = choice.fragment_of(before.trace).and(choice.fragment);
+        let round = choice.round.map(|round| Round { line: line_before(round.line).unwrap_or(0), ..round });
+        let choice = Choice { fragment, round, ..choice.clone() };
+        (by_line(choice.lines(before.trace, &before.text)), lines_before)
     });
     let file = lines.values().next().map(|line| line.file.clone());
     let file = file.or_else(|| now.trace.files().next().map(str::to_owned)).unwrap_or_default();

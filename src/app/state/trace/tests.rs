@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::choice::evaluations;
+use super::rounds::Round;
 use super::rows::Reach;
 use super::sample::{add, subject};
 use super::*;
 use crate::shader::trace::sample::{called, event, trace};
-use crate::shader::trace::{Act, Event};
+use crate::shader::trace::{Act, Doing, Event};
 
 const OLD: &str = "float f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 const NEW: &str = "float f(float x) {\n    float b = 1.0;\n    float a = x * 4.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
@@ -140,12 +141,75 @@ fn evaluations_of_an_expression_are_in_the_order_of_their_calls() {
     let trace = trace(events, &[1, 2, 3, 4]);
     let of = |line, name| {
         let found = evaluations(&trace, 0, ("a.glsl", line), name);
-        found.iter().map(|event| format!("{} {}", event.calls, event.value.unwrap().text())).collect::<Vec<_>>()
+        found.iter().map(|(_, event)| format!("{} {}", event.calls, event.value.unwrap().text())).collect::<Vec<_>>()
     };
     assert_eq!(of(2, "a"), ["f 2", "f [2] 4"]);
     assert_eq!(of(1, "x"), ["f 1", "f [2] 3"]);
     assert_eq!(of(4, "return"), ["f [2] 5"]);
     assert!(of(3, "").is_empty() && of(9, "a").is_empty());
+}
+
+#[test]
+fn a_round_of_a_loop_is_chosen() {
+    let mut traces = Traces::default();
+    let text = "float f(float x) {\n    for (int i = 0; i < 2; i++)\n        x += 1.0;\n    return x;\n}\n";
+    let events = |step: f32| {
+        let mut events = vec![event(1, Act::Argument, "x", &[1.0])];
+        for round in [0.0, 1.0, 2.0] {
+            events.push(event(2, Act::Store, "i", &[round]));
+            events.push(event(2, Act::Condition, "", &[f32::from(round < 2.0)]));
+            if round < 2.0 {
+                events.push(event(3, Act::Store, "x", &[1.0 + step * (round + 1.0)]));
+            }
+        }
+        events.push(event(4, Act::Return, "", &[1.0 + 2.0 * step]));
+        events
+    };
+    add(&mut traces, &shaders(1, text), 1, events(1.0), &[1, 2, 3, 4]);
+    assert_eq!(texts(&traces, text)[..4], ["x = 1", "i = 0, 1, 2 ×3; 2 rounds", "x = 2, 3 ×2", "return 3"]);
+    traces.choice.round = Some(Round { line: 2, number: 2 });
+    assert_eq!(texts(&traces, text)[..4], ["x = 1", "i = 1; 1 round", "x = 3", "return 3"]);
+    let done = traces.rows(&"a.glsl".into(), text)[2].notes[0].done.clone();
+    assert_eq!((done.first[0].time, traces.choice.evaluation(&done)), (2, 2));
+    // The version before has the same round, where its loop stands one line higher.
+    let moved = format!("// A comment.\n{}", text.replace("1.0;", "2.0;"));
+    let below = |event: Event| Event { doing: Doing { line: event.doing.line + 1, ..event.doing }, ..event };
+    add(&mut traces, &shaders(2, &moved), 2, events(2.0).into_iter().map(below).collect(), &[2, 3, 4, 5]);
+    traces.choice.round = Some(Round { line: 3, number: 2 });
+    let expected = ["", "x = 1", "i = 1; 1 round", "x = 3 → 5", "return 3 → 5"];
+    assert_eq!(texts(&traces, &moved)[..5], expected);
+    // A round that the trace does not have counts no more.
+    traces.choice.round = Some(Round { line: 4, number: 2 });
+    assert_eq!(texts(&traces, &moved)[2], "i = 0, 1, 2 ×3; 2 rounds");
+}
+
+/// The log has the first and the last rounds of a long loop, in the second of three calls.
+#[test]
+fn times_count_rounds_that_were_not_logged() {
+    let mut traces = Traces::default();
+    let text = "float f(float x) {\n    for (int i = 0; i < 99; i++)\n        x += 1.0;\n    return x;\n}\n";
+    let x = |calls: &str, time: u32| Event { time, ..called(calls, 3, Act::Store, "x", &[time as f32]) };
+    let mut events = vec![x("f", 1), x("f", 2)];
+    events.extend((3..=6).chain(96..=99).map(|time| x("f [2]", time)));
+    events.push(x("f [3]", 100));
+    add(&mut traces, &shaders(1, text), 1, events, &[2, 3, 4]);
+    let trace = traces.newest().unwrap().trace.clone().unwrap();
+    let (numbers, _): (Vec<u32>, Vec<&Event>) = evaluations(&trace, 0, ("a.glsl", 3), "x").into_iter().unzip();
+    assert_eq!(numbers, [1, 2, 3, 4, 5, 6, 96, 97, 98, 99, 100]);
+    let chosen = |traces: &mut Traces, call: Option<&str>, time: Option<usize>| {
+        traces.choice = Choice { call: call.map(str::to_owned), time, ..Choice::default() };
+        let done = traces.rows(&"a.glsl".into(), text)[2].notes.first().map(|note| note.done.clone());
+        let evaluation = done.map(|done| traces.choice.evaluation(&done));
+        (texts(traces, text)[2].clone(), evaluation)
+    };
+    let all = chosen(&mut traces, None, None);
+    assert_eq!(all, ("x = 1, 2, …, 100 ×100 (89 of them not logged)".to_owned(), Some(0)));
+    let call = chosen(&mut traces, Some("f [2]"), None);
+    assert_eq!(call, ("x = 3, 4, …, 99 ×97 (89 of them not logged)".to_owned(), Some(99)));
+    assert_eq!(chosen(&mut traces, Some("f [2]"), Some(97)), ("x = 99".to_owned(), Some(99)));
+    assert_eq!(chosen(&mut traces, None, Some(97)), ("x = 97".to_owned(), Some(97)));
+    assert_eq!(chosen(&mut traces, None, Some(50)), (String::new(), None), "that round was not logged");
+    assert_eq!(chosen(&mut traces, Some("f [3]"), Some(1)), ("x = 100".to_owned(), Some(100)));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Instruments a module so that it logs the values that its statements compute.
 //!
 //! Before an instruction that uses a value, the module calls a function of its own text with the number of the log point and the bits of
-//! the value. The function decides what to do with them: keep the first that is not finite, or write all to a buffer.
+//! the value. The function decides what to do with them: keep the first that is not finite, or write all to a buffer. For statements, two
+//! more functions are called where a function begins and where it ends.
 //!
 //! `floats.rs` instruments a module to find the first value that is not finite, `statements.rs` to show what every statement does.
 
@@ -48,8 +49,6 @@ pub enum Purpose {
     Enter(String, Option<LightList>),
     /// The argument for the parameter of this name.
     Argument(String),
-    /// A function ends. Without a value.
-    Leave,
     /// Decides by it which statement is next.
     Condition,
     /// The same, by a constant. Its line is that of the first code in the first branch, since the compiler gives a constant none. `between`:
@@ -113,33 +112,46 @@ pub struct Traced {
 }
 
 /// Instruments a module with line information. `function` is the name of `void function(const in uint point, const in uvec4 bits)`, which
-/// gets the number of a log point from 1, and a value of up to four numbers, filled up by zeros. Functions whose names begin with that name
-/// log nothing; neither does the entry point for [`Logged::Statements`]. `only`: the files whose statements are logged, with the calls that
-/// lead there. `None` if the module has no such function.
+/// gets the number of a log point from 1, and a value of up to four numbers, filled up by zeros. Values of one to three numbers go to
+/// `function_1` to `function_3`, if the module has them. [`Logged::Statements`] also needs
+/// `uint function_enter(const in uint point, const in uint light)`, whose result goes to `void function_leave(const in uint caller)` where
+/// the entered function ends. Functions whose names begin with `function` log nothing; neither does the entry point for
+/// [`Logged::Statements`]. `only`: the files whose statements are logged, with the calls that lead there. `None` if the module lacks one of
+/// these functions.
 pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeSet<String>>) -> Option<Traced> {
     let mut module = Module::parse(words)?;
     let id = module.named(&format!("{function}(")).next()?;
+    let calls = match logged {
+        Logged::Floats => CallFunctions::default(),
+        Logged::Statements => CallFunctions::new(&module, function)?,
+    };
+    let short = [1, 2, 3].map(|count| module.named(&format!("{function}_{count}(")).next().unwrap_or(id));
+    let functions = [short[0], short[1], short[2], id];
     let known = Functions::new(&module, function, logged, only);
     let light_parameters = LightParameters::new(&module);
-    let mut functions = std::mem::take(&mut module.functions);
-    let mut tracer = Tracer::new(&mut module, id, only, light_parameters);
-    for function in &mut functions {
+    let mut all = std::mem::take(&mut module.functions);
+    let mut tracer = Tracer::new(&mut module, (functions, calls), only, light_parameters);
+    for function in &mut all {
         function.head.retain(|i| !is_line(*i));
         let is_silent = known.is_silent(function.id);
-        let branches = Branches::new(function);
+        let entered = match logged {
+            Logged::Statements if !is_silent => Some((Branches::new(function), tracer.enter(function, &known))),
+            _ => None,
+        };
         for block in &mut function.blocks {
-            match logged {
+            match &entered {
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
-                Logged::Floats => block.body = tracer.floats(&block.body),
-                Logged::Statements => block.body = tracer.statements(&block.body, &branches),
+                None => block.body = tracer.floats(&block.body),
+                Some((branches, (_, caller))) => block.body = tracer.statements(&block.body, branches, *caller),
             }
         }
-        if logged == Logged::Statements && !is_silent {
-            tracer.enter(function, &known);
+        if let (Some((_, (start, _))), Some(block)) = (entered, function.blocks.first_mut()) {
+            let first = block.body.iter().position(|i| i.op != Op::Variable).unwrap_or(block.body.len());
+            block.body.splice(first..first, start);
         }
     }
     let Tracer { places, points, .. } = tracer;
-    module.functions = functions;
+    module.functions = all;
     // The passes that follow expect no lines.
     module.globals.retain(|i| !is_line(*i));
     module.debug.retain(|i| matches!(i.op, Op::Name | Op::MemberName));
@@ -161,12 +173,28 @@ pub fn with_constants(words: &[u32], changes: &[(u32, u32)]) -> Option<Vec<u32>>
     Some(module.write())
 }
 
+/// The functions that log where others begin and end.
+#[derive(Clone, Copy, Debug, Default)]
+struct CallFunctions {
+    enter: Id,
+    leave: Id,
+}
+
+impl CallFunctions {
+    fn new(module: &Module, function: &str) -> Option<Self> {
+        let [enter, leave] = ["enter", "leave"].map(|name| module.named(&format!("{function}_{name}(")).next());
+        Some(Self { enter: enter?, leave: leave? })
+    }
+}
+
 struct Tracer<'a> {
     module: &'a mut Module,
     names: HashMap<Id, String>,
     /// Names of the members of structs.
     members: HashMap<(Id, u32), String>,
-    function: Id,
+    /// The functions that log values of one to four numbers.
+    functions: [Id; 4],
+    calls: CallFunctions,
     void: Id,
     uint: Id,
     /// The vectors of two, three and four.
@@ -184,7 +212,7 @@ struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     fn new(
         module: &'a mut Module,
-        function: Id,
+        (functions, calls): ([Id; 4], CallFunctions),
         only: Option<&'a BTreeSet<String>>,
         light_parameters: LightParameters,
     ) -> Self {
@@ -201,7 +229,8 @@ impl<'a> Tracer<'a> {
             module,
             names,
             members,
-            function,
+            functions,
+            calls,
             void,
             uint,
             vectors,
@@ -337,9 +366,15 @@ impl<'a> Tracer<'a> {
             }
             bits = m.emit(out, Op::CompositeConstruct, self.vectors[2], &[&[bits][..], &rest].concat());
         }
+        let point = self.new_point(kind, (count, indices), part);
+        let function = self.functions[(count + indices).clamp(1, 4) as usize - 1];
+        self.module.emit(out, Op::FunctionCall, self.void, &[function, point, bits]);
+    }
+
+    /// A new log point of the last place, with a count of numbers and one of indices. Returns the constant with its number.
+    fn new_point(&mut self, kind: NumberKind, (count, indices): (u32, u32), part: String) -> Id {
         self.points.push(LogPoint { place: self.places.len() - 1, part, kind, count, indices });
-        let point = m.constant(self.uint, self.points.len() as u32);
-        m.emit(out, Op::FunctionCall, self.void, &[self.function, point, bits]);
+        self.module.constant(self.uint, self.points.len() as u32)
     }
 }
 

@@ -1,10 +1,10 @@
 //! Logs what statements do: numbers and conditions of all types where they are stored, returned or decided about, copies and constants too,
-//! the arguments of functions, discards, and where functions begin and end.
+//! the arguments of functions, discards, and where functions begin and end, so that each value has the call that it belongs to.
 
 use super::branches::{Branches, ConstantBranch};
 use super::functions::{Functions, is_line};
 use super::{MOST_PARTS, NumberKind, Place, Purpose, Tracer};
-use crate::shader::spirv::module::{Block, Function, Id, Instruction, Type};
+use crate::shader::spirv::module::{Function, Id, Instruction, Type};
 use crate::shader::spirv::op::Op;
 use crate::shader::spirv::reach::file_of;
 
@@ -20,8 +20,8 @@ fn is_merge(i: Instruction) -> bool {
 }
 
 impl Tracer<'_> {
-    /// The instructions of a block with calls between them, without lines.
-    pub(super) fn statements(&mut self, body: &[Instruction], branches: &Branches) -> Vec<Instruction> {
+    /// The instructions of a block with calls between them, without lines. `caller`: the number of the call that made the function's.
+    pub(super) fn statements(&mut self, body: &[Instruction], branches: &Branches, caller: Id) -> Vec<Instruction> {
         let (mut out, mut line): (Vec<Instruction>, _) = (Vec::with_capacity(body.len()), None);
         for (at, &i) in body.iter().enumerate() {
             if is_line(i) {
@@ -43,6 +43,9 @@ impl Tracer<'_> {
             } else if !out.last().is_some_and(|i| is_merge(*i)) {
                 let constant = branches.constant(self.module, i, None);
                 self.statement(&mut out, i, line, constant);
+            }
+            if matches!(i.op, Op::ReturnValue | Op::Return) {
+                self.module.emit(&mut out, Op::FunctionCall, self.void, &[self.calls.leave, caller]);
             }
             out.push(i);
         }
@@ -66,8 +69,7 @@ impl Tracer<'_> {
                 self.indices = indices;
                 (Purpose::Store(name + &path), Some(*value))
             }
-            (Op::ReturnValue, [value]) if self.is_short(self.module.type_of(*value)) => (Purpose::Return, Some(*value)),
-            (Op::ReturnValue | Op::Return, _) => (Purpose::Leave, None),
+            (Op::ReturnValue, [value]) => (Purpose::Return, Some(*value)),
             (Op::BranchConditional | Op::Switch, [condition, ..]) => (Purpose::Condition, Some(*condition)),
             (Op::Kill | Op::TerminateInvocation | Op::DemoteToHelperInvocation, _) => (Purpose::Discard, None),
             _ => return,
@@ -76,13 +78,8 @@ impl Tracer<'_> {
         let between = constant.and_then(|constant| constant.between);
         let purpose = between.map_or(purpose, |between| Purpose::Constant { between });
         let file = line.and_then(|line| file_of(self.module, &self.module[line]));
-        match file.filter(|(file, _)| self.is_wanted(file)) {
-            Some((file, line)) => self.log_at(out, Place { file, line, purpose }, value),
-            // A call of a function in another file has an end, too.
-            None if matches!(i.op, Op::ReturnValue | Op::Return) => {
-                self.log_at(out, Place { file: String::new(), line: 0, purpose: Purpose::Leave }, None);
-            }
-            None => {}
+        if let Some((file, line)) = file.filter(|(file, _)| self.is_wanted(file)) {
+            self.log_at(out, Place { file, line, purpose }, value);
         }
         self.indices.clear();
     }
@@ -97,18 +94,18 @@ impl Tracer<'_> {
         (1..=MOST_PARTS).contains(&self.parts_of(kind, &ALL))
     }
 
-    /// Logs at the start of a function that it begins, and its arguments. Structs are left out: they were logged where they were made.
-    pub(super) fn enter(&mut self, function: &mut Function, known: &Functions) {
+    /// Instructions for the start of a function, which log that it begins, and its arguments. Structs are left out: they were logged where
+    /// they were made. Also the number of the call that made it.
+    pub(super) fn enter(&mut self, function: &Function, known: &Functions) -> (Vec<Instruction>, Id) {
         let name = self.names.get(&function.id).map(|name| name.split('(').next().unwrap_or_default().to_owned());
         let first = known.first.get(&function.id).and_then(|line| file_of(self.module, &self.module[*line]));
         let (file, line) = first.unwrap_or_default();
-        let Some(Block { body, .. }) = function.blocks.first_mut() else { return };
         let mut out = Vec::new();
         let place = |purpose| Place { file: file.clone(), line, purpose };
         let light = self.light_parameters.of(function.id);
         let number = light.map(|(parameter, _)| self.loaded(&mut out, parameter));
-        let purpose = Purpose::Enter(name.unwrap_or_default(), light.map(|(_, list)| list));
-        self.log_at(&mut out, place(purpose), number);
+        self.places.push(place(Purpose::Enter(name.unwrap_or_default(), light.map(|(_, list)| list))));
+        let caller = self.log_call(&mut out, number);
         let parameters = function.head.iter().filter(|i| i.op == Op::FunctionParameter).map(|i| self.module[*i][2]);
         let parameters: Vec<(usize, Id)> = parameters.enumerate().collect();
         for (at, parameter) in parameters {
@@ -125,8 +122,23 @@ impl Tracer<'_> {
             let value = self.loaded(&mut out, parameter);
             self.log_at(&mut out, place(Purpose::Argument(name)), Some(value));
         }
-        let first = body.iter().position(|i| i.op != Op::Variable).unwrap_or(body.len());
-        body.splice(first..first, out);
+        (out, caller)
+    }
+
+    /// Appends the call that logs the start of a function, at the last place. Returns the number of the call that made it. `light`: the number
+    /// of the light that it is about.
+    fn log_call(&mut self, out: &mut Vec<Instruction>, light: Option<Id>) -> Id {
+        let kind = light.map_or(NumberKind::Bool, |light| match self.module.get_type(self.module.type_of(light)) {
+            Some(Type::Int { signed: true, .. }) => NumberKind::Int,
+            _ => NumberKind::Uint,
+        });
+        let bits = match (light, kind) {
+            (None, _) => self.zero,
+            (Some(light), NumberKind::Int) => self.module.emit(out, Op::Bitcast, self.uint, &[light]),
+            (Some(light), _) => light,
+        };
+        let point = self.new_point(kind, (u32::from(light.is_some()), 0), String::new());
+        self.module.emit(out, Op::FunctionCall, self.uint, &[self.calls.enter, point, bits])
     }
 
     /// The value of a parameter, which glslang passes by a pointer unless it is constant.

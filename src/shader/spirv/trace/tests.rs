@@ -6,14 +6,18 @@ use crate::shader::source::Source;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::{optimize, specialize, validate};
 
+/// The functions that are called.
+const TOLD: &str = "void told(const in uint place, const in uvec4 bits) { last = place + bits.x; }\n\
+    uint told_enter(const in uint place, const in uint light) { uint caller = last; last = place + light; return caller; }\n\
+    void told_leave(const in uint caller) { last = caller; }\n";
+
 /// A stage with these functions, of which `main` calls `f`; compiled with lines. Also the number of their first line.
 fn compiled(body: &str) -> (Vec<u32>, u32) {
     let text = format!(
         "#version 460\nlayout(location = 0) in vec3 n;\nlayout(location = 0) out vec4 color;\n\
          layout(set = 1, binding = 0) uniform sampler2D image;\nlayout(constant_id = 7) const uint KIND = 0u;\n\
          struct S {{ float a; vec2 b, c[2]; mat2 d; int e; }};\nuint last;\n\
-         void told(const in uint place, const in uvec4 bits) {{ last = place + bits.x; }}\n\
-         {body}\nvoid main() {{\n color = vec4(float(f(n.x))); told(0u, uvec4(0u)); }}\n"
+         {TOLD}{body}\nvoid main() {{\n color = vec4(float(f(n.x))); told(0u, uvec4(0u)); told_leave(told_enter(0u, 0u)); }}\n"
     );
     let first = text.lines().position(|line| line.starts_with(body.lines().next().unwrap())).unwrap() as u32;
     let source = Source::memory([("m.frag", text.as_str())]);
@@ -97,7 +101,6 @@ fn statements_are_logged_with_what_they_do() {
                 "2 Store(\"y\")",
                 "3 Store(\"s.b.y\")",
                 "4 Store(\"s.c[1]\")",
-                "4 Leave",
                 "7 Enter(\"f\", None)",
                 "7 Argument(\"x\")",
                 "7 Store(\"y\")",
@@ -171,13 +174,12 @@ fn copies_of_log_points_are_counted_as_a_driver_inlines_them() {
 /// Functions that read lights by a number, by a copy of it or by way of others; suns; and functions whose numbers are of other things.
 #[test]
 fn functions_tell_the_light_that_they_are_about() {
-    let text = "#version 460\n#extension GL_EXT_scalar_block_layout : require\nlayout(location = 0) out vec4 color;\n\
+    let text = ["#version 460\n#extension GL_EXT_scalar_block_layout : require\nlayout(location = 0) out vec4 color;\n\
         layout(set = 0, binding = 0, scalar) uniform Constants { uint other; uint light_count; uint sun; } frame;\n\
         struct Light { vec4 position; vec3 intensity; };\n\
         layout(set = 0, binding = 21, scalar) readonly buffer Many { Light lights[]; };\n\
         layout(set = 0, binding = 1, scalar) uniform Few { Light few[8]; };\n\
-        uint last;\nvoid told(const in uint place, const in uvec4 bits) { last = place + bits.x; }\n\
-        Light given(uint i) { if (frame.other == 0u) return few[i]; return lights[i]; }\n\
+        uint last;\n", TOLD, "Light given(uint i) { if (frame.other == 0u) return few[i]; return lights[i]; }\n\
         vec3 constant(const vec3 n, const uint number) { return n * lights[number].intensity; }\n\
         vec3 copied(float x, int at) { uint i = uint(at); return given(i).intensity * x; }\n\
         vec3 of_sun(uint i) { return given(frame.light_count + i).intensity; }\n\
@@ -185,8 +187,8 @@ fn functions_tell_the_light_that_they_are_about() {
         vec3 shifted(uint i) { return given(frame.other + i).intensity; }\n\
         vec3 plain(uint i) { return vec3(float(i)); }\n\
         void main() {\n color = vec4(constant(vec3(1.0), 1u) + copied(1.0, 2) + all_suns(0u) + shifted(1u) + plain(3u), 1.0);\n \
-        told(0u, uvec4(0u)); }\n";
-    let source = Source::memory([("m.frag", text)]);
+        told(0u, uvec4(0u)); told_leave(told_enter(0u, 0u)); }\n"].concat();
+    let source = Source::memory([("m.frag", text.as_str())]);
     let words = Compiler::new().unwrap().compile_with_lines(&Snapshot::new(&source), &"m.frag".into()).unwrap();
     let Traced { words, places, points } = trace(&words, "told", Logged::Statements, None).unwrap();
     assert_eq!(validate(&words), Ok(()));

@@ -144,7 +144,8 @@ fn passes_of_the_model_and_of_quads_are_traced() {
         assert_eq!(part_of, [json!(part)], "fragment {fragment}");
     }
     // Blended with what is behind it.
-    assert_eq!(found["proof"]["equal"], json!(false), "{}", found["proof"]);
+    assert_eq!((&found["proof"]["equal"], &found["proof"]["blended_ulp"]), (&json!(true), &json!(0)), "{found}");
+    assert_eq!(found["proof"]["picture"], json!([0.0, 0.625, 0.0, 0.625]), "{}", found["proof"]);
     of_quads("70,20").expect(2, &["passes/quads.frag draws nothing at the pixel 70,20"]);
     run(&["--at", "20,20", "--stage", "passes/quads.vert"])
         .expect(2, &["no stage passes/quads.vert", "vertex stages of other passes"]);
