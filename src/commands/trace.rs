@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
+use specula::events::{Event, emit};
 use specula::headless::TraceRequest;
 use specula::shader::trace::{Assertion, Trace};
-use specula::shader::{ShaderSet, StageKind, TreePath};
+use specula::shader::{Severity, ShaderSet, StageKind, TreePath};
 
+use super::common::asserts::Asserted;
 use super::common::frames::Frames;
 use super::common::opened::Opened;
 use super::common::parse::{inside, pixel};
 use super::common::{Common, Models, check_mode, check_validation, warn_unmeasured};
-use super::{Failure, print_json};
+use super::{Failure, print_diagnostics, print_json};
 
 /// Columns of source code in front of the values.
 const CODE: usize = 60;
@@ -23,14 +25,16 @@ const CODE: usize = 60;
     `return 2`, `? true` decides about a branch or a loop, `discard`. \u{d7}3: three times, with the different values.\n\
     The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. --stage traces any other \
     stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
-    compute stage, for the invocation of the pixel or --invocation. Stages of tessellation, geometry and meshes, and those that bake \
-    light, are not traced. A file of another stage than the picture's finds its stage by itself. \
+    compute stage, for the invocation of the pixel or --invocation. Vertex stages of passes, stages of tessellation, geometry and meshes, \
+    and those that bake light are not traced. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
     In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [light 2]`: the call about \
     the second of `lights`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \
-    a component, as n.x. NAME can be `return` or `condition`. It traces its file alone."
+    a component, as n.x. NAME can be `return` or `condition`. It traces its file alone.\n\
+    If the shaders have assert() or print(), those of the whole picture are checked, too: a failed one is exit code 1, and so is a loop that does \
+    not end at the pixel, whose first rounds are printed."
 )]
 pub struct Args {
     #[command(flatten)]
@@ -87,6 +91,10 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
     let trace = headless.trace(&request)?;
     let around = if args.around { Some(headless.trace_around(&request)?) } else { None };
+    let cut = headless.endless_loop_of(&trace);
+    let is_endless = cut.as_ref().is_some_and(|cut| cut.severity == Severity::Error);
+    // Where a loop does not end, there is no picture to check.
+    let asserted = if is_endless { Asserted::default() } else { Asserted::draw(&mut headless)? };
     drop(progress);
     let fragment = chosen(&trace, args.fragment)?;
     let failed: Vec<String> =
@@ -100,6 +108,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         if !args.assert.is_empty() {
             value["failed"] = json!(failed);
         }
+        if let Some(checks) = asserted.json() {
+            value["checks"] = checks;
+        }
         print_json(&value);
     } else {
         print(args.at, &trace, fragment);
@@ -107,9 +118,13 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     // The validation layers also report errors when objects are destroyed.
     drop(headless);
     check_validation(&gpu)?;
-    match failed.is_empty() {
-        true => Ok(()),
-        false => Err(Failure::Input(failed.join("\n"))),
+    print_diagnostics(cut.as_slice());
+    cut.iter().for_each(|cut| emit(args.common.emits(), &Event::Diagnostic(cut)));
+    let told = asserted.tell(args.common.emits());
+    match (failed.is_empty(), is_endless) {
+        (false, _) => Err(Failure::Input(failed.join("\n"))),
+        (true, true) => Err(Failure::Printed),
+        (true, false) => told,
     }
 }
 

@@ -173,6 +173,8 @@ pub struct PixelTracer {
     own: OffscreenView,
     traces_vertices: bool,
     log: Arc<Buffer>,
+    /// The words of a loop that did not end in the picture of the pixel.
+    endless_loop: Option<[u32; 2]>,
     kept: VecDeque<Kept>,
 }
 
@@ -191,7 +193,8 @@ impl PixelTracer {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
         let log = Buffer::new(gpu, "trace", log::SIZE, usage, Memory::Readback)?;
-        Ok(Self { own: OffscreenView::new(gpu, layouts)?, traces_vertices, log, kept: VecDeque::new() })
+        let (own, endless_loop, kept) = (OffscreenView::new(gpu, layouts)?, None, VecDeque::new());
+        Ok(Self { own, traces_vertices, log, endless_loop, kept })
     }
 
     /// The files whose statements the stage of a plan has at its pixel.
@@ -207,11 +210,13 @@ impl PixelTracer {
     /// # Errors
     /// As [`Self::trace`].
     pub fn value(&mut self, plan: &TracePlan<'_>, tools: &mut TraceTools<'_>) -> Result<PixelValue, HeadlessError> {
-        self.draw_pixel(plan, tools, plan.pixel.set, false)
+        let value = self.draw_pixel(plan, tools, plan.pixel.set, false)?;
+        self.endless_loop = self.own.endless_loop();
+        Ok(value)
     }
 
     /// Traces the statements of `files` of the tree; without files, those of all. The pixel is drawn once for each group of files. `shown`:
-    /// its value in the picture.
+    /// its value in the picture, which [`Self::value`] has drawn last.
     ///
     /// # Errors
     /// The stage has no such file, it does not run for the pixel, or a device error.
@@ -244,6 +249,7 @@ impl PixelTracer {
         }
         let mut trace = trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))?;
         trace.lights = traced_lights(&plan.state, plan.pixel.settings);
+        trace.endless_loop = self.endless_loop;
         Ok(trace)
     }
 

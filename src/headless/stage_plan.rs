@@ -21,8 +21,8 @@ pub(super) enum Extent {
 }
 
 /// The stages that can be traced, for a reader.
-pub const UNTRACED: &str = "Fragment and vertex stages and the compute stages of a picture are traced; those of tessellation, geometry, tasks \
-    and meshes are not, and neither are those that bake light";
+pub const UNTRACED: &str = "Fragment stages, the vertex stage of the model and the compute stages of a picture are traced; vertex stages of other \
+    passes and those of tessellation, geometry, tasks and meshes are not, and neither are those that bake light";
 
 /// How a stage is traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,8 +132,10 @@ fn why_not(state: &FrameState, path: &str) -> Option<&'static str> {
 fn is_untraced(state: &FrameState, file: &str) -> bool {
     let path = TreePath::from(file);
     let has = |stage: &Stage| stage.path == path || stage.dependencies.contains(&path);
+    let is_of_pass = |vertex: &str| state.pipelines.passes.iter().any(|pass| pass.pre_rasterization.vertex == vertex);
     let is_traced = |stage: &Stage| match stage.kind {
-        StageKind::Fragment | StageKind::Vertex => true,
+        StageKind::Fragment => true,
+        StageKind::Vertex => stage.path.as_str() == vertex_stage(state) || !is_of_pass(stage.path.as_str()),
         StageKind::Compute => !bake_stages().any(|bake| bake == stage.path.as_str()),
         _ => false,
     };

@@ -3,8 +3,9 @@
 use super::pixel_tracer::{PixelTracer, TracePlan, TraceTools, TracedPixel};
 use super::{Headless, HeadlessError};
 use crate::frame::Clock;
-use crate::shader::Mode;
+use crate::gpu::GpuError;
 use crate::shader::trace::{Neighborhood, Trace};
+use crate::shader::{Diagnostic, Mode};
 
 /// The question of a trace.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +44,14 @@ impl Headless {
         let none = || HeadlessError::Settings("the pixels around one are traced for one file".to_owned());
         let file = *request.files.first().ok_or_else(none)?;
         self.with_pixel(request, |pixel, tracer, tools| tracer.neighborhood(pixel, tools, file))
+    }
+
+    /// The loop that was cut short in the picture of a trace: a warning if it ends by itself.
+    pub fn endless_loop_of(&self, trace: &Trace) -> Option<Diagnostic> {
+        match self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(trace.endless_loop?))) {
+            HeadlessError::Shaders(found) => found.into_iter().next(),
+            _ => None,
+        }
     }
 
     /// Calls `run` with the pixel of a request and what draws it.

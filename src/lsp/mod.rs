@@ -23,6 +23,7 @@ mod navigation;
 mod notifications;
 mod outline;
 mod pixel_trace;
+mod refreshes;
 mod rename;
 mod requests;
 mod server;

@@ -69,11 +69,13 @@ impl Server {
                 None => select! {
                     recv(incoming) -> next => self.enqueue(next.unwrap_or(Incoming::End)),
                     recv(events) -> event => event.into_iter().for_each(|event| self.event(event)),
+                    recv(self.state.refresh_timer()) -> _ => {}
                 },
             }
             while let Ok(event) = events.try_recv() {
                 self.event(event);
             }
+            self.state.send_refresh();
         }
     }
 

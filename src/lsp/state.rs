@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
-use crossbeam_channel::Sender;
+use crossbeam_channel::{Receiver, Sender, at, never};
 use lsp_server::{Notification, Request, RequestId, Response};
 use lsp_types::{PublishDiagnosticsParams, Uri};
 
@@ -14,6 +15,7 @@ use super::documents::Documents;
 use super::event::Event;
 use super::following::Following;
 use super::pixel_trace::{OpenTree, PixelTrace};
+use super::refreshes::Refreshes;
 use super::traced::{Asked, Pinned, Traced};
 use super::transport::Outgoing;
 use super::trees::{Trees, open_in, root_of, tree_path};
@@ -71,6 +73,7 @@ pub struct State {
     compiled: BTreeMap<PathBuf, CompiledTree>,
     open: Option<OpenTree>,
     tracing: Option<PixelTrace>,
+    refreshes: Refreshes,
     /// The windows that run.
     pub following: Following,
     requests: i32,
@@ -94,6 +97,7 @@ impl State {
             compiled: BTreeMap::new(),
             open: Some(config.open),
             tracing: None,
+            refreshes: Refreshes::default(),
             following: Following::default(),
             requests: 0,
         }
@@ -237,11 +241,23 @@ impl State {
         }
     }
 
-    /// Asks the client to ask for hints again.
+    /// Asks the client to ask for hints again, now or after a while: see [`Self::send_refresh`].
     pub fn refresh_hints(&mut self) {
         if self.can_refresh {
+            self.refreshes.ask();
+        }
+    }
+
+    /// Sends the request to ask for hints again, if one is due.
+    pub fn send_refresh(&mut self) {
+        if self.refreshes.take(Instant::now()) {
             self.request("workspace/inlayHint/refresh", serde_json::Value::Null);
         }
+    }
+
+    /// Gets a message when [`Self::send_refresh`] has something to send.
+    pub fn refresh_timer(&self) -> Receiver<Instant> {
+        self.refreshes.due(Instant::now()).map_or_else(never, at)
     }
 
     /// Sends a request whose answer does not matter.

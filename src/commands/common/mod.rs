@@ -1,5 +1,6 @@
 //! The options that every command takes: settings, shader tree, model, device.
 
+pub mod asserts;
 pub mod chosen_modes;
 mod files;
 pub mod frames;

@@ -1,7 +1,6 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
 mod args;
-mod asserts;
 mod each;
 mod many;
 mod warnings;
@@ -24,7 +23,7 @@ use specula::settings::Settings;
 use specula::shader::{Diagnostic, Mode};
 
 use super::common::chosen_modes::Modes;
-use super::common::{check_mode, check_out, check_validation, compiler};
+use super::common::{asserts, check_mode, check_out, check_validation, compiler};
 use super::progress::Progress;
 use super::{Failure, print_diagnostics, tell_left_out};
 pub use args::Args;
@@ -112,7 +111,7 @@ fn draw(args: &mut Args, start: Instant, device: &mut Option<Arc<Gpu>>) -> Resul
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     complete(&mut headless, args, watch.is_some())?;
     warnings.tell(&headless.shaders().warnings);
-    let mut asserted = asserts::check(&mut headless, args);
+    let mut asserted = asserts::check(&mut headless, args.common.emits());
     if let Some(mut watch) = watch {
         // A save may mend it.
         go_on(std::mem::replace(&mut asserted, Ok(())))?;
@@ -218,7 +217,7 @@ fn again(
     complete(headless, args, true)?;
     warnings.tell(&headless.shaders().warnings);
     match reload.outcome {
-        Outcome::Ready(_) => go_on(asserts::check(headless, args)),
+        Outcome::Ready(_) => go_on(asserts::check(headless, args.common.emits())),
         _ => Ok(()),
     }
 }

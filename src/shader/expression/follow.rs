@@ -22,6 +22,10 @@ pub fn follow(old: &str, new: &str, number: u32) -> u32 {
 /// changed together, those correspond that have most words in common.
 pub fn lines_before(old: &str, new: &str) -> Vec<Option<u32>> {
     let (old_lines, new_lines): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
+    // A text that nobody has edited needs no comparison, which takes milliseconds for a long file.
+    if old == new {
+        return (1..).map(Some).take(new_lines.len()).collect();
+    }
     let mut before = vec![None; new_lines.len()];
     for operation in changes(old, new) {
         let (from, to) = (operation.old_range(), operation.new_range());
@@ -101,6 +105,7 @@ mod tests {
         assert_eq!(lines_before("a\nb\nc\n", "a\nx\n  b\nC\n"), [Some(1), None, Some(2), Some(3)]);
         assert_eq!(lines_before("a\nb\nc\n", "c\n"), [Some(3)]);
         assert_eq!(lines_before("", "a\n"), [None]);
+        assert_eq!(lines_before("a\nb\n", "a\nb\n"), [Some(1), Some(2)]);
         let (old, new) = ("{\n  float a = x * 2.0;\n}\n", "{\n\n  float b = 1.0;\n  float a = x * 4.0;\n}\n");
         assert_eq!(lines_before(old, new), [Some(1), None, None, Some(2), Some(3)]);
         assert_eq!(lines_before(new, old), [Some(1), Some(4), Some(5)]);

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::calls::Calls;
+use super::elements::Elements;
 use super::log::{LoggedEvent, LoggedFragment};
 use super::{Act, Doing, Event, TracedStage, TracedValue};
 use crate::shader::spirv::trace::Purpose;
@@ -43,10 +44,12 @@ pub(super) fn of(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u
         Purpose::Enter(name, list) => Some((name.as_str(), *list)),
         _ => None,
     });
+    let elements = Elements::new(stage, &logged.events);
     let mut times: HashMap<Doing, Times> = HashMap::new();
     let mut points: HashMap<u32, Option<Doing>> = HashMap::new();
     let event = |logged: &LoggedEvent| {
-        let doing = points.entry(logged.point).or_insert_with(|| doing(stage, logged.point)).clone()?;
+        let mut doing = points.entry(logged.point).or_insert_with(|| doing(stage, logged.point)).clone()?;
+        elements.complete(&mut doing.name, logged);
         let of = times.entry(doing.clone()).or_default();
         of.kept += 1;
         if logged.lost > 0 {

@@ -147,6 +147,8 @@ impl Trace {
             return is.to_owned();
         }
         let why = match self.redrawn == self.picture {
+            // The log ends with the color before the mark.
+            true if self.endless_loop.is_some() => return format!("a loop was cut short, so {with} is magenta there"),
             true => "a later pass changes it, or other surfaces are blended with it",
             false => "the driver computes the traced stage in another order, or passes read earlier frames",
         };

@@ -12,6 +12,7 @@ mod around;
 mod assertion;
 mod calls;
 mod conditions;
+mod elements;
 mod events;
 mod history;
 mod invocations;
@@ -163,6 +164,8 @@ pub struct Trace {
     pub redrawn: [u32; 4],
     /// The lights of the frame, which calls number from 1. Suns of the environment are not among them.
     pub lights: Vec<TracedLight>,
+    /// The words of a loop that did not end in the picture: pixels where its rounds ran out are magenta there.
+    pub endless_loop: Option<[u32; 2]>,
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
@@ -268,6 +271,7 @@ impl Trace {
             picture: bits(picture),
             redrawn: bits(redrawn),
             lights: Vec::new(),
+            endless_loop: None,
             code: code.collect(),
         }
     }

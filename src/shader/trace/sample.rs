@@ -40,6 +40,7 @@ pub(crate) fn trace(mut events: Vec<Event>, statements: &[u32]) -> Trace {
         picture: [0; 4],
         redrawn: [0; 4],
         lights: Vec::new(),
+        endless_loop: None,
         code: code.collect(),
     }
 }

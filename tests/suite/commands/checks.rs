@@ -292,6 +292,14 @@ fn assertions_that_fail_and_values_that_are_printed_are_told() {
     ];
     assert_eq!(lines.collect::<Vec<_>>(), expected, "{found:#}");
 
+    // A trace of a pixel tells those of the whole picture.
+    let traced = command("trace", &["--at", "30,20", "--file", "user.glsl", "--json"]);
+    traced
+        .expect(1, &["2 assertions failed", "metallic is large", "albedo = (0.25, 0.5, 0, 1) first at the pixel 0,0"]);
+    let (mut listed, trace) = (found.clone(), traced.json());
+    listed.as_array_mut().unwrap().iter_mut().for_each(|of| drop(of.as_object_mut().unwrap().remove("modes")));
+    assert_eq!((&trace["checks"], &trace["proof"]["equal"]), (&listed, &json!(true)));
+
     // A picture is written, and its assertions decide about the exit code.
     let out = tree.beside("asserted.png");
     let rendered = command("render", &["--out", out.to_str().unwrap()]);

@@ -3,6 +3,8 @@
 mod fragments;
 mod long_loops;
 mod oracle;
+mod pitfalls;
+mod planted;
 mod stages;
 mod statements;
 

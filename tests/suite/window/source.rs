@@ -115,17 +115,19 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
 /// The color of marks.
 const MARK: [u8; 3] = [255, 0, 255];
 
+/// How many pixels of the window are marked.
+fn marks(viewer: &mut Viewer) -> usize {
+    let file = viewer.tree.beside("window.png");
+    let _ = std::fs::remove_file(&file);
+    viewer.running.done(json!({ "command": "capture", "ui": true, "file": file }));
+    image::open(&file).unwrap().to_rgb8().pixels().filter(|pixel| pixel.0 == MARK).count()
+}
+
 #[test]
 fn pixels_that_fail_a_check_are_marked_and_told() {
     let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "shader-ball"]);
     viewer.running.event("ready");
     assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]), "the tree asserts nothing");
-    let marks = |viewer: &mut Viewer| {
-        let file = viewer.tree.beside("window.png");
-        let _ = std::fs::remove_file(&file);
-        viewer.running.done(json!({ "command": "capture", "ui": true, "file": file }));
-        image::open(&file).unwrap().to_rgb8().pixels().filter(|pixel| pixel.0 == MARK).count()
-    };
     assert_eq!(marks(&mut viewer), 0);
     let picture = viewer.screenshot();
     let assertion =
@@ -144,6 +146,36 @@ fn pixels_that_fail_a_check_are_marked_and_told() {
     assert!(viewer.screenshot() == picture, "the checks change the picture");
     viewer.running.done(json!({ "command": "set", "values": { "view.checks": "off" } }));
     assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]));
+    assert_eq!(marks(&mut viewer), 0);
+    viewer.quit();
+}
+
+/// The setting that checks operations, too.
+#[test]
+fn undefined_operations_are_marked_while_the_setting_says_so() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "sphere-grid"]);
+    viewer.running.event("ready");
+    let set = |value: &str| json!({ "command": "set", "values": { "view.checks": value } });
+    viewer.running.done(set("undefined"));
+    assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]), "the tree is clean");
+    let hook = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
+    let divided = "    float zero = min(abs(s.metallic), 0.0);\n    s.occlusion += min(abs(1.0 / zero), 0.0);";
+    let text = viewer.tree.edited("user.glsl", hook, &format!("{hook}\n{divided}"));
+    viewer.tree.write("user.glsl", &text);
+    viewer.running.reload(true);
+    let found = viewer.running.done(json!({ "command": "checks" }));
+    let line = line_of(&text, "1.0 / zero");
+    for of in found.as_array().unwrap() {
+        let place = (&of["rule"], &of["file"], &of["line"]);
+        assert_eq!(place, (&"division-by-zero".into(), &"user.glsl".into(), &line.into()), "{of}");
+        assert_eq!(of["operands"], json!([1.0, 0.0]), "{of}");
+    }
+    let of = found.as_array().unwrap().iter().find(|of| of["stage"] == "pbr.frag").unwrap_or_else(|| panic!("{found}"));
+    let count = of["count"].as_u64().unwrap() as usize;
+    let marked = marks(&mut viewer);
+    assert!(count > 1000 && marked > count / 10, "{marked} pixels are marked, and {count} failed");
+    viewer.running.done(set("assertions"));
+    assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]), "the shaders assert nothing");
     assert_eq!(marks(&mut viewer), 0);
     viewer.quit();
 }

@@ -1,4 +1,6 @@
-//! Folding, dragged numbers and hover texts of the panel, without a device.
+//! Folding, dragged numbers, clicks, colors and hover texts of the panel, without a device.
+
+use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::vec2;
@@ -6,10 +8,19 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::tests::{TEXT, Window, events, labels, window};
+use crate::app::state::costs::{Question, WantedCosts};
 use crate::app::state::shaders::edits::Draft;
+use crate::app::state::trace::sample;
+use crate::app::widgets::theme::ERROR;
+use crate::headless::{FunctionCost, StageCosts};
+use crate::pipeline::Figure;
+use crate::shader::costs::{Calls, NamedFunction};
+use crate::shader::library::{Change, Library, Update};
 use crate::shader::rewrite::Edit;
 use crate::shader::trace::sample::{event, trace};
 use crate::shader::trace::{Act, Neighborhood};
+use crate::shader::{Compiler, Source};
+use crate::statistics::{Difference, Verdict};
 
 fn has(harness: &Harness<'_, Window>, text: &str) -> bool {
     labels(harness).iter().any(|label| label.contains(text))
@@ -119,6 +130,112 @@ fn the_hover_text_of_a_value_has_what_the_author_wrote_about_it() {
     harness.run_steps(40);
     for part in ["float a", "twice the size", "40000000", "a.glsl:3"] {
         assert!(has(&harness, part), "no {part} in {:?}", labels(&harness));
+    }
+}
+
+#[test]
+fn a_click_on_a_value_shows_it_over_the_model() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3, 4, 5, 6]);
+    harness.get_by_label("a = 2").click();
+    harness.run_steps(2);
+    assert!(harness.state().set.is_none(), "no pass of these shaders shows the file");
+    let files = [
+        ("fullscreen.vert", "#version 460\nvoid main() { gl_Position = vec4(0.0); }\n"),
+        ("pbr.vert", "#version 460\nvoid main() { gl_Position = vec4(0.0); }\n"),
+        (
+            "tonemap.frag",
+            "//@pass tonemap to=display\n#version 460\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n",
+        ),
+        (
+            "pbr.frag",
+            "//@pass model draw=model to=picture\n#version 460\n#include \"a.glsl\"\nlayout(location = 0) out vec4 color;\n\
+            void main() { color = vec4(f(1.0)); }\n",
+        ),
+        ("a.glsl", TEXT),
+        ("b.glsl", "float g;\n"),
+    ];
+    let compiler = Arc::new(Compiler::new().unwrap());
+    let update = Library::new(Source::memory(files), compiler, &["fullscreen.vert", "pbr.vert"]).update(&Change::All);
+    let Update::Ready(shaders, _) = update else { panic!("{update:?}") };
+    let state = &mut harness.state_mut().state;
+    sample::add_trace(&mut state.traces, &shaders, shaders.generation, trace(events(2.0), &[2, 3, 4, 5, 6]));
+    state.session.shaders = Some(shaders);
+    harness.run_steps(3);
+    for (value, at) in [("a = 2", "a.glsl:3:a"), ("return 2", "a.glsl:6:return"), ("x = 1", "a.glsl:2:x")] {
+        harness.get_by_label(value).click();
+        harness.run_steps(2);
+        let set = harness.state_mut().set.take().unwrap_or_else(|| panic!("{value}: nothing was set"));
+        assert_eq!((set.mode.as_str(), set.expression.at.as_str()), ("expression", at));
+    }
+    // A decision is no value.
+    harness.get_by_label("not taken").click();
+    harness.run_steps(2);
+    assert!(harness.state().set.is_none());
+}
+
+#[test]
+fn the_cost_of_a_function_stands_beside_its_first_line() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3, 4, 5, 6]);
+    let difference = Difference {
+        base_ms: 2.0,
+        change_ms: -0.5,
+        margin_ms: 0.04,
+        confidence: 0.99,
+        pairs: 24,
+        verdict: Verdict::Faster,
+    };
+    let registers = Figure { name: "registers".into(), meaning: String::new(), value: 40.0, before: Some(64.0) };
+    let cost = |difference| FunctionCost {
+        function: NamedFunction { signature: "f(float)".into(), file: "a.glsl".into(), line: 2 },
+        calls: Calls { calls: 30, invocations: 10 },
+        difference,
+        figures: vec![registers.clone()],
+    };
+    let mut measured = |number: u64, difference| {
+        let state = &mut harness.state_mut().state;
+        let picture = sample::subject(state.session.shaders.as_ref().unwrap()).picture;
+        let functions = vec![cost(difference)];
+        let costs = StageCosts {
+            stage: "a.frag".into(),
+            stage_ms: 1.5,
+            frame_ms: 2.0,
+            invocations: 10,
+            functions,
+            left_out: Vec::new(),
+        };
+        state.costs.ask(picture, Question::Functions(WantedCosts::default()), number);
+        assert!(state.costs.take_functions(number, Ok(Arc::new(costs))));
+        harness.run_steps(2);
+        labels(&harness).into_iter().filter(|label| label.starts_with("costs ")).collect::<Vec<_>>()
+    };
+    let same = Difference { verdict: Verdict::Same, change_ms: -0.01, ..difference };
+    assert_eq!(measured(1, same), ["costs < 0.050 ms"]);
+    assert_eq!(measured(2, difference), ["costs 0.500 ms ± 0.040 · 25.0 % of the frame"]);
+    let [line, cost] = ["2: float f(float x) {", "costs 0.500 ms"].map(|of| harness.get_by_label_contains(of).rect());
+    assert!(line.y_range().contains(cost.center().y) && cost.left() > line.left() + 100.0, "{line} {cost}");
+    harness.get_by_label_contains("costs 0.500 ms").hover();
+    harness.run_steps(40);
+    for part in ["without f(float): 24 pairs", "3.00 calls", "registers: 64 with it, 40 without"] {
+        assert!(has(&harness, part), "no {part} in {:?}", labels(&harness));
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers_are_red() {
+    for (number, text, is_red) in
+        [(f32::NAN, "a = NaN", true), (f32::NEG_INFINITY, "a = -Inf", true), (2.0, "a = 2", false)]
+    {
+        let harness = window(TEXT, vec![event(3, Act::Store, "a", &[number])], &[3]);
+        harness.get_by_label(text);
+        let colors = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(of) if of.galley.text() == text => {
+                of.galley.job.sections.last().map(|of| of.format.color)
+            }
+            _ => None,
+        });
+        let colors: Vec<egui::Color32> = colors.collect();
+        assert!(!colors.is_empty(), "{text} is not seen");
+        assert!(colors.iter().all(|color| (*color == ERROR.color()) == is_red), "{text}: {colors:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
@@ -36,6 +37,10 @@ pub(super) struct Window {
     pub(super) state: State,
     panel: SourceState,
     pub(super) asked: Vec<Command>,
+    /// The settings that it has asked for last.
+    pub(super) set: Option<Settings>,
+    /// How long it took to build its last frame.
+    took: Duration,
 }
 
 fn shaders(generation: u64, text: &str) -> Arc<ShaderSet> {
@@ -68,7 +73,7 @@ pub(super) fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harn
 fn window_of(text: &str, trace: Trace) -> Harness<'static, Window> {
     let mut state = State::new(Settings::of_window(), Source::embedded());
     add(&mut state, 1, text, trace);
-    let window = Window { state, panel: SourceState::default(), asked: Vec::new() };
+    let window = Window { state, panel: SourceState::default(), asked: Vec::new(), set: None, took: Duration::ZERO };
     let mut has_theme = false;
     let show = move |ui: &mut egui::Ui, window: &mut Window| {
         if !std::mem::replace(&mut has_theme, true) {
@@ -87,7 +92,11 @@ fn window_of(text: &str, trace: Trace) -> Harness<'static, Window> {
             legend: None,
         };
         let mut commands = Commands::new(&window.state.session.settings);
+        let begin = Instant::now();
         window.panel.ui(ui, &Context::new(&window.state, readings), &mut commands);
+        window.took = begin.elapsed();
+        let is_set = commands.settings != window.state.session.settings;
+        window.set = is_set.then(|| commands.settings.clone()).or(window.set.take());
         window.asked.extend(commands.finish(&window.state.session.settings).0);
     };
     let mut harness = Harness::builder().with_size(egui::vec2(900.0, 300.0)).build_ui_state(show, window);
@@ -159,6 +168,53 @@ fn the_search_finds_lines_of_a_long_file_of_which_few_are_shown() {
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     assert!(harness.query_by_label("Find in the file").is_none());
+}
+
+/// Prints a figure. By hand: `cargo test --release --lib -- --ignored --nocapture a_frame_of_600_lines`.
+#[test]
+#[ignore = "a figure of a release build, and no check"]
+fn a_frame_of_600_lines() {
+    let function = |at: usize| {
+        let values = (0..8).map(|line| format!("    float v{line} = x * {at}.5 + sin(float({line})); // a value\n"));
+        format!("float f{at}(float x) {{\n{}    return v7;\n}}\n", values.collect::<String>())
+    };
+    let text: String = (0..55).map(function).collect();
+    let lines: Vec<u32> = (1..=605).collect();
+    // As many events as a log holds.
+    let events = |first: f32| {
+        let call = move |light: usize| {
+            let stores = (1..=605_u32).filter(|line| !matches!(line % 11, 0 | 1));
+            let path = format!("shade > add_light [light {light}] > f");
+            stores.map(move |line| called(&path, line, Act::Store, &format!("v{}", line % 11), &[first + line as f32]))
+        };
+        (1..=30).flat_map(call).collect::<Vec<_>>()
+    };
+    let mut harness = window(&text, events(0.5), &lines);
+    harness.run_steps(10);
+    let mut scrolled = 0;
+    for what in ["at rest", "the mouse moves", "it scrolls", "a trace comes"] {
+        let mut frames: Vec<Duration> = Vec::new();
+        for frame in 0..50 {
+            match what {
+                "the mouse moves" => harness.hover_at(egui::pos2(100.0 + frame as f32, 60.0 + frame as f32)),
+                "it scrolls" => {
+                    let (unit, phase) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move);
+                    let (delta, modifiers) = (egui::vec2(0.0, -30.0), Modifiers::NONE);
+                    harness.event(egui::Event::MouseWheel { unit, delta, phase, modifiers });
+                    scrolled += 1;
+                }
+                "a trace comes" => {
+                    add(&mut harness.state_mut().state, 1, &text, trace(events(frame as f32), &lines));
+                }
+                _ => {}
+            }
+            harness.step();
+            frames.push(harness.state().took);
+        }
+        frames.sort();
+        println!("{what}: median {:?}, most {:?}", frames[25], frames[49]);
+    }
+    assert_eq!(scrolled, 50);
 }
 
 #[test]
@@ -276,6 +332,35 @@ fn a_single_file_is_typed_as_its_author_wrote_it() {
     let file = TreeFile { root: "toys".into(), path: "wave.frag".into() };
     let text = format!("// new {OWN}").into();
     assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file, base: OWN.into(), text })]);
+}
+
+#[test]
+fn what_was_typed_is_taken_back() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3]);
+    open(&mut harness, Path::new("tree"));
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    let typed = |harness: &Harness<'_, Window>| {
+        harness.get_by_label("Text of the file").accesskit_node().value().unwrap().clone()
+    };
+    harness.get_by_label("Text of the file").type_text("// new");
+    harness.run_steps(2);
+    let with_it = format!("// new{TEXT}");
+    assert_eq!(typed(&harness), with_it);
+    for (modifiers, key, text) in [
+        (Modifiers::COMMAND, Key::Z, TEXT),
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, &with_it),
+        (Modifiers::COMMAND, Key::Z, TEXT),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run_steps(2);
+        assert_eq!(typed(&harness), text);
+        assert_eq!(harness.query_by_label("not saved").is_some(), text != TEXT);
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run_steps(2);
+    assert!(harness.state().asked.is_empty(), "there is nothing to save");
 }
 
 #[test]

@@ -83,7 +83,8 @@ impl Row {
 /// The rows of a text, one for each of its lines.
 pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let Sources { text, now, before } = sources;
-    let mut rows: Vec<Row> = (1..).zip(text.lines()).map(|(line, _)| Row { line, ..Row::default() }).collect();
+    let texts: Vec<&str> = text.lines().collect();
+    let mut rows: Vec<Row> = (1..).zip(&texts).map(|(line, _)| Row { line, ..Row::default() }).collect();
     let Some(now) = now else { return rows };
     let lines = by_line(choice.lines(now.trace, &now.text));
     let earlier = before.as_ref().map(|before| {
@@ -104,7 +105,7 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
         let Some(line) = traced.get(at).copied().flatten() else { continue };
         row.traced = Some(line);
         let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
-        let is_loop = text.lines().nth(at).is_some_and(is_loop);
+        let is_loop = texts.get(at).is_some_and(|text| is_loop(text));
         row.notes = lines.get(&line).map(|line| notes(line, earlier, is_loop)).unwrap_or_default();
         row.reach = match (statements.contains(&line), lines.contains_key(&line)) {
             (_, true) => Reach::Reached,

@@ -26,6 +26,8 @@ pub use instances::instances;
 pub use lights::LightList;
 use lights::LightParameters;
 
+/// An index in the name of a place that is computed while the stage runs.
+pub const INDEX: &str = "[ ]";
 /// Longer arrays are not logged.
 const MOST_ELEMENTS: u32 = 64;
 /// Statements that store or return a value of more vectors than this log nothing: the members of a large struct are stored one by one, and
@@ -94,6 +96,8 @@ pub struct LogPoint {
     pub kind: NumberKind,
     /// How many numbers it has, 1 to 4; 0 for a place without a value.
     pub count: u32,
+    /// How many indices follow the numbers: those that the name of the place has as [`INDEX`], and that only the invocation knows.
+    pub indices: u32,
 }
 
 /// An instrumented module.
@@ -201,6 +205,8 @@ struct Tracer<'a> {
     points: Vec<LogPoint>,
     only: Option<&'a BTreeSet<String>>,
     light_parameters: LightParameters,
+    /// The computed indices in the name of the last place.
+    indices: Vec<Id>,
 }
 
 impl<'a> Tracer<'a> {
@@ -234,6 +240,7 @@ impl<'a> Tracer<'a> {
             points,
             only,
             light_parameters,
+            indices: Vec::new(),
         }
     }
 
@@ -264,16 +271,25 @@ impl<'a> Tracer<'a> {
 
     /// The name of the variable that a pointer points into, and where it points there, as `.lights[2].color`.
     fn stored(&self, pointer: Id) -> (String, String) {
+        let (name, path, _) = self.stored_at(pointer);
+        (name, path)
+    }
+
+    /// The same, with the indices that are computed.
+    fn stored_at(&self, pointer: Id) -> (String, String, Vec<Id>) {
         let chain = [Op::AccessChain, Op::InBoundsAccessChain].map(|op| self.module.defined(op, pointer));
         let Some(words) = chain.into_iter().flatten().next() else {
-            return (self.names.get(&pointer).cloned().unwrap_or_default(), String::new());
+            return (self.names.get(&pointer).cloned().unwrap_or_default(), String::new(), Vec::new());
         };
-        let (name, mut path) = self.stored(words[3]);
+        let (name, mut path, mut indices) = self.stored_at(words[3]);
         let mut kind = self.module.pointer(self.module.type_of(words[3])).map(|(_, to)| to);
         for index in &words[4..] {
             let known = self.module.number(*index);
             let Some(of) = kind else { break };
-            path += &known.map_or_else(|| "[ ]".to_owned(), |index| self.part(of, index));
+            path += &known.map_or_else(|| INDEX.to_owned(), |index| self.part(of, index));
+            if known.is_none() {
+                indices.push(*index);
+            }
             kind = match self.module.get_type(of) {
                 Some(Type::Struct { members }) => known.and_then(|index| members.get(index as usize)).copied(),
                 Some(Type::Array { of, .. } | Type::RuntimeArray { of } | Type::Vector { of, .. }) => Some(of),
@@ -281,7 +297,7 @@ impl<'a> Tracer<'a> {
                 _ => None,
             };
         }
-        (name, path)
+        (name, path, indices)
     }
 
     /// A part of a value, as GLSL names it.
@@ -337,18 +353,27 @@ impl<'a> Tracer<'a> {
                 m.emit(out, Op::Select, bits_type, &[value, yes, no])
             }
         };
+        let mut indices = 0;
         if count < 4 {
-            let parts = [&[bits][..], &[self.zero; 3][count.max(1) as usize - 1..]].concat();
-            bits = m.emit(out, Op::CompositeConstruct, self.vectors[2], &parts);
+            let mut rest = vec![self.zero; 4 - count.max(1) as usize];
+            // Where there is no room for all of them, the name has none.
+            if count > 0 && self.indices.len() <= rest.len() {
+                indices = self.indices.len() as u32;
+                for (to, index) in rest.iter_mut().zip(&self.indices) {
+                    let is_signed = matches!(m.get_type(m.type_of(*index)), Some(Type::Int { signed: true, .. }));
+                    *to = if is_signed { m.emit(out, Op::Bitcast, self.uint, &[*index]) } else { *index };
+                }
+            }
+            bits = m.emit(out, Op::CompositeConstruct, self.vectors[2], &[&[bits][..], &rest].concat());
         }
-        let point = self.new_point(kind, count, part);
-        let function = self.functions[count.clamp(1, 4) as usize - 1];
+        let point = self.new_point(kind, (count, indices), part);
+        let function = self.functions[(count + indices).clamp(1, 4) as usize - 1];
         self.module.emit(out, Op::FunctionCall, self.void, &[function, point, bits]);
     }
 
-    /// A new log point of the last place. Returns the constant with its number.
-    fn new_point(&mut self, kind: NumberKind, count: u32, part: String) -> Id {
-        self.points.push(LogPoint { place: self.places.len() - 1, part, kind, count });
+    /// A new log point of the last place, with a count of numbers and one of indices. Returns the constant with its number.
+    fn new_point(&mut self, kind: NumberKind, (count, indices): (u32, u32), part: String) -> Id {
+        self.points.push(LogPoint { place: self.places.len() - 1, part, kind, count, indices });
         self.module.constant(self.uint, self.points.len() as u32)
     }
 }

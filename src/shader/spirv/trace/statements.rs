@@ -62,10 +62,11 @@ impl Tracer<'_> {
     ) {
         let (purpose, value) = match (i.op, &self.module[i][1..]) {
             (Op::Store, [pointer, value, ..]) => {
-                let (name, path) = self.stored(*pointer);
+                let (name, path, indices) = self.stored_at(*pointer);
                 if name == ARGUMENT || name.is_empty() {
                     return;
                 }
+                self.indices = indices;
                 (Purpose::Store(name + &path), Some(*value))
             }
             (Op::ReturnValue, [value]) => (Purpose::Return, Some(*value)),
@@ -80,6 +81,7 @@ impl Tracer<'_> {
         if let Some((file, line)) = file.filter(|(file, _)| self.is_wanted(file)) {
             self.log_at(out, Place { file, line, purpose }, value);
         }
+        self.indices.clear();
     }
 
     /// Whether the statements of a file are logged.
@@ -135,7 +137,7 @@ impl Tracer<'_> {
             (Some(light), NumberKind::Int) => self.module.emit(out, Op::Bitcast, self.uint, &[light]),
             (Some(light), _) => light,
         };
-        let point = self.new_point(kind, u32::from(light.is_some()), String::new());
+        let point = self.new_point(kind, (u32::from(light.is_some()), 0), String::new());
         self.module.emit(out, Op::FunctionCall, self.uint, &[self.calls.enter, point, bits])
     }
 

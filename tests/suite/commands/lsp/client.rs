@@ -68,8 +68,16 @@ impl Client {
 
     /// Sends a message.
     pub fn send(&mut self, message: &Value) {
-        let body = message.to_string();
-        self.write(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+        self.send_all(std::slice::from_ref(message));
+    }
+
+    /// Sends messages at once.
+    pub fn send_all(&mut self, messages: &[Value]) {
+        let framed = messages.iter().map(|message| {
+            let body = message.to_string();
+            format!("Content-Length: {}\r\n\r\n{body}", body.len())
+        });
+        self.write(framed.collect::<String>().as_bytes());
     }
 
     /// Sends a notification.
@@ -79,9 +87,20 @@ impl Client {
 
     /// Sends a request. Returns its number.
     pub fn begin(&mut self, method: &str, params: Value) -> i64 {
+        let (id, request) = self.request(method, params);
+        self.send(&request);
+        id
+    }
+
+    /// A request that is not sent, and its number.
+    pub fn request(&mut self, method: &str, params: Value) -> (i64, Value) {
         self.requests += 1;
-        self.send(&json!({ "jsonrpc": "2.0", "id": self.requests, "method": method, "params": params }));
-        self.requests
+        (self.requests, json!({ "jsonrpc": "2.0", "id": self.requests, "method": method, "params": params }))
+    }
+
+    /// How many messages with a method have come that nobody has looked at.
+    pub fn count(&self, method: &str) -> usize {
+        self.told.iter().filter(|message| message["method"] == method).count()
     }
 
     /// The next message that fits. Others are kept.

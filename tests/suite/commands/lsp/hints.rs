@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::os::unix::net::UnixStream;
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -15,6 +16,7 @@ const NDF: &str = "brdf/ndf.glsl";
 
 const OPTIONS: [&str; 5] = ["--env", "none", "--size", "96x64", "--validate"];
 const PIN: [u32; 2] = [50, 30];
+const REFRESH: &str = "workspace/inlayHint/refresh";
 
 /// The hints of the open file by their lines, from 0.
 fn hints(opened: &mut Opened) -> BTreeMap<u64, String> {
@@ -67,7 +69,7 @@ fn hints_are_those_of_the_trace_and_follow_edits() {
         (&pinned["pixel"], &pinned["files"], &pinned["proof"]),
         (&json!(PIN), &json!(["brdf/ndf.glsl"]), &json!("equal to the picture"))
     );
-    opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
+    opened.client.until("a refresh of hints", |message| message["method"] == REFRESH);
     let shown = hints(&mut opened);
     let trace = assert_traced(&opened, &shown);
     let squared = u64::from(opened.line("float a2 = alpha"));
@@ -87,7 +89,7 @@ fn hints_are_those_of_the_trace_and_follow_edits() {
     // A save is traced again.
     let text = opened.text.clone();
     opened.tree.write("brdf/ndf.glsl", &text);
-    opened.client.until("a refresh of hints", |message| message["method"] == "workspace/inlayHint/refresh");
+    opened.client.until("a refresh of hints", |message| message["method"] == REFRESH);
     let saved = hints(&mut opened);
     assert!(saved.contains_key(&(squared + 2)) && saved[&(squared + 2)] != shown[&squared], "{saved:#?}");
     assert_traced(&opened, &saved);
@@ -125,7 +127,7 @@ fn hints_follow_the_pixel_that_is_pinned_in_a_window() {
     let mut opened = Opened { tree: Tree::new(), client, path: path.clone(), text: text.clone() };
     opened.client.open(&path, &text);
     assert!(hints(&mut opened).is_empty(), "no pixel is pinned in the window");
-    let refreshed = |message: &Value| message["method"] == "workspace/inlayHint/refresh";
+    let refreshed = |message: &Value| message["method"] == REFRESH;
     let center = command(json!({ "command": "capture" }));
     let at = [center["width"].as_u64().unwrap() / 2, center["height"].as_u64().unwrap() / 2];
     command(json!({ "command": "pick", "at": at }));
@@ -151,6 +153,31 @@ fn hints_follow_the_pixel_that_is_pinned_in_a_window() {
     assert!(hints(&mut opened).is_empty());
     opened.client.quit();
     viewer.quit();
+}
+
+/// At most five refreshes a second, and one after the last change.
+#[test]
+fn hints_that_change_often_are_refreshed_five_times_a_second() {
+    let mut opened = Opened::with(NDF, &OPTIONS);
+    let unpin = json!({ "command": "specula.unpinPixel" });
+    let asked = (0..100).map(|_| opened.client.request("workspace/executeCommand", unpin.clone()));
+    let (ids, requests): (Vec<i64>, Vec<Value>) = asked.unzip();
+    let begin = Instant::now();
+    opened.client.send_all(&requests);
+    ids.iter().for_each(|id| drop(opened.client.answer(*id)));
+    // Between the first and the last of them is a fifth of a second each.
+    let most = 1 + begin.elapsed().as_millis() / 200;
+    let count = opened.client.count(REFRESH);
+    assert!(count >= 1 && count as u128 <= most, "{count} refreshes, but at most {most}");
+    opened.client.forget();
+    opened.client.until("the refresh after the last change", |message| message["method"] == REFRESH);
+
+    // The newest values come in the end.
+    opened.client.ask("workspace/executeCommand", json!({ "command": "specula.pinPixel", "arguments": PIN }));
+    opened.client.forget();
+    opened.client.until("the refresh after the trace", |message| message["method"] == REFRESH);
+    assert!(hints(&mut opened).len() > 2);
+    opened.client.quit();
 }
 
 #[test]

@@ -97,6 +97,60 @@ fn passes_are_traced_at_the_pixel_of_their_image() {
     run(&[&mode[..], &["--invocation", "9999,4"]].concat()).expect(2, &["has no invocation 9999,4,0"]);
 }
 
+/// A pass that draws the model to an image of its own, and one that blends quads over the picture.
+#[test]
+fn passes_of_the_model_and_of_quads_are_traced() {
+    let tree = Tree::new();
+    let root = tree.root();
+    write_sphere(&root);
+    let normals = "//@pass normals \"Normals\" draw=model size=1/2 format=rgba32f\n#version 460\n#include \"interface.glsl\"\n\
+        #include \"common/fragment.glsl\"\nlayout(location = 0) in Fragment fragment;\nlayout(location = 0) out vec4 color;\n\
+        void main() {\n    vec3 n = normalize(fragment.normal_ws);\n    color = vec4(n, 1.0);\n}\n";
+    // Two quads over the left half, the second one behind the first.
+    let quads = "//@pass quads \"Quads\" draw=quads instances=2 to=picture blend\n#version 460\n#include \"interface.glsl\"\n\
+        layout(location = 0) in flat int number;\nlayout(location = 0) out vec4 color;\n\
+        void main() {\n    float part = 0.25 * float(number + 1);\n    color = vec4(0.0, part, 0.0, part);\n}\n";
+    let corners = "#version 460\n#include \"interface.glsl\"\nlayout(location = 0) out flat int number;\n\
+        const vec2 CORNERS[6] = vec2[](vec2(-1, -1), vec2(0, -1), vec2(0, 1), vec2(-1, -1), vec2(0, 1), vec2(-1, 1));\n\
+        void main() {\n    number = gl_InstanceIndex;\n    gl_Position = vec4(CORNERS[gl_VertexIndex], 0.8 - 0.2 * float(number), 1.0);\n}\n";
+    for (file, text) in [("normals.frag", normals), ("quads.frag", quads), ("quads.vert", corners)] {
+        tree.write(&format!("passes/{file}"), text);
+    }
+    let common = [&["ball.glb", "--json", "--shaders", root.to_str().unwrap()][..], &EYE].concat();
+    let run = |more: &[&str]| trace(&root, &[&common[..], more].concat());
+
+    let of_model = ["--at", "40,24", "--mode", "pass:normals"];
+    let found = run(&of_model).expect(0, &[]).json();
+    assert_eq!(
+        (&found["stage"], &found["proof"]["with"]),
+        (&json!("passes/normals.frag"), &json!("the image normals"))
+    );
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    let n = vector(&values(&found, "passes/normals.frag", line_of(normals, "vec3 n ="), "n")[0]);
+    // To the left and above the center of a sphere.
+    assert!(n[0] < -0.1 && n[1] > 0.1 && n[2] > 0.5, "{n:?}");
+    run(&["--at", "90,60", "--stage", "passes/normals.frag", "--mode", "pass:normals"])
+        .expect(2, &["passes/normals.frag draws nothing at the pixel 45,30 of its image"]);
+
+    let of_quads = |at: &str| run(&["--at", at, "--stage", "passes/quads.frag"]);
+    let found = of_quads("20,20").expect(0, &[]).json();
+    let fragments = found["fragments"].as_array().unwrap();
+    let depths: Vec<f64> = fragments.iter().map(|of| of["depth"].as_f64().unwrap()).collect();
+    assert!(depths.len() == 2 && near(depths[0], 0.8, 1e-6) && near(depths[1], 0.6, 1e-6), "{found}");
+    let line = line_of(quads, "float part");
+    for (fragment, part) in [("0", 0.25), ("1", 0.5)] {
+        let chosen = run(&["--at", "20,20", "--stage", "passes/quads.frag", "--fragment", fragment]);
+        let part_of = values(&chosen.expect(0, &[]).json(), "passes/quads.frag", line, "part");
+        assert_eq!(part_of, [json!(part)], "fragment {fragment}");
+    }
+    // Blended with what is behind it.
+    assert_eq!((&found["proof"]["equal"], &found["proof"]["blended_ulp"]), (&json!(true), &json!(0)), "{found}");
+    assert_eq!(found["proof"]["picture"], json!([0.0, 0.625, 0.0, 0.625]), "{}", found["proof"]);
+    of_quads("70,20").expect(2, &["passes/quads.frag draws nothing at the pixel 70,20"]);
+    run(&["--at", "20,20", "--stage", "passes/quads.vert"])
+        .expect(2, &["no stage passes/quads.vert", "vertex stages of other passes"]);
+}
+
 /// The image of a toy, and a buffer that counts frames.
 #[test]
 fn toys_are_traced_with_the_frames_before() {

@@ -78,7 +78,7 @@ fn each_statement_has_its_own_value() {
                 store("sum", vec![json!(0), json!(1), json!(3)]),
             ],
         ),
-        ("list[sum - 2] = ", vec![store("list[ ]", vec![json!(9.0)])]),
+        ("list[sum - 2] = ", vec![store("list[1]", vec![json!(9.0)])]),
         ("Pair pair = ", vec![store("pair.a", vec![json!(6.0)]), store("pair.b", vec![json!([1.0, 3.0])])]),
         ("pair.b.x = ", vec![store("pair.b.x", vec![json!(4.0)])]),
         ("int less = ", vec![store("less", vec![json!(2)])]),
