@@ -28,7 +28,8 @@ const CODE: usize = 60;
     compute stage, for the invocation of the pixel or --invocation. Vertex stages of passes, stages of tessellation, geometry and meshes, \
     and those that bake light are not traced. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
-    Without --file, all files are traced, a few at a time, which takes a software device about a minute.\n\
+    Without --file, all files are traced, a few at a time, which takes a software device about a minute; of a single file opened with \
+    --shaders, that one. FILE may be the end of a path, as ndf.glsl.\n\
     In JSON, the first and last 16 values of each variable have the calls that led to them, as `shade > add_light [light 2]`: the call about \
     the second of `lights`. `proof.equal` says whether the color is the picture's, and `proof.ulp` by how many floats it differs.\n\
     --assert fails with exit code 1 if a value does not fulfill it, or none was computed. All numbers of a vector count, unless NAME ends in \
@@ -85,8 +86,14 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mode = shaders.modes.iter().find(|mode| mode.slug == slug).cloned();
     let mode = mode.ok_or_else(|| Failure::Usage(format!("the shaders have no mode {slug}")))?;
     progress.say("tracing the pixel");
-    let named: Vec<String> = args.file.iter().map(|file| whole_path(&shaders, file)).collect();
-    let files: Vec<&str> = named.iter().map(String::as_str).chain(args.assert.iter().map(Assertion::file)).collect();
+    args.assert.iter_mut().for_each(|assertion| assertion.file = whole_path(&shaders, &assertion.file));
+    let mut named: Vec<String> = args.file.iter().map(|file| whole_path(&shaders, file)).collect();
+    if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
+        // The stage around a single file is not what the user has written.
+        named.extend(args.common.source()?.opened().map(|opened| opened.to_string()));
+    }
+    let asserted_files = args.assert.iter().map(|assertion| assertion.file.as_str());
+    let files: Vec<&str> = named.iter().map(String::as_str).chain(asserted_files).collect();
     let stage = args.stage.as_deref();
     let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
     let trace = headless.trace(&request)?;

@@ -9,7 +9,8 @@ use super::{Act, Doing, Event, Fragment, TracedValue};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assertion {
     text: String,
-    file: String,
+    /// The file that it is about.
+    pub file: String,
     line: u32,
     name: String,
     comparison: Comparison,
@@ -72,11 +73,6 @@ impl Assertion {
             comparison,
             limit: number.map_err(|_| expected())?,
         })
-    }
-
-    /// The file that it is about.
-    pub fn file(&self) -> &str {
-        &self.file
     }
 
     /// Whether this is the place, and the name of its value or of a vector with the component. Returns that component.
