@@ -96,8 +96,8 @@ fn environment(
     })?;
     let encoded = indices.map(|index| images::find(root, buffers, files, Origin::Image(index))).into();
     let decoded = images::decode(encoded, files.canceled);
-    if let Some(failure) = decoded.iter().find_map(|face| face.failure.clone()) {
-        return Err(failure);
+    if let Some(failure) = decoded.iter().find_map(|face| face.failure.as_ref()) {
+        return Err(failure.reason.clone());
     }
     let faces: Vec<Image> = decoded.into_iter().map(|face| face.image).collect();
     let faces: [Image; 6] = faces.try_into().map_err(|_| "the load was canceled".to_owned())?;

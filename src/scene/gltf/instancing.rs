@@ -5,6 +5,7 @@ use gltf::json;
 use json::accessor::{ComponentType as C, Type};
 
 use super::geometry::accessor::{Format, Normalized as N, Reader};
+use super::left_out::{LeftOut, Part};
 use super::nodes::PlacedMesh;
 use super::place::place;
 use super::values;
@@ -21,16 +22,14 @@ const ROTATION: Format =
     Format { types: &[Type::Vec4], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
 
 /// Replaces each mesh of an instancing node by its instances.
-///
-/// # Errors
-/// The extension or an accessor of it is invalid.
 pub fn expand(
     reader: Reader<'_>,
     meshes: Vec<PlacedMesh>,
+    left_out: &mut LeftOut,
     warnings: &mut Vec<String>,
-) -> Result<Vec<PlacedMesh>, Problem> {
+) -> Vec<PlacedMesh> {
     let mut out = Vec::with_capacity(meshes.len());
-    let mut left_out = 0;
+    let mut beyond = 0;
     for mesh in meshes {
         let node = &reader.root.nodes[mesh.node];
         let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION));
@@ -39,9 +38,13 @@ pub fn expand(
             continue;
         };
         let place = format!("{}.extensions.{EXTENSION}", place("nodes", mesh.node, node.name.as_deref()));
-        let instances = transforms(reader, &extension["attributes"], &place)?;
+        let instances = transforms(reader, &extension["attributes"], &place);
+        let Some(instances) = left_out.unless(Part::INSTANCES, &place, instances) else {
+            out.push(mesh);
+            continue;
+        };
         let room = MOST.saturating_sub(out.len()).min(instances.len());
-        left_out += instances.len() - room;
+        beyond += instances.len() - room;
         out.extend(instances[..room].iter().map(|instance| PlacedMesh {
             name: mesh.name.clone(),
             world_from_object: mesh.world_from_object * *instance,
@@ -49,10 +52,10 @@ pub fn expand(
             ..mesh
         }));
     }
-    if left_out > 0 {
-        warnings.push(format!("{EXTENSION} has more than {MOST} instances: {left_out} are left out."));
+    if beyond > 0 {
+        warnings.push(format!("{EXTENSION} has more than {MOST} instances: {beyond} are left out."));
     }
-    Ok(out)
+    out
 }
 
 /// The transform of each instance, relative to its node.

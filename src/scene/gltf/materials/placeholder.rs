@@ -1,6 +1,7 @@
 //! Replaces images that cannot be read or decoded: by a checkerboard as the base color, and in every other slot as if the
 //! material had no texture there.
 
+use super::images::Failure;
 use crate::interface as contract;
 use crate::scene::model::{Image, Material, Model, Texture};
 
@@ -39,7 +40,7 @@ pub fn pixel(name: String, model: &Model, image: usize) -> Image {
 /// Removes failed images from the materials, except for base colors, which show the checkerboard. Returns a warning for each
 /// image and slot. `failures` has an entry for each image of the model, `None` if it is good. The default material, which
 /// comes first, has no textures.
-pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Option<String>]) -> Vec<String> {
+pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Option<Failure>]) -> Vec<String> {
     let mut warnings = Vec::new();
     for (image, failure) in failures.iter().enumerate() {
         let Some(failure) = failure else { continue };
@@ -49,8 +50,10 @@ pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Opt
             let users: Vec<usize> = (0..materials.len()).filter(|&index| uses_it(&materials[index])).collect();
             let Some(&first) = users.first() else { continue };
             let (title, instead) = words(slot as u32, &materials[first]);
-            warnings.push(format!("{}, {title} texture: {failure}; {instead}.", names(&users, materials)));
-            for material in users {
+            let Failure { reason, remedy } = failure;
+            warnings.push(format!("{}, {title} texture: {reason}; {instead}. {remedy}", names(&users, materials)));
+            // A base color shows the checkerboard.
+            for material in users.into_iter().filter(|_| slot != contract::TEXTURE_BASE_COLOR as usize) {
                 clear(&mut materials[material], slot as u32);
             }
         }
@@ -58,12 +61,11 @@ pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Opt
     warnings
 }
 
-fn clear(material: &mut Material, slot: u32) {
-    match slot {
-        contract::TEXTURE_BASE_COLOR => return,
-        // Most of an emissive texture is black. The factor alone would make the whole surface emit.
-        contract::TEXTURE_EMISSIVE => material.numbers.emissive_factor = [0.0; 3],
-        _ => {}
+/// Removes the texture of a slot.
+pub fn clear(material: &mut Material, slot: u32) {
+    // Most of an emissive texture is black. The factor alone would make the whole surface emit.
+    if slot == contract::TEXTURE_EMISSIVE {
+        material.numbers.emissive_factor = [0.0; 3];
     }
     material.textures[slot as usize] = None;
 }
