@@ -14,8 +14,13 @@ use crate::scene::error::Problem;
 /// The extension's name.
 pub const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// Maximum number of instances of a scene, since each is drawn by itself.
-const MOST: usize = 1 << 16;
+/// Memory for the instances of a scene, MiB.
+const MOST_MIB: usize = 1024;
+/// Memory that an instance of a primitive takes at most while the model is loaded and shown, bytes: its matrices in doubles and floats, its
+/// place in the hierarchy and in a pose, its draw, its records on the device.
+const BYTES_EACH: usize = 1024;
+/// Maximum number of instances of primitives.
+const MOST: usize = (MOST_MIB << 20) / BYTES_EACH;
 
 const VECTOR: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No)] };
 const ROTATION: Format =
@@ -29,7 +34,7 @@ pub fn expand(
     warnings: &mut Vec<String>,
 ) -> Vec<PlacedMesh> {
     let mut out = Vec::with_capacity(meshes.len());
-    let mut beyond = 0;
+    let (mut room, mut beyond) = (MOST, 0);
     for mesh in meshes {
         let node = &reader.root.nodes[mesh.node];
         let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION));
@@ -43,9 +48,11 @@ pub fn expand(
             out.push(mesh);
             continue;
         };
-        let room = MOST.saturating_sub(out.len()).min(instances.len());
-        beyond += instances.len() - room;
-        out.extend(instances[..room].iter().map(|instance| PlacedMesh {
+        let primitives = reader.root.meshes[mesh.mesh].primitives.len().max(1);
+        let shown = instances.len().min(room / primitives);
+        room -= shown * primitives;
+        beyond += instances.len() - shown;
+        out.extend(instances[..shown].iter().map(|instance| PlacedMesh {
             name: mesh.name.clone(),
             world_from_object: mesh.world_from_object * *instance,
             node_from_object: Some(*instance),
@@ -53,7 +60,8 @@ pub fn expand(
         }));
     }
     if beyond > 0 {
-        warnings.push(format!("{EXTENSION} has more than {MOST} instances: {beyond} are left out."));
+        let full = format!("{MOST} instances of primitives take the {MOST_MIB} MiB that there are for them");
+        warnings.push(format!("{EXTENSION}: {full}; {beyond} more are left out. Export fewer of them."));
     }
     out
 }

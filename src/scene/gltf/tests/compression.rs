@@ -1,11 +1,19 @@
 //! Compressed files hold the same model as plain ones.
 
+use std::collections::HashSet;
+
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder, PointAttribute,
     PointIndex,
 };
 use meshoptimizer_rs::{Workspace, codec};
 
+use super::super::file::buffers::{Buffers, Files};
+use super::super::file::container;
+use super::super::file::opened::Place;
+use super::super::geometry::accessor::Reader;
+use super::super::left_out::LeftOut;
+use super::super::{instancing, nodes};
 use super::*;
 
 /// A plane of `side` x `side` quads, that is not flat.
@@ -204,6 +212,33 @@ fn instances_of_a_node() {
         told.contains("expected TRANSLATION, ROTATION or SCALE, found none of them; the extension is left"),
         "{told}"
     );
+}
+
+#[test]
+fn instances_are_limited_by_their_memory_alone() {
+    let with = |count: usize| {
+        let mut builder = Builder::triangle();
+        let twin = builder.primitive().clone();
+        builder.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(twin);
+        let at = builder.push("accessors", json!({ "componentType": F32, "type": "VEC3", "count": count }));
+        builder.json["nodes"][0]["extensions"] =
+            json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": at } } });
+        builder
+    };
+    let model = with(40_000).model();
+    assert_eq!((model.instances.len(), model.warnings.len()), (80_000, 0), "{:?}", model.warnings);
+    // More are only expanded here, since a model of a million draws takes seconds.
+    let glb = with((1 << 19) + 3).glb();
+    let document = container::parse(&glb).unwrap();
+    let (mut tried, mut left_out, mut warnings) = (Vec::new(), LeftOut::default(), Vec::new());
+    let mut files = Files::new(Place::Nowhere, false, &|| false, &mut tried);
+    let buffers = Buffers::load(&document.root, document.bin, &mut files, &mut left_out).unwrap();
+    let reader = Reader { root: &document.root, buffers: &buffers };
+    let scene = nodes::walk(&document.root, None, &HashSet::new()).unwrap();
+    let placed = instancing::expand(reader, scene.meshes, &mut left_out, &mut warnings);
+    assert_eq!((placed.len(), left_out.warnings().count()), (1 << 19, 0));
+    let expected = "1048576 instances of primitives take the 1024 MiB that there are for them; 3 more are left out.";
+    assert!(warnings.len() == 1 && warnings[0].contains(expected), "{warnings:?}");
 }
 
 #[test]
