@@ -134,6 +134,7 @@ impl Clips<'_> {
                     };
                     Ok(values.into_iter().map(channel).collect())
                 }
+                Some(Pointed::Unused) => Ok(Vec::new()),
                 None => {
                     let place = place.split_once(".channels").map_or(place, |(animation, _)| animation);
                     let expected = "a pointer to what Specula can move";

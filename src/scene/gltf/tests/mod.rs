@@ -14,6 +14,7 @@ mod motion;
 mod nodes;
 mod opened;
 mod placeholders;
+mod pointers;
 mod together;
 mod visibility;
 
