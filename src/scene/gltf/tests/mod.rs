@@ -1,6 +1,7 @@
 //! Tests of the loader on small files built in code.
 
 mod compression;
+mod curves;
 mod damaged;
 mod extensions;
 mod features;
