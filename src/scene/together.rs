@@ -261,7 +261,9 @@ impl Together {
     fn add_contents(&mut self, model: &Model) {
         let (all, more) = (&mut self.contents, &model.contents);
         // `--scene` chooses among those of the first file.
-        all.scenes = if self.members.is_empty() { more.scenes } else { all.scenes };
+        if self.members.is_empty() {
+            (all.scenes, all.scene) = (more.scenes.clone(), more.scene);
+        }
         all.meshes += more.meshes;
         all.skins += more.skins;
         all.animations.extend(more.animations.iter().cloned());

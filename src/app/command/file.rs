@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use super::about::{About, Group};
 use super::compare::{COMPARE, CompareFields};
 use super::fields::{Fields, needs};
@@ -53,6 +55,27 @@ pub(in crate::app) static REMOVE_MODEL: Spec<usize> = Spec::new("remove-model", 
     added.remove(number);
     Ok(show_models(state, engine, first, added))
 });
+
+/// Fields of `scene`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(in crate::app) struct SceneFields {
+    number: usize,
+}
+
+impl SceneFields {
+    /// The scene with this number.
+    pub(in crate::app) fn of(number: usize) -> Self {
+        Self { number }
+    }
+}
+
+pub(in crate::app) static SCENE: Spec<SceneFields> = Spec::new("scene", show_scene)
+    .takes(
+        r#""number": N"#,
+        "Shows another scene of the model's file, by its number from 0. Done when its final picture is on screen",
+    )
+    .required(&["number"]);
 
 pub(in crate::app) static SHOW_GALLERY: Spec<()> =
     Spec::plain("gallery", |state, _, ()| state.workspace.request(PanelRequest::ShowGallery))
@@ -201,6 +224,10 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
     Ok(match what {
         Open::File(path) => return open(state, engine, by_kind(path)?),
         Open::Model(path) => {
+            if wanted_models(state).0.as_ref() != Some(&path) {
+                // The number of a scene is that of another file.
+                state.load_options.scene = None;
+            }
             load_models(state, engine, Some(path.clone()), Vec::new());
             Until::Model(path)
         }
@@ -236,6 +263,17 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::SHOWN
         }
     })
+}
+
+/// Loads another scene of the first model's file. If that fails, the one on screen stays.
+fn show_scene(state: &mut State, engine: &mut Engine, SceneFields { number }: SceneFields) -> Outcome {
+    let scenes = state.session.model().map_or(0, |model| model.contents.scenes.len());
+    if number >= scenes {
+        return Err(format!("there is no scene {number}: the model's file has {scenes}, and the first is 0"));
+    }
+    let (first, added) = wanted_models(state);
+    state.load_options.scene = Some(number);
+    Ok(show_models(state, engine, first, added))
 }
 
 /// Shows these models beside the first.

@@ -35,6 +35,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &file::CHOOSE,
     &file::CHOOSE_BESIDE,
     &file::REMOVE_MODEL,
+    &file::SCENE,
     &file::CHOOSE_TREE,
     &file::NEW_TREE,
     &file::OPEN_EDITOR,

@@ -91,7 +91,8 @@ fn build(
     let mut buffers = Buffers::load(&root, bin, &mut files, &mut left_out)?;
     compression::decode(&mut root, &mut buffers, &mut left_out, files.canceled)?;
     let reader = Reader { root: &root, buffers: &buffers };
-    let environment = environment::read(&root, &buffers, &mut files, scene, &mut warnings);
+    let scene_index = nodes::chosen_scene(&root, scene);
+    let environment = environment::read(&root, &buffers, &mut files, scene_index, &mut warnings);
     let mut scene = nodes::walk(&root, scene, &pointers::switched_nodes(&raw.animations))?;
     let weights = skins::attach(reader, &raw, &mut scene);
     left_out.append(std::mem::take(&mut scene.left_out));
@@ -108,7 +109,8 @@ fn build(
     warnings.extend(material_warnings);
     warnings.extend(left_out.warnings());
     let contents = Contents {
-        scenes: root.scenes.len(),
+        scenes: root.scenes.iter().map(|scene| scene.name.clone().unwrap_or_default()).collect(),
+        scene: scene_index,
         meshes: root.meshes.len(),
         animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
         skins: root.skins.len(),

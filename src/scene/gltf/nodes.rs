@@ -65,6 +65,12 @@ struct Hierarchy {
     parents: Vec<usize>,
 }
 
+/// The index of the scene to show: the chosen one, or else that of the file, or the first.
+pub fn chosen_scene(root: &json::Root, chosen: Option<usize>) -> usize {
+    let chosen = chosen.filter(|index| *index < root.scenes.len());
+    chosen.or(root.scene.map(|index| index.value())).unwrap_or_default()
+}
+
 /// Walks the chosen scene, or else the default scene, or the first scene, or all nodes without a parent. Meshes and lights of hidden nodes are left
 /// out, unless a clip may show them: `switched` are the nodes whose visibility clips change. Cameras are never hidden.
 pub fn walk(root: &json::Root, chosen: Option<usize>, switched: &HashSet<usize>) -> Result<Scene, Problem> {
