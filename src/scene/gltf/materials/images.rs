@@ -8,6 +8,7 @@ use gltf::json;
 use image::{DynamicImage, ImageFormat, ImageReader};
 use rayon::prelude::*;
 
+use super::placeholder::Failure;
 use super::textures::Origin;
 use super::{ktx2, placeholder};
 use crate::message::catch_panic;
@@ -42,15 +43,6 @@ pub struct Encoded<'a> {
     /// The image in messages: `image 'a.png'`.
     title: String,
     bytes: Result<Cow<'a, [u8]>, Failure>,
-}
-
-/// Why an image cannot be shown.
-#[derive(Clone, Debug)]
-pub struct Failure {
-    /// The image and the reason, as part of a sentence.
-    pub reason: String,
-    /// What to do, as a sentence.
-    pub remedy: &'static str,
 }
 
 /// An image after decoding, or the placeholder if decoding failed.

@@ -1,7 +1,6 @@
 //! Replaces images that cannot be read or decoded: by a checkerboard as the base color, and in every other slot as if the
 //! material had no texture there.
 
-use super::images::Failure;
 use crate::interface as contract;
 use crate::scene::model::{Image, Material, Model, Texture};
 
@@ -13,6 +12,15 @@ const SQUARE: u32 = 8;
 const GRAYS: [u8; 2] = [72, 184];
 /// Maximum number of materials that a warning names.
 const MOST_NAMES: usize = 3;
+
+/// Why an image cannot be shown.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The image and the reason, as part of a sentence.
+    pub reason: String,
+    /// What to do, as a sentence.
+    pub remedy: &'static str,
+}
 
 /// The placeholder for a base color: an opaque checkerboard in mid-gray.
 pub fn checkerboard(name: String) -> Image {
