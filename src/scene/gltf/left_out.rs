@@ -6,6 +6,8 @@ use crate::scene::error::{EXPORT_AGAIN, Problem};
 
 /// Maximum number of places that a warning names.
 const MOST_NAMED: usize = 3;
+/// Maximum number of warnings.
+const MOST_TOLD: usize = 50;
 
 /// A kind of part. A warning says: "the `noun` is `fate`."
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -122,7 +124,9 @@ impl LeftOut {
 
     /// A sentence for each reason, and what to do.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.faults.iter().map(Fault::sentence)
+        let more: usize = self.faults.iter().skip(MOST_TOLD).map(|fault| fault.count).sum();
+        let rest = (more > 0).then(|| format!("{more} more parts are left out, for other reasons."));
+        self.faults.iter().take(MOST_TOLD).map(Fault::sentence).chain(rest)
     }
 }
 

@@ -101,8 +101,23 @@ fn linked_outside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>
     Ok(if end.starts_with(folder.canonicalize()?) { None } else { Some(end) })
 }
 
-/// The contents of all buffers. A buffer that cannot be read is a problem of those parts that lie in it.
-pub struct Buffers<'a>(Vec<Result<Cow<'a, [u8]>, Arc<Problem>>>);
+/// The contents of all buffers. A buffer that cannot be read is a problem of those parts of the model that lie in it.
+pub struct Buffers<'a>(Vec<Buffer<'a>>);
+
+/// The bytes of a buffer, and why some or all of them are missing.
+struct Buffer<'a> {
+    bytes: Cow<'a, [u8]>,
+    problem: Option<Arc<Problem>>,
+}
+
+impl<'a> Buffer<'a> {
+    fn new(bytes: Result<Cow<'a, [u8]>, Problem>) -> Self {
+        match bytes {
+            Ok(bytes) => Self { bytes, problem: None },
+            Err(problem) => Self { bytes: Cow::Borrowed(&[]), problem: Some(problem.into()) },
+        }
+    }
+}
 
 impl<'a> Buffers<'a> {
     /// Reads all buffers of a file; `bin` is the GLB's binary chunk.
@@ -126,14 +141,14 @@ impl<'a> Buffers<'a> {
             if (files.canceled)() {
                 return Err(Problem::Canceled);
             }
-            let claimed = buffer.byte_length.0;
-            if let Ok(bytes) = &bytes
-                && (bytes.len() as u64) < claimed
-            {
-                let (expected, found) = (format!("{claimed} bytes (byteLength)"), format!("{} bytes", bytes.len()));
-                left_out.add(Part::END, &place, Problem::invalid(&place, expected, found));
+            let (claimed, mut bytes) = (buffer.byte_length.0, Buffer::new(bytes));
+            if bytes.problem.is_none() && (bytes.bytes.len() as u64) < claimed {
+                let found = format!("{} bytes", bytes.bytes.len());
+                let short = Arc::new(Problem::invalid(&place, format!("{claimed} bytes (byteLength)"), found));
+                left_out.add(Part::END, &place, Problem::Unreadable(short.clone()));
+                bytes.problem = Some(short);
             }
-            buffers.push(bytes.map_err(Arc::new));
+            buffers.push(bytes);
         }
         Ok(Self(buffers))
     }
@@ -161,19 +176,25 @@ impl<'a> Buffers<'a> {
         let Some(buffer) = self.0.get(buffer_index) else {
             return Err(out_of_range(place, "buffers", buffer_index, self.0.len()));
         };
-        let bytes = buffer.as_ref().map_err(|problem| Problem::Unreadable(problem.clone()))?;
+        let Buffer { bytes, problem } = buffer;
+        let missing = problem.as_ref().map(|problem| Problem::Unreadable(problem.clone()));
         // `byteLength` is the limit. Data beyond it is padding.
         let limit = root.buffers[buffer_index].byte_length.0.min(bytes.len() as u64);
         let end = start.checked_add(length).filter(|&end| end <= limit);
         let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
-        range.and_then(|range| bytes.get(range)).ok_or_else(|| {
-            let found = format!("byteOffset {start} and byteLength {length}");
-            Problem::invalid(place, format!("a range inside of the {limit} bytes of buffers[{buffer_index}]"), found)
-        })
+        match (range.and_then(|range| bytes.get(range)), missing) {
+            (Some(found), None) => Ok(found),
+            (Some(found), Some(_)) if !bytes.is_empty() => Ok(found),
+            (_, Some(missing)) => Err(missing),
+            (None, None) => {
+                let expected = format!("a range inside of the {limit} bytes of buffers[{buffer_index}]");
+                Err(Problem::invalid(place, expected, format!("byteOffset {start} and byteLength {length}")))
+            }
+        }
     }
 
     /// Adds a buffer, or the reason for which it cannot be read.
     pub fn push(&mut self, bytes: Result<Vec<u8>, Problem>) {
-        self.0.push(bytes.map(Cow::Owned).map_err(Arc::new));
+        self.0.push(Buffer::new(bytes.map(Cow::Owned)));
     }
 }
