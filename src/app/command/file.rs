@@ -224,11 +224,9 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
     Ok(match what {
         Open::File(path) => return open(state, engine, by_kind(path)?),
         Open::Model(path) => {
-            if wanted_models(state).0.as_ref() != Some(&path) {
-                // The number of a scene is that of another file.
-                state.load_options.scene = None;
-            }
-            load_models(state, engine, Some(path.clone()), Vec::new());
+            let (wanted, scene) = state.wanted_model();
+            let scene = scene.filter(|_| wanted.as_ref() == Some(&path));
+            load_models(state, engine, (Some(path.clone()), scene), Vec::new());
             Until::Model(path)
         }
         Open::Beside(path) => {
@@ -271,15 +269,19 @@ fn show_scene(state: &mut State, engine: &mut Engine, SceneFields { number }: Sc
     if number >= scenes {
         return Err(format!("there is no scene {number}: the model's file has {scenes}, and the first is 0"));
     }
-    let (first, added) = wanted_models(state);
-    state.load_options.scene = Some(number);
-    Ok(show_models(state, engine, first, added))
+    let ((first, _), added) = wanted_models(state);
+    Ok(show_models(state, engine, (first, Some(number)), added))
 }
 
-/// Shows these models beside the first.
-fn show_models(state: &mut State, engine: &mut Engine, first: Option<PathBuf>, added: Vec<AddedModel>) -> Until {
+/// Shows a scene of the first model, and these models beside it.
+fn show_models(
+    state: &mut State,
+    engine: &mut Engine,
+    (first, scene): (Option<PathBuf>, Option<usize>),
+    added: Vec<AddedModel>,
+) -> Until {
     let first = first.unwrap_or_else(|| BUILT_IN[0].into());
-    load_models(state, engine, Some(first.clone()), added);
+    load_models(state, engine, (Some(first.clone()), scene), added);
     Until::Model(first)
 }
 

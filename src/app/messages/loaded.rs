@@ -83,12 +83,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
         }
         Err((message, tried)) => {
             state.model.keeps_camera = false;
-            // What is on screen.
             if added.is_some() {
+                // Those that are on screen.
                 state.load_options.added = state.session.settings.added_files();
-            }
-            if state.session.model().is_some() {
-                state.load_options.scene = state.model.scene;
             }
             // Watch the model on screen as well as the files that must be repaired.
             let on_screen = state.session.model().map(|model| model.files.clone()).unwrap_or_default();
@@ -101,6 +98,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             state.say(message);
             // The load that failed has ended the one that was decoding the textures of the model on screen.
             if state.model.awaits.take().is_some_and(|number| number != loaded.number) {
+                state.load_options.scene = state.model.scene;
                 load_model(state, engine, state.model.path.clone());
             }
         }
@@ -138,8 +136,12 @@ pub(in crate::app) fn on_files_changed(state: &mut State, engine: &mut Engine, c
     on_picture_changed(state, engine, changed);
     if is_changed(&state.model.files) {
         let on_screen = state.session.model().is_some_and(|model| is_changed(&model.files));
-        let path = if on_screen && !state.model.loading { &state.model.path } else { &state.model.requested };
-        load_model(state, engine, path.clone());
+        let is_shown = on_screen && !state.model.loading;
+        let path = if is_shown { &state.model.path } else { &state.model.requested }.clone();
+        if is_shown {
+            state.load_options.scene = state.model.scene;
+        }
+        load_model(state, engine, path);
     }
 }
 

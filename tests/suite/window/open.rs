@@ -96,10 +96,16 @@ fn the_scenes_of_a_file_are_shown_by_command_and_palette() {
     assert!(turned.pixels().any(|pixel| pixel != turned.get_pixel(0, 0)), "an empty picture");
     let refused = viewer.running.refused(json!({"command": "scene", "number": 3}));
     assert!(refused.contains("there is no scene 3: the model's file has 3"), "{refused}");
-    // One that cannot be shown leaves the one on screen, also when the file is read again.
+    // One that cannot be shown leaves the one on screen, which is also shown when the file is read again.
     let refused = viewer.running.refused(json!({"command": "scene", "number": 2}));
     assert!(refused.contains("nothing to draw"), "{refused}");
     assert!(viewer.screenshot() == turned, "a scene without meshes changed the picture");
+    json["nodes"][1]["scale"] = json!([1.0, 0.5, 1.0]);
+    std::fs::write(&model, glb::container(&json, &bin)).unwrap();
+    viewer.until("the scene of the file as it was saved", |shot| *shot != turned);
+    json["nodes"][1].as_object_mut().unwrap().remove("scale");
+    std::fs::write(&model, glb::container(&json, &bin)).unwrap();
+    viewer.until("the scene as before", |shot| *shot == turned);
     viewer.running.done(json!({"command": "open", "model": "sphere-grid"}));
     viewer.running.done(json!({"command": "open", "model": model}));
     assert!(viewer.screenshot() == first, "another file has not ended the choice of a scene");
