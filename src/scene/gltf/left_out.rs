@@ -48,7 +48,7 @@ impl Part {
     /// The alpha mode of a material.
     pub const ALPHA_MODE: Self = Self::new("alpha mode", "replaced by OPAQUE");
     /// A texture of a material.
-    pub const TEXTURE: Self = Self::new("texture", "left out: its factor is used alone");
+    pub const TEXTURE: Self = Self::new("texture", "left out");
     /// The sampler of a texture.
     pub const SAMPLER: Self = Self::new("sampler", "replaced by the default sampler");
     /// A compressed stream beside uncompressed data.

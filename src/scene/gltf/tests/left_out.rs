@@ -119,6 +119,28 @@ fn clips_and_skins_in_a_missing_buffer_are_left_out() {
 }
 
 #[test]
+fn a_texture_that_does_not_exist_costs_itself_alone() {
+    let mut builder = Builder::square();
+    let texture = json!({ "index": 9 });
+    builder.json["materials"] = json!([{
+        "name": "paint", "emissiveTexture": texture, "emissiveFactor": [1, 1, 1], "normalTexture": texture,
+        "pbrMetallicRoughness": { "baseColorTexture": texture, "baseColorFactor": [0.5, 0.25, 0, 1] },
+    }]);
+    builder.primitive()["material"] = json!(0);
+    let (told, model) = (builder.told(), builder.model());
+    let material = &model.materials[1];
+    assert!(material.textures.iter().all(Option::is_none));
+    assert_eq!(material.numbers.base_color_factor, [0.5, 0.25, 0.0, 1.0]);
+    // The factor alone would make the whole surface emit.
+    assert_eq!(material.numbers.emissive_factor, [0.0; 3]);
+    for slot in ["pbrMetallicRoughness.baseColorTexture", "normalTexture", "emissiveTexture"] {
+        let words =
+            format!("materials[0] \"paint\".{slot}: expected no use of textures, of which there are none, found 9");
+        assert!(told.contains(&format!("{words}; the texture is left out. Export")), "{told}\nlacks {words}");
+    }
+}
+
+#[test]
 fn a_damaged_stream_costs_its_primitive() {
     let shape = plane(3);
     let extension = "EXT_meshopt_compression";
