@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use egui::{Checkbox, RichText, Ui};
 
 use super::{animation, beside};
-use crate::app::command::file::{OPEN, Open, SCENE, SceneFields};
+use crate::app::command::file::{OPEN, Open};
+use crate::app::command::models::{SCENE, SceneFields};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
