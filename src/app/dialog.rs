@@ -19,38 +19,41 @@ const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
 /// Nobody cancels a dialog in less time than this. The portal reports a cancel and its own absence in the same way.
 const SHORTEST: Duration = Duration::from_millis(300);
 
-/// Waits for the user's choice. Returns `None` if the user cancels the dialog.
+/// Waits for the user's choice. Returns nothing if the user cancels the dialog.
 ///
 /// # Errors
 /// The desktop shows no dialog.
-pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, NoDialog> {
+pub(super) fn choose(dialog: Dialog) -> Result<Vec<PathBuf>, NoDialog> {
     let start = Instant::now();
+    let one = |path| vec![path];
     let chosen = match dialog {
         Dialog::File => {
             let files = rfd::FileDialog::new().set_title("Open a model, environment or shader");
-            files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_file()
+            files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_files()
         }
         Dialog::Beside => {
             let files = rfd::FileDialog::new().set_title("Add a model");
-            files.add_filter("Models", &MODELS).add_filter("All files", &["*"]).pick_file()
+            files.add_filter("Models", &MODELS).add_filter("All files", &["*"]).pick_files()
         }
         Dialog::Look => {
             let files = rfd::FileDialog::new().set_title("Open a look");
-            files.add_filter("Looks", &LOOKS).add_filter("All files", &["*"]).pick_file()
+            files.add_filter("Looks", &LOOKS).add_filter("All files", &["*"]).pick_file().map(one)
         }
-        Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
+        Dialog::Tree => {
+            rfd::FileDialog::new().set_title("Open a shader tree, or a folder with a model").pick_folder().map(one)
+        }
         Dialog::Picture => {
             let files = rfd::FileDialog::new().set_title("A picture to compare with");
-            files.add_filter("Pictures", &PICTURES).add_filter("All files", &["*"]).pick_file()
+            files.add_filter("Pictures", &PICTURES).add_filter("All files", &["*"]).pick_file().map(one)
         }
-        Dialog::SecondTree => rfd::FileDialog::new().set_title("A shader tree to compare with").pick_folder(),
-        Dialog::New => rfd::FileDialog::new().set_title("A folder for the shaders").pick_folder(),
+        Dialog::SecondTree => rfd::FileDialog::new().set_title("A shader tree to compare with").pick_folder().map(one),
+        Dialog::New => rfd::FileDialog::new().set_title("A folder for the shaders").pick_folder().map(one),
     };
     answer(chosen, start.elapsed())
 }
 
-fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, NoDialog> {
-    if chosen.is_none() && after < SHORTEST { Err(NoDialog) } else { Ok(chosen) }
+fn answer(chosen: Option<Vec<PathBuf>>, after: Duration) -> Result<Vec<PathBuf>, NoDialog> {
+    if chosen.is_none() && after < SHORTEST { Err(NoDialog) } else { Ok(chosen.unwrap_or_default()) }
 }
 
 /// Writes the built-in shaders, as `specula new` does, and returns their folder: the given one, or if it holds other files, a folder inside
@@ -73,9 +76,9 @@ mod tests {
 
     #[test]
     fn a_cancel_is_told_from_a_missing_portal() {
-        let path = PathBuf::from("a.glb");
-        assert_eq!(answer(Some(path.clone()), Duration::ZERO), Ok(Some(path)));
-        assert_eq!(answer(None, Duration::from_secs(2)), Ok(None));
+        let paths = ["a.glb", "b.glb"].map(PathBuf::from).to_vec();
+        assert_eq!(answer(Some(paths.clone()), Duration::ZERO), Ok(paths));
+        assert_eq!(answer(None, Duration::from_secs(2)), Ok(Vec::new()));
         assert_eq!(answer(None, Duration::from_millis(20)), Err(NoDialog));
     }
 

@@ -44,7 +44,7 @@ pub(super) fn start(
     let mut state = State {
         has_window,
         text_writes,
-        model: ModelStatus { path: options.model.clone(), ..Default::default() },
+        model: ModelStatus { path: options.model.clone(), scene: options.load_options.scene, ..Default::default() },
         events: early.events,
         start: options.start,
         recent: if has_window { Recent::restored() } else { Recent::default() },

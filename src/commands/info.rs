@@ -86,7 +86,7 @@ fn print_model(model: &Model) {
     let variants: Vec<String> = model.variants.iter().map(|name| escape(name)).collect();
     out!("\nModel {}", escape(&model.name));
     out!("  size        {width:.3} x {height:.3} x {depth:.3} m, center {x:.3}, {y:.3}, {z:.3}");
-    out!("  scenes      {}", count(model.contents.scenes));
+    out!("  scenes      {}", count(model.contents.scenes.len()));
     out!("  nodes       {}", nodes(model));
     out!("  meshes      {}", count(model.contents.meshes));
     out!("  primitives  {}", model.primitives.len());
@@ -214,7 +214,7 @@ fn parts(model: &Model) -> serde_json::Value {
     let [switched, left_out] = hidden_nodes(model);
     json!({
         "model": model.name,
-        "scenes": model.contents.scenes,
+        "scenes": model.contents.scenes.len(),
         "nodes": model.nodes.len(),
         "hidden_nodes": { "switched": switched, "left_out": left_out },
         "meshes": model.contents.meshes,

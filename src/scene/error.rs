@@ -1,6 +1,16 @@
 //! Errors of loading a model, with messages for the person who opened it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What to do about a file that violates the specification.
+pub(super) const EXPORT_AGAIN: &str = "Export the model again, or run it through the Khronos glTF validator.";
+/// What to do about a path that leaves the model's folder.
+const ALLOW_OUTSIDE: &str = "Give --allow-outside to read it if you trust this model.";
+/// What to do about a URI that is never opened.
+const SAVE_BESIDE: &str = "Save that file beside the model and name it by its relative path.";
+/// What to do about a file that is not there.
+const PUT_THERE: &str = "Put it there or export a self-contained .glb.";
 
 /// A model that could not be loaded. The message is one paragraph: the file, what was expected, what was found, and what
 /// to do.
@@ -83,10 +93,7 @@ pub enum Problem {
         supported: String,
     },
     /// The file violates the specification.
-    #[error(
-        "is invalid at {place}: expected {expected}, found {found}. \
-         Export the model again, or run it through the Khronos glTF validator."
-    )]
+    #[error("is invalid at {place}: expected {expected}, found {found}. {}", EXPORT_AGAIN)]
     Invalid {
         /// The object, as a path into the JSON with its name.
         place: String,
@@ -98,7 +105,8 @@ pub enum Problem {
     /// A URI with a scheme that is never opened.
     #[error(
         "names `{uri}` at {place}: expected a file beside the model or a data: URI, found the scheme `{scheme}:`, \
-         which is never opened. Save that file beside the model and name it by its relative path."
+         which is never opened. {}",
+        SAVE_BESIDE
     )]
     Scheme {
         /// The object.
@@ -109,10 +117,7 @@ pub enum Problem {
         scheme: String,
     },
     /// A path that leaves the model's folder.
-    #[error(
-        "names `{uri}` at {place}: expected a file in the model's folder, found {found}. \
-         Give --allow-outside to read it if you trust this model."
-    )]
+    #[error("names `{uri}` at {place}: expected a file in the model's folder, found {found}. {}", ALLOW_OUTSIDE)]
     Outside {
         /// The object.
         place: String,
@@ -123,9 +128,9 @@ pub enum Problem {
     },
     /// A file that the model names cannot be read.
     #[error(
-        "needs the file {}, named at {place}, which cannot be read: {source}. Put it there or export a \
-         self-contained .glb.",
-        path.display()
+        "needs the file {}, named at {place}, which cannot be read: {source}. {}",
+        path.display(),
+        PUT_THERE
     )]
     External {
         /// The object.
@@ -135,6 +140,9 @@ pub enum Problem {
         /// Why it cannot be read.
         source: std::io::Error,
     },
+    /// Data in a buffer that could not be loaded or decoded.
+    #[error("{0}")]
+    Unreadable(Arc<Problem>),
     /// The scene has no mesh.
     #[error(
         "has nothing to draw: expected a scene with at least one mesh, found {found}. \
@@ -162,5 +170,34 @@ impl Problem {
     /// Shorthand for [`Problem::Invalid`].
     pub(super) fn invalid(place: impl Into<String>, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::Invalid { place: place.into(), expected: expected.into(), found: found.into() }
+    }
+
+    /// The fault alone, as part of a sentence.
+    pub(super) fn reason(&self) -> String {
+        match self {
+            Self::Invalid { place, expected, found } => format!("{place}: expected {expected}, found {found}"),
+            Self::Scheme { place, uri, scheme } => {
+                format!("{place} names `{uri}`, and the scheme `{scheme}:` is never opened")
+            }
+            Self::Outside { place, uri, found } => {
+                format!("{place} names `{uri}`: expected a file in the model's folder, found {found}")
+            }
+            Self::External { place, path, source } => {
+                format!("{place} needs the file {}, which cannot be read ({source})", path.display())
+            }
+            Self::Unreadable(problem) => problem.reason(),
+            other => other.to_string(),
+        }
+    }
+
+    /// What to do about the fault, if it is not one of the file's own content.
+    pub(super) fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Scheme { .. } => Some(SAVE_BESIDE),
+            Self::Outside { .. } => Some(ALLOW_OUTSIDE),
+            Self::External { .. } => Some(PUT_THERE),
+            Self::Unreadable(problem) => problem.remedy(),
+            _ => None,
+        }
     }
 }

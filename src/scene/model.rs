@@ -77,8 +77,10 @@ pub struct LoadTiming {
 /// Contents of a file, shown or not.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Contents {
-    /// Scenes.
-    pub scenes: usize,
+    /// Names of the scenes; empty for one without a name.
+    pub scenes: Vec<String>,
+    /// Which of them the model is.
+    pub scene: usize,
     /// Meshes.
     pub meshes: usize,
     /// Names of the animations; empty for one without a name.

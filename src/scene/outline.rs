@@ -31,7 +31,9 @@ pub fn outline(model: &Model) -> Vec<Vec3> {
     };
     let total: usize = model.instances.iter().map(|instance| points[instance.primitive].len()).sum();
     if total > MOST_POINTS {
-        points.par_iter_mut().for_each(|points| *points = directions.farthest(points));
+        // A point for each direction: fewer points are fewer as they are.
+        let many = points.par_iter_mut().filter(|points| points.len() > DIRECTIONS);
+        many.for_each(|points| *points = directions.farthest(points));
     }
     let placed = |instance: &Instance| {
         let world_from_object = instance.world_from_object;

@@ -70,6 +70,9 @@ impl Offsets {
             Property::BaseColor(of) => Property::BaseColor(self.material(of)),
             Property::Emission(of) => Property::Emission(self.material(of)),
             Property::Anisotropy(of) => Property::Anisotropy(self.material(of)),
+            Property::Glossiness(of) => Property::Glossiness(self.material(of)),
+            Property::CoatNormalScale(of) => Property::CoatNormalScale(self.material(of)),
+            Property::ThinnestFilm(of) => Property::ThinnestFilm(self.material(of)),
             Property::Factor(of, factor) => Property::Factor(self.material(of), factor),
             Property::Texture(of, slot) => Property::Texture(self.material(of), slot),
             Property::Light(of) => Property::Light(of + self.lights),
@@ -258,7 +261,9 @@ impl Together {
     fn add_contents(&mut self, model: &Model) {
         let (all, more) = (&mut self.contents, &model.contents);
         // `--scene` chooses among those of the first file.
-        all.scenes = if self.members.is_empty() { more.scenes } else { all.scenes };
+        if self.members.is_empty() {
+            (all.scenes, all.scene) = (more.scenes.clone(), more.scene);
+        }
         all.meshes += more.meshes;
         all.skins += more.skins;
         all.animations.extend(more.animations.iter().cloned());

@@ -120,6 +120,12 @@ impl Model {
         name.unwrap_or_else(|| format!("#{index}"))
     }
 
+    /// The name of a scene of the file: its own if no other has it, or its number.
+    pub fn scene_name(&self, index: usize) -> String {
+        let name = unique_name(self.contents.scenes.iter().map(String::as_str), index);
+        name.unwrap_or_else(|| format!("#{index}"))
+    }
+
     /// The camera that settings name by its number, or the first of that name.
     pub fn camera(&self, name: &str) -> Option<&Camera> {
         match name.strip_prefix('#').and_then(|number| number.parse::<usize>().ok()) {

@@ -98,7 +98,7 @@ pub(crate) enum Message {
     /// A message for the user.
     Say(String),
     /// The file dialog has closed: the chosen path, none if the user cancels it, or there is no dialog.
-    Chosen(Result<Option<PathBuf>, NoDialog>),
+    Chosen(Result<Vec<PathBuf>, NoDialog>),
     /// A folder with the built-in shaders has been written, or a message.
     NewTree(Result<PathBuf, String>),
     /// The files of a folder, or why it cannot be read.

@@ -86,7 +86,7 @@ pub(in crate::app) fn on_prepared(
     let is_default = exercise.model == crate::scene::BUILT_IN[0] && state.model.requested.is_none();
     let is_alone = state.load_options.added.is_empty();
     if !is_alone || (state.model.requested.as_ref() != Some(&model) && !is_default) {
-        load_models(state, engine, Some(model), Vec::new());
+        load_models(state, engine, (Some(model), None), Vec::new());
     }
 }
 

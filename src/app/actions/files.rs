@@ -24,23 +24,24 @@ pub(in crate::app) fn load_model(state: &mut State, engine: &mut Engine, path: O
     begin_loading(state, path);
 }
 
-/// Loads a model with these beside it. If it can be loaded, the settings have these from then on.
+/// Loads a scene of a model with these beside it. If it can be loaded, the settings have these from then on.
 pub(in crate::app) fn load_models(
     state: &mut State,
     engine: &mut Engine,
-    first: Option<PathBuf>,
+    (first, scene): (Option<PathBuf>, Option<usize>),
     added: Vec<AddedModel>,
 ) {
+    state.load_options.scene = scene;
     state.load_options.added = added.iter().map(|model| model.file.clone()).collect();
     state.model.added = Some(added);
     load_model(state, engine, first);
 }
 
-/// The first of the models that are shown, or that are being loaded, and those beside it.
-pub(in crate::app) fn wanted_models(state: &State) -> (Option<PathBuf>, Vec<AddedModel>) {
-    let path = if state.model.loading { &state.model.requested } else { &state.model.path };
+/// The first of the models that are shown, or that are being loaded, with its scene, and those beside it.
+pub(in crate::app) fn wanted_models(state: &State) -> ((Option<PathBuf>, Option<usize>), Vec<AddedModel>) {
+    let (path, scene) = state.wanted_model();
     let added = state.model.added.as_ref().unwrap_or(&state.session.settings.added);
-    (path.clone(), added.clone())
+    ((path.clone(), scene), added.clone())
 }
 
 /// Loads the models that the settings have beside the first, if others were asked for: an undo, a look or a session has changed them.
@@ -48,7 +49,8 @@ pub(in crate::app) fn follow_added(state: &mut State, engine: &mut Engine) {
     let wanted = state.session.settings.added.iter().map(|model| &model.file);
     if state.model.added.is_none() && !wanted.eq(&state.load_options.added) {
         state.load_options.added = state.session.settings.added_files();
-        let (first, _) = wanted_models(state);
+        let ((first, scene), _) = wanted_models(state);
+        state.load_options.scene = scene;
         load_model(state, engine, first);
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::about::{About, Group};
 use super::compare::{COMPARE, CompareFields};
 use super::fields::{Fields, needs};
+use super::models::show_models;
 use super::program::SAY;
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
@@ -43,16 +44,6 @@ pub(in crate::app) static OPEN: Spec<Open> = Spec::new("open", open).parsed(
     "Opens a file or folder; `beside` shows a model beside those on screen. Done when its final picture is on screen",
     parse,
 );
-
-/// Shows one of the models beside the first no longer, by its number from 0.
-pub(in crate::app) static REMOVE_MODEL: Spec<usize> = Spec::new("remove-model", |state, engine, number| {
-    let (first, mut added) = wanted_models(state);
-    if number >= added.len() {
-        return Err(format!("no model {number} is shown beside the first; there are {}", added.len()));
-    }
-    added.remove(number);
-    Ok(show_models(state, engine, first, added))
-});
 
 pub(in crate::app) static SHOW_GALLERY: Spec<()> =
     Spec::plain("gallery", |state, _, ()| state.workspace.request(PanelRequest::ShowGallery))
@@ -164,7 +155,7 @@ pub(in crate::app) fn dropped(state: &State, paths: Vec<PathBuf>, adds: bool) ->
     let mut commands: Vec<Command> = opened.iter().map(&mut open).collect();
     if let Some(first) = left.first() {
         let more = if left.len() > 1 { format!(" and {} more", left.len() - 1) } else { String::new() };
-        commands.push(SAY.with(format!("Not opened: {first}{more}. Drop one file of a kind at a time")));
+        commands.push(SAY.with(format!("Not opened: {first}{more}. Open one file of a kind at a time")));
     }
     commands
 }
@@ -178,6 +169,14 @@ pub(in crate::app) fn chosen(dialog: Option<Dialog>, path: PathBuf) -> Command {
         Some(Dialog::New) => NEW_TREE.with(Some(path)),
         _ => OPEN.with(Open::File(path)),
     }
+}
+
+/// The commands for all paths that were chosen in a dialog. Several are opened as those that are dropped together.
+pub(in crate::app) fn all_chosen(state: &State, dialog: Option<Dialog>, mut paths: Vec<PathBuf>) -> Vec<Command> {
+    if paths.len() > 1 {
+        return dropped(state, paths, dialog == Some(Dialog::Beside));
+    }
+    paths.pop().map(|path| chosen(dialog, path)).into_iter().collect()
 }
 
 /// Shows a file dialog on a thread.
@@ -194,7 +193,9 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
     Ok(match what {
         Open::File(path) => return open(state, engine, by_kind(path)?),
         Open::Model(path) => {
-            load_models(state, engine, Some(path.clone()), Vec::new());
+            let (wanted, scene) = state.wanted_model();
+            let scene = scene.filter(|_| wanted.as_ref() == Some(&path));
+            load_models(state, engine, (Some(path.clone()), scene), Vec::new());
             Until::Model(path)
         }
         Open::Beside(path) => {
@@ -229,13 +230,6 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
             Until::SHOWN
         }
     })
-}
-
-/// Shows these models beside the first.
-fn show_models(state: &mut State, engine: &mut Engine, first: Option<PathBuf>, added: Vec<AddedModel>) -> Until {
-    let first = first.unwrap_or_else(|| BUILT_IN[0].into());
-    load_models(state, engine, Some(first.clone()), added);
-    Until::Model(first)
 }
 
 /// How to open a file or folder.
@@ -318,7 +312,7 @@ mod tests {
         let helmet = ["FlightHelmet.bin", "a.png", "FlightHelmet.gltf", "b.jpg", "notes.txt"];
         assert_eq!(drop_all(&helmet), [open("FlightHelmet.gltf")]);
         assert_eq!(drop_all(&["a.glb", "sky.hdr", "look.toml"])[..2], [open("a.glb"), open("sky.hdr")]);
-        let told = SAY.with("Not opened: b.hdr and 1 more. Drop one file of a kind at a time".to_owned());
+        let told = SAY.with("Not opened: b.hdr and 1 more. Open one file of a kind at a time".to_owned());
         assert_eq!(drop_all(&["a.hdr", "b.hdr", "c.hdr"]), [open("a.hdr"), told]);
         assert_eq!(drop_all(&["a.bin"]), [open("a.bin")]);
     }
@@ -332,6 +326,22 @@ mod tests {
         assert_eq!(added(&["a.glb"]), [beside("a.glb")]);
         assert_eq!(added(&["a.glb", "sky.hdr", "b.glb"]), [beside("a.glb"), open("sky.hdr"), beside("b.glb")]);
         assert_eq!(added(&["sky.hdr"]), [open("sky.hdr")]);
+    }
+
+    #[test]
+    fn files_that_are_chosen_together_open_as_those_that_are_dropped_together() {
+        let state = State::new(Settings::of_window(), Source::embedded());
+        let choose =
+            |dialog, names: &[&str]| all_chosen(&state, Some(dialog), names.iter().map(PathBuf::from).collect());
+        let beside = |name: &str| OPEN.with(Open::Beside(name.into()));
+        assert_eq!(choose(Dialog::File, &[]), []);
+        assert_eq!(choose(Dialog::File, &["a.glb"]), [open("a.glb")]);
+        assert_eq!(
+            choose(Dialog::File, &["a.gltf", "a.bin", "b.glb", "c.hdr"]),
+            drop_all(&["a.gltf", "b.glb", "c.hdr"])
+        );
+        assert_eq!(choose(Dialog::Beside, &["a.glb"]), [beside("a.glb")]);
+        assert_eq!(choose(Dialog::Beside, &["a.glb", "b.glb"]), [beside("a.glb"), beside("b.glb")]);
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod history;
 pub(super) mod layout;
 pub(super) mod look;
 mod measure;
+pub(super) mod models;
 pub(super) mod modes;
 mod numbers;
 pub(super) mod playback;

@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::spec::{Registered, Spec, Until};
 use super::{
-    camera, capture, checks, compare, costs, file, history, layout, look, measure, modes, numbers, playback, program,
-    scene, settings, shaders, source, texts,
+    camera, capture, checks, compare, costs, file, history, layout, look, measure, models, modes, numbers, playback,
+    program, scene, settings, shaders, source, texts,
 };
 use crate::app::palette::entries::{entries, entry_with};
 
@@ -34,7 +34,8 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &file::REFUSE_SESSION,
     &file::CHOOSE,
     &file::CHOOSE_BESIDE,
-    &file::REMOVE_MODEL,
+    &models::REMOVE_MODEL,
+    &models::SCENE,
     &file::CHOOSE_TREE,
     &file::NEW_TREE,
     &file::OPEN_EDITOR,

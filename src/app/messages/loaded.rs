@@ -28,7 +28,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             // The pictures of older versions would keep the old model on the device.
             engine.generations.drop_pictures();
             engine.forget_second_picture();
-            let (model, is_other) = (uploaded.model(), loaded.path != state.model.path);
+            let (model, is_other_file) = (uploaded.model(), loaded.path != state.model.path);
+            let is_other_scene = |before: &Model| before.contents.scene != model.contents.scene;
+            let is_other = is_other_file || state.session.model().is_some_and(|before| is_other_scene(before));
             if let Some(mut added) = added {
                 let before = &state.session.settings.added;
                 // They may have been moved while the new one was loading.
@@ -47,7 +49,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
                 state.frame_model();
                 // They name parts of the model before.
                 state.session.settings.scene = SceneSettings::default();
-                state.session.settings.materials.clear();
+                if is_other_file {
+                    state.session.settings.materials.clear();
+                }
             }
             let keeps_selection = |before| !is_other && state.selected.is_same(before, model);
             if !state.session.model().is_some_and(|before| keeps_selection(before)) {
@@ -62,6 +66,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
                 state.recent.remember(Kind::Model, path);
             }
             state.model.path = loaded.path;
+            state.model.scene = state.load_options.scene;
             state.model.load_ms = loaded.ms;
             state.model.failure = None;
             state.model.files = model.files.as_slice().into();
@@ -93,6 +98,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             state.say(message);
             // The load that failed has ended the one that was decoding the textures of the model on screen.
             if state.model.awaits.take().is_some_and(|number| number != loaded.number) {
+                state.load_options.scene = state.model.scene;
                 load_model(state, engine, state.model.path.clone());
             }
         }
@@ -130,8 +136,12 @@ pub(in crate::app) fn on_files_changed(state: &mut State, engine: &mut Engine, c
     on_picture_changed(state, engine, changed);
     if is_changed(&state.model.files) {
         let on_screen = state.session.model().is_some_and(|model| is_changed(&model.files));
-        let path = if on_screen && !state.model.loading { &state.model.path } else { &state.model.requested };
-        load_model(state, engine, path.clone());
+        let is_shown = on_screen && !state.model.loading;
+        let path = if is_shown { &state.model.path } else { &state.model.requested }.clone();
+        if is_shown {
+            state.load_options.scene = state.model.scene;
+        }
+        load_model(state, engine, path);
     }
 }
 

@@ -20,7 +20,7 @@ use crate::app::actions::sessions::show_look;
 use crate::app::actions::texts::on_text_written;
 use crate::app::actions::trace::on_traced;
 use crate::app::actions::watch::watch_files;
-use crate::app::command::file::{OPEN, Open, chosen};
+use crate::app::command::file::{OPEN, Open, all_chosen};
 use crate::app::command::{execute, on_asked};
 use crate::app::engine::Engine;
 use crate::app::messages::bakes::on_bake;
@@ -113,7 +113,10 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Chosen(answer) => {
             let dialog = state.choosing.take();
             match answer {
-                Ok(path) => path.into_iter().for_each(|path| execute(state, engine, chosen(dialog, path))),
+                Ok(paths) => {
+                    let commands = all_chosen(state, dialog, paths);
+                    commands.into_iter().for_each(|command| execute(state, engine, command));
+                }
                 Err(NoDialog) => state.workspace.request(PanelRequest::ChooseFile(dialog)),
             }
         }

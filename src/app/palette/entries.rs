@@ -8,6 +8,7 @@ use crate::app::command::camera::{LOOK_THROUGH, VIEW_FROM, ViewSide};
 use crate::app::command::compare::{COMPARE, CompareFields, TOGGLE_COMPARE, TOGGLE_DIFFERENCE};
 use crate::app::command::file::{CHOOSE, OPEN, Open};
 use crate::app::command::layout::{ARRANGE, ARRANGE_OWN, OPEN_INSPECTOR, OPEN_PANEL};
+use crate::app::command::models::{SCENE, SceneFields};
 use crate::app::command::program::LEARN;
 use crate::app::command::scene::SELECT;
 use crate::app::command::settings::{change, set_shader};
@@ -170,7 +171,7 @@ fn of_picture(state: &State) -> Vec<Entry> {
 /// Most nodes that the palette lists; the panel Scene has a search of its own.
 const MOST_NODES: usize = 300;
 
-/// Nodes, materials and cameras of the model, and lights with a handle.
+/// Nodes, materials, cameras and scenes of the model, and lights with a handle.
 fn of_scene(state: &State) -> Vec<Entry> {
     let Some(model) = state.session.model() else { return Vec::new() };
     let select = |title: String, selected| {
@@ -189,6 +190,12 @@ fn of_scene(state: &State) -> Vec<Entry> {
     );
     entries.extend((0..state.session.settings.lights.orbit.len()).map(|light| {
         select(format!("Move light {} in the picture", light + 1), Selected::Light(LightId::Orbit(light)))
+    }));
+    let contents = &model.contents;
+    entries.extend((0..contents.scenes.len()).filter(|_| contents.scenes.len() > 1).map(|number| {
+        let title = format!("Scene: {}", model.scene_name(number));
+        let entry = Entry::new("Model", title, SCENE.with(SceneFields::of(number))).words("scene of the file");
+        Entry { is_in_force: number == contents.scene, ..entry }
     }));
     entries.extend(model.cameras.iter().enumerate().map(|(index, camera)| {
         let name = name_or(&camera.name, || index.to_string());

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use egui::{RichText, Ui};
 
-use crate::app::command::file::{CHOOSE_BESIDE, OPEN, Open, REMOVE_MODEL};
+use crate::app::command::file::{CHOOSE_BESIDE, OPEN, Open};
+use crate::app::command::models::REMOVE_MODEL;
 use crate::app::command::spec::Command;
 use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::{self, choose, group, heading};

@@ -6,6 +6,7 @@ use egui::{Checkbox, RichText, Ui};
 
 use super::{animation, beside};
 use crate::app::command::file::{OPEN, Open};
+use crate::app::command::models::{SCENE, SceneFields};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -46,6 +47,7 @@ fn show(
     commands: &mut Vec<Command>,
 ) {
     list(ui, model, status, recent, commands);
+    scenes(ui, model, commands);
     beside::list(ui, model, recent, commands);
     if !model.variants.is_empty() {
         let name = |variant: &str| if variant.is_empty() { "default materials" } else { variant }.to_owned();
@@ -86,6 +88,25 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], co
                 let button = ui.selectable_label(status.is_open(path), name);
                 if button.on_hover_text(path.display().to_string()).clicked() {
                     commands.push(OPEN.with(Open::Model(path.clone())));
+                }
+            }
+        })
+    });
+}
+
+/// The scenes of the model's file, if there are several.
+pub(super) fn scenes(ui: &mut Ui, model: &Model, commands: &mut Vec<Command>) {
+    let (shown, count) = (model.contents.scene, model.contents.scenes.len());
+    if count < 2 {
+        return;
+    }
+    let doc = "The scene of the model's file that is shown";
+    let row = Row { name: "Scene", doc, option: format!("--scene {shown}"), is_changed: false, is_indented: false };
+    row.show(ui, |ui| {
+        choose(ui, "scene", model.scene_name(shown), |ui| {
+            for number in 0..count {
+                if ui.selectable_label(number == shown, model.scene_name(number)).clicked() {
+                    commands.push(SCENE.with(SceneFields::of(number)));
                 }
             }
         })

@@ -11,10 +11,11 @@ use super::overlay::legend::{self, Legend, LegendState};
 use super::overlay::swatches::swatches;
 use super::panel_ui::PanelSpec;
 use super::timeline::comparison;
-use super::{PANELS, Panel, camera, capture, output, overlay};
+use super::{PANELS, Panel, camera, capture, model, output, overlay};
 use crate::app::command::camera::{KEEP_CAMERA, RECALL_CAMERA, VIEW_FROM, ViewSide};
 use crate::app::command::compare::{COMPARE, CompareFields};
 use crate::app::command::file::CHOOSE;
+use crate::app::command::models::{SCENE, SceneFields};
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -26,7 +27,7 @@ use crate::app::state::compare::Compare;
 use crate::app::state::dialog::Dialog;
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
-use crate::scene::{Bounds, CameraView, Model, built_in};
+use crate::scene::{Bounds, CameraView, Contents, Model, built_in};
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
 use crate::shader::annotation::ParameterType;
 use crate::shader::{Diagnostic, Encode, Mode, Numbers, Parameter, ShaderSet, Source};
@@ -150,6 +151,26 @@ fn cameras_are_kept_and_found_by_their_number() {
     harness.get_by_role_and_label(Role::Button, "3").click();
     harness.run();
     assert_eq!(harness.state().1.last(), Some(&RECALL_CAMERA.with(3)));
+}
+
+#[test]
+fn the_scenes_of_a_file_are_a_choice_if_there_are_several() {
+    let of = |names: &[&str]| {
+        let contents =
+            Contents { scenes: names.iter().map(|name| (*name).to_owned()).collect(), ..Contents::default() };
+        let model = Model { contents: contents.into(), ..Model::default() };
+        harness(Vec::<Command>::new(), move |ui, commands| model::scenes(ui, &model, commands))
+    };
+    assert!(of(&["alone"]).query_by_role(Role::ComboBox).is_none());
+    let mut several = of(&["hall", "", "hall", "garden"]);
+    several.get_by_role(Role::ComboBox).click();
+    several.run();
+    for name in ["#1", "#2"] {
+        several.get_by_role_and_label(Role::Button, name);
+    }
+    several.get_by_role_and_label(Role::Button, "garden").click();
+    several.run();
+    assert_eq!(*several.state(), [SCENE.with(SceneFields::of(3))]);
 }
 
 #[test]

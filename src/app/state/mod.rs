@@ -423,11 +423,18 @@ impl State {
         self.captures.cancel();
     }
 
+    /// The first model that is shown or being loaded, and its scene.
+    pub(in crate::app) fn wanted_model(&self) -> (&Option<PathBuf>, Option<usize>) {
+        match self.model.loading {
+            true => (&self.model.requested, self.load_options.scene),
+            false => (&self.model.path, self.model.scene),
+        }
+    }
+
     /// The settings, the model and the shader tree.
     pub(in crate::app) fn session_state(&self) -> SessionState {
-        let model = if self.model.loading { &self.model.requested } else { &self.model.path };
+        let (model, scene) = self.wanted_model();
         let tree = self.source.location().map(Path::to_owned);
-        let scene = self.load_options.scene;
         SessionState { settings: self.session.shared_settings(), model: model.clone(), scene, tree }
     }
 

@@ -10,6 +10,8 @@ use crate::settings::AddedModel;
 pub(in crate::app) struct ModelStatus {
     /// The file on screen; `None` is a built-in model.
     pub(in crate::app) path: Option<PathBuf>,
+    /// `LoadOptions::scene` of the model on screen.
+    pub(in crate::app) scene: Option<usize>,
     /// The file that was requested last.
     pub(in crate::app) requested: Option<PathBuf>,
     /// The watched files: those of the model on screen, and after a failed load also those that it tried.

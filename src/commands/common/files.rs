@@ -107,8 +107,8 @@ impl Common {
     pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
         check_model_path(path)?;
         let model = scene::open(path, &self.load_options()).map_err(|e| Failure::Input(e.to_string()))?;
-        if let Some(scene) = self.scene.filter(|scene| *scene >= model.contents.scenes.max(1)) {
-            let (name, scenes) = (&model.name, model.contents.scenes);
+        if let Some(scene) = self.scene.filter(|scene| *scene >= model.contents.scenes.len().max(1)) {
+            let (name, scenes) = (&model.name, model.contents.scenes.len());
             return Err(Failure::Usage(format!("--scene {scene}: {name} has {scenes} scenes; the first is 0")));
         }
         let wants_its_lights =

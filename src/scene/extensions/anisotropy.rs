@@ -12,7 +12,8 @@ pub const EXTENSION: Extension = Extension {
         let (sin, cos) = reader.fields.number("anisotropyRotation", 0.0)?.sin_cos();
         reader.material.numbers.anisotropy_strength = reader.unit("anisotropyStrength", 0.0)?;
         reader.material.numbers.anisotropy_rotation = [cos, sin];
-        reader.texture("anisotropyTexture", TEXTURE_ANISOTROPY)
+        reader.texture("anisotropyTexture", TEXTURE_ANISOTROPY);
+        Ok(())
     },
     features: |material, _| bit_if(FEATURE_ANISOTROPY, is_used(material)),
     factors: &[

@@ -12,13 +12,14 @@ pub const EXTENSION: Extension = Extension {
     name: "KHR_materials_clearcoat",
     read: |reader| {
         reader.material.numbers.clearcoat_factor = reader.unit("clearcoatFactor", 0.0)?;
-        reader.material.numbers.clearcoat_roughness = reader.fields.roughness("clearcoatRoughnessFactor", 0.0)?;
-        if let Some(normal) = reader.fields.open_member("clearcoatNormalTexture")? {
+        reader.material.numbers.clearcoat_roughness = reader.unit("clearcoatRoughnessFactor", 0.0)?;
+        if let Ok(Some(normal)) = reader.fields.open_member("clearcoatNormalTexture") {
             reader.material.numbers.clearcoat_normal_scale = normal.number("scale", 1.0)?;
         }
-        reader.texture("clearcoatTexture", TEXTURE_CLEARCOAT)?;
-        reader.texture("clearcoatRoughnessTexture", TEXTURE_CLEARCOAT_ROUGHNESS)?;
-        reader.texture("clearcoatNormalTexture", TEXTURE_CLEARCOAT_NORMAL)
+        reader.texture("clearcoatTexture", TEXTURE_CLEARCOAT);
+        reader.texture("clearcoatRoughnessTexture", TEXTURE_CLEARCOAT_ROUGHNESS);
+        reader.texture("clearcoatNormalTexture", TEXTURE_CLEARCOAT_NORMAL);
+        Ok(())
     },
     features: |material, has_frame| {
         let has_normals = has_frame && material.has(TEXTURE_CLEARCOAT_NORMAL);

@@ -13,8 +13,9 @@ pub const EXTENSION: Extension = Extension {
         reader.material.numbers.diffuse_transmission_factor = reader.unit("diffuseTransmissionFactor", 0.0)?;
         reader.material.numbers.diffuse_transmission_color =
             reader.unit_all("diffuseTransmissionColorFactor", [1.0; 3])?;
-        reader.texture("diffuseTransmissionTexture", TEXTURE_DIFFUSE_TRANSMISSION)?;
-        reader.texture("diffuseTransmissionColorTexture", TEXTURE_DIFFUSE_TRANSMISSION_COLOR)
+        reader.texture("diffuseTransmissionTexture", TEXTURE_DIFFUSE_TRANSMISSION);
+        reader.texture("diffuseTransmissionColorTexture", TEXTURE_DIFFUSE_TRANSMISSION_COLOR);
+        Ok(())
     },
     features: |material, _| bit_if(FEATURE_DIFFUSE_TRANSMISSION, is_used(material)),
     factors: &[

@@ -4,6 +4,7 @@ use super::descriptor::{Extension, LARGEST_IOR, factor};
 use super::{specular, specular_glossiness, transmission};
 use crate::scene::error::Problem;
 use crate::scene::gltf::materials::reader::Reader;
+use crate::scene::gltf::values;
 
 /// Its descriptor.
 pub const EXTENSION: Extension = Extension {
@@ -19,7 +20,7 @@ pub const EXTENSION: Extension = Extension {
 /// whole reflectance, as in materials converted from specular-glossiness. Without, the material is a white mirror, as its file
 /// says; that is rarely meant, so the warning says how to get another reflectance.
 fn read(reader: &mut Reader<'_, '_>) -> Result<(), Problem> {
-    let value = reader.fields.number("ior", 1.5)?;
+    let mut value = reader.fields.number("ior", 1.5)?;
     let place = reader.fields.at("ior");
     if value == 0.0 {
         let reflects = [specular::EXTENSION, specular_glossiness::EXTENSION].iter().any(|other| reader.has(other.name));
@@ -32,9 +33,8 @@ fn read(reader: &mut Reader<'_, '_>) -> Result<(), Problem> {
             )
         };
         reader.collector.warnings.push(warning);
-    } else if !(1.0..=LARGEST_IOR).contains(&value) {
-        let expected = "an index of refraction of 1 to 10000 (1.5 for glass), or 0 for infinity";
-        return Err(Problem::invalid(place, expected, value.to_string()));
+    } else {
+        value = values::clamp(value, 1.0..=LARGEST_IOR, &place, &mut reader.collector.warnings);
     }
     reader.material.numbers.ior = value;
     Ok(())

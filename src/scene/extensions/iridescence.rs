@@ -2,25 +2,21 @@
 
 use super::descriptor::{Extension, bit_if, factor};
 use crate::interface::{FEATURE_IRIDESCENCE, TEXTURE_IRIDESCENCE, TEXTURE_IRIDESCENCE_THICKNESS};
-use crate::scene::error::Problem;
 use crate::scene::material::Material;
 
 /// Its descriptor.
 pub const EXTENSION: Extension = Extension {
     name: "KHR_materials_iridescence",
     read: |reader| {
-        let ior = reader.fields.number("iridescenceIor", 1.3)?;
-        if ior < 1.0 {
-            let place = reader.fields.at("iridescenceIor");
-            return Err(Problem::invalid(place, "an index of refraction of at least 1", ior.to_string()));
-        }
+        let ior = reader.within("iridescenceIor", 1.3, 1.0..=f32::MAX)?;
         let thickest = reader.at_least_0("iridescenceThicknessMaximum", 400.0)?;
         let thickness = [reader.at_least_0("iridescenceThicknessMinimum", 100.0)?, thickest];
         reader.material.numbers.iridescence_factor = reader.unit("iridescenceFactor", 0.0)?;
         reader.material.numbers.iridescence_ior = ior;
         reader.material.numbers.iridescence_thickness_nm = thickness;
-        reader.texture("iridescenceTexture", TEXTURE_IRIDESCENCE)?;
-        reader.texture("iridescenceThicknessTexture", TEXTURE_IRIDESCENCE_THICKNESS)
+        reader.texture("iridescenceTexture", TEXTURE_IRIDESCENCE);
+        reader.texture("iridescenceThicknessTexture", TEXTURE_IRIDESCENCE_THICKNESS);
+        Ok(())
     },
     features: |material, _| {
         let [at_0, at_1] = material.numbers.iridescence_thickness_nm;

@@ -9,9 +9,10 @@ pub const EXTENSION: Extension = Extension {
     name: "KHR_materials_sheen",
     read: |reader| {
         reader.material.numbers.sheen_color = reader.unit_all("sheenColorFactor", [0.0; 3])?;
-        reader.material.numbers.sheen_roughness = reader.fields.roughness("sheenRoughnessFactor", 0.0)?;
-        reader.texture("sheenColorTexture", TEXTURE_SHEEN_COLOR)?;
-        reader.texture("sheenRoughnessTexture", TEXTURE_SHEEN_ROUGHNESS)
+        reader.material.numbers.sheen_roughness = reader.unit("sheenRoughnessFactor", 0.0)?;
+        reader.texture("sheenColorTexture", TEXTURE_SHEEN_COLOR);
+        reader.texture("sheenRoughnessTexture", TEXTURE_SHEEN_ROUGHNESS);
+        Ok(())
     },
     features: |material, _| bit_if(FEATURE_SHEEN, is_used(material)),
     factors: &[factor!(SheenColor, sheen_color).used(is_used), factor!(SheenRoughness, sheen_roughness).used(is_used)],

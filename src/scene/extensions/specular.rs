@@ -17,8 +17,9 @@ pub const EXTENSION: Extension = Extension {
         }
         reader.material.numbers.specular_factor = reader.unit("specularFactor", 1.0)?;
         reader.material.numbers.specular_color = reader.all_at_least_0("specularColorFactor", [1.0; 3])?;
-        reader.texture("specularTexture", TEXTURE_SPECULAR)?;
-        reader.texture("specularColorTexture", TEXTURE_SPECULAR_COLOR)
+        reader.texture("specularTexture", TEXTURE_SPECULAR);
+        reader.texture("specularColorTexture", TEXTURE_SPECULAR_COLOR);
+        Ok(())
     },
     features: |material, _| {
         let has_texture = material.has(TEXTURE_SPECULAR) || material.has(TEXTURE_SPECULAR_COLOR);

@@ -9,7 +9,8 @@ pub const EXTENSION: Extension = Extension {
     name: "KHR_materials_transmission",
     read: |reader| {
         reader.material.numbers.transmission_factor = reader.unit("transmissionFactor", 0.0)?;
-        reader.texture("transmissionTexture", TEXTURE_TRANSMISSION)
+        reader.texture("transmissionTexture", TEXTURE_TRANSMISSION);
+        Ok(())
     },
     features: |material, _| bit_if(FEATURE_TRANSMISSION, is_used(material)),
     factors: &[factor!(Transmission, transmission_factor).used(is_used)],

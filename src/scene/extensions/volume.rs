@@ -10,15 +10,16 @@ use crate::scene::material::Material;
 pub const EXTENSION: Extension = Extension {
     name: "KHR_materials_volume",
     read: |reader| {
-        let distance = reader.fields.number("attenuationDistance", f32::INFINITY)?;
-        if distance <= 0.0 {
-            let place = reader.fields.at("attenuationDistance");
-            return Err(Problem::invalid(place, "a distance above 0, in meters", distance.to_string()));
-        }
-        reader.material.numbers.attenuation_distance = distance;
+        let key = "attenuationDistance";
+        let distance = match reader.fields.number(key, f32::INFINITY)? {
+            distance if distance > 0.0 => Ok(distance),
+            other => Err(Problem::invalid(reader.fields.at(key), "a distance above 0, in meters", other.to_string())),
+        };
+        reader.material.numbers.attenuation_distance = reader.or_default(key, distance, f32::INFINITY);
         reader.material.numbers.thickness = reader.at_least_0("thicknessFactor", 0.0)?;
         reader.material.numbers.attenuation_color = reader.unit_all("attenuationColor", [1.0; 3])?;
-        reader.texture("thicknessTexture", TEXTURE_THICKNESS)
+        reader.texture("thicknessTexture", TEXTURE_THICKNESS);
+        Ok(())
     },
     features: |material, _| bit_if(FEATURE_VOLUME, is_seen(material)),
     factors: &[

@@ -42,17 +42,15 @@ struct Light {
     specular_images: Vec<Vec<usize>>,
 }
 
-/// The light that the shown scene names, if it can be used. `scene`: the number of the chosen scene, or else the file chooses.
+/// The light that a scene names, if it can be used.
 pub fn read(
     root: &json::Root,
     buffers: &Buffers<'_>,
     files: &mut Files<'_>,
-    scene: Option<usize>,
+    scene: usize,
     warnings: &mut Vec<String>,
 ) -> Option<Arc<ModelEnvironment>> {
-    let chosen = scene.filter(|index| *index < root.scenes.len());
-    let scene = root.scenes.get(chosen.or(root.scene.map(|index| index.value())).unwrap_or(0))?;
-    let used = scene.extensions.as_ref()?.others.get(EXTENSION)?;
+    let used = root.scenes.get(scene)?.extensions.as_ref()?.others.get(EXTENSION)?;
     let light = light(root, used).and_then(|light| environment(root, buffers, files, light));
     let say = |problem: String| {
         warnings.push(format!(
@@ -96,8 +94,8 @@ fn environment(
     })?;
     let encoded = indices.map(|index| images::find(root, buffers, files, Origin::Image(index))).into();
     let decoded = images::decode(encoded, files.canceled);
-    if let Some(failure) = decoded.iter().find_map(|face| face.failure.clone()) {
-        return Err(failure);
+    if let Some(failure) = decoded.iter().find_map(|face| face.failure.as_ref()) {
+        return Err(failure.reason.clone());
     }
     let faces: Vec<Image> = decoded.into_iter().map(|face| face.image).collect();
     let faces: [Image; 6] = faces.try_into().map_err(|_| "the load was canceled".to_owned())?;

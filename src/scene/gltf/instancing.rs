@@ -5,6 +5,7 @@ use gltf::json;
 use json::accessor::{ComponentType as C, Type};
 
 use super::geometry::accessor::{Format, Normalized as N, Reader};
+use super::left_out::{LeftOut, Part};
 use super::nodes::PlacedMesh;
 use super::place::place;
 use super::values;
@@ -13,24 +14,27 @@ use crate::scene::error::Problem;
 /// The extension's name.
 pub const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// Maximum number of instances of a scene, since each is drawn by itself.
-const MOST: usize = 1 << 16;
+/// Memory for the instances of a scene, MiB.
+const MOST_MIB: usize = 1024;
+/// Memory that an instance of a primitive takes at most while the model is loaded and shown, bytes: its matrices in doubles and floats, its
+/// place in the hierarchy and in a pose, its draw, its records on the device.
+const BYTES_EACH: usize = 1024;
+/// Maximum number of instances of primitives.
+const MOST: usize = (MOST_MIB << 20) / BYTES_EACH;
 
 const VECTOR: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No)] };
 const ROTATION: Format =
     Format { types: &[Type::Vec4], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
 
 /// Replaces each mesh of an instancing node by its instances.
-///
-/// # Errors
-/// The extension or an accessor of it is invalid.
 pub fn expand(
     reader: Reader<'_>,
     meshes: Vec<PlacedMesh>,
+    left_out: &mut LeftOut,
     warnings: &mut Vec<String>,
-) -> Result<Vec<PlacedMesh>, Problem> {
+) -> Vec<PlacedMesh> {
     let mut out = Vec::with_capacity(meshes.len());
-    let mut left_out = 0;
+    let (mut room, mut beyond) = (MOST, 0);
     for mesh in meshes {
         let node = &reader.root.nodes[mesh.node];
         let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION));
@@ -39,20 +43,27 @@ pub fn expand(
             continue;
         };
         let place = format!("{}.extensions.{EXTENSION}", place("nodes", mesh.node, node.name.as_deref()));
-        let instances = transforms(reader, &extension["attributes"], &place)?;
-        let room = MOST.saturating_sub(out.len()).min(instances.len());
-        left_out += instances.len() - room;
-        out.extend(instances[..room].iter().map(|instance| PlacedMesh {
+        let instances = transforms(reader, &extension["attributes"], &place);
+        let Some(instances) = left_out.unless(Part::INSTANCES, &place, instances) else {
+            out.push(mesh);
+            continue;
+        };
+        let primitives = reader.root.meshes[mesh.mesh].primitives.len().max(1);
+        let shown = instances.len().min(room / primitives);
+        room -= shown * primitives;
+        beyond += instances.len() - shown;
+        out.extend(instances[..shown].iter().map(|instance| PlacedMesh {
             name: mesh.name.clone(),
             world_from_object: mesh.world_from_object * *instance,
             node_from_object: Some(*instance),
             ..mesh
         }));
     }
-    if left_out > 0 {
-        warnings.push(format!("{EXTENSION} has more than {MOST} instances: {left_out} are left out."));
+    if beyond > 0 {
+        let full = format!("{MOST} instances of primitives take the {MOST_MIB} MiB that there are for them");
+        warnings.push(format!("{EXTENSION}: {full}; {beyond} more are left out. Export fewer of them."));
     }
-    Ok(out)
+    out
 }
 
 /// The transform of each instance, relative to its node.

@@ -6,6 +6,7 @@ mod environment;
 mod file;
 mod geometry;
 mod instancing;
+mod left_out;
 pub(super) mod materials;
 mod motion;
 mod nodes;
@@ -33,6 +34,7 @@ use self::geometry::accessor::Reader;
 use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
 pub use self::geometry::triangles::triangles;
+use self::left_out::{LeftOut, Part};
 use self::materials::{images, material, placeholder};
 use self::motion::raw::Raw;
 use self::motion::{animations, pointers, skins};
@@ -85,23 +87,30 @@ fn build(
     start: Instant,
 ) -> Result<Model, Problem> {
     let container::Document { mut root, raw, bin, mut warnings } = container::parse(bytes)?;
-    let mut buffers = Buffers::load(&root, bin, &mut files)?;
-    warnings.extend(compression::decode(&mut root, &mut buffers, files.canceled)?);
+    let mut left_out = LeftOut::default();
+    let mut buffers = Buffers::load(&root, bin, &mut files, &mut left_out)?;
+    compression::decode(&mut root, &mut buffers, &mut left_out, files.canceled)?;
     let reader = Reader { root: &root, buffers: &buffers };
-    let environment = environment::read(&root, &buffers, &mut files, scene, &mut warnings);
+    let scene_index = nodes::chosen_scene(&root, scene);
+    let environment = environment::read(&root, &buffers, &mut files, scene_index, &mut warnings);
     let mut scene = nodes::walk(&root, scene, &pointers::switched_nodes(&raw.animations))?;
-    let weights = skins::attach(reader, &raw, &mut scene)?;
-    let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut scene.warnings);
-    scene.meshes = instancing::expand(reader, scene.meshes, &mut scene.warnings)?;
-    let material::Materials { materials, textures, images, warnings: material_warnings } = material::read(&root)?;
-    let variants = variants::names(&root, &mut warnings)?;
+    let weights = skins::attach(reader, &raw, &mut scene);
+    left_out.append(std::mem::take(&mut scene.left_out));
+    let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut left_out);
+    scene.meshes = instancing::expand(reader, scene.meshes, &mut left_out, &mut scene.warnings);
+    let material::Materials { materials, textures, images, warnings: material_warnings } =
+        material::read(&root, &mut left_out);
+    let variants = variants::names(&root, &mut warnings);
+    let variants = left_out.unless(Part::VARIANTS, "extensions", variants).unwrap_or_default();
+    let meshes = read_meshes(reader, &raw, &scene, &materials, variants.len(), &mut left_out)?;
     let encoded: Vec<images::Encoded<'_>> =
         images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
-    let meshes = read_meshes(reader, &raw, &scene, &materials, variants.len())?;
     warnings.append(&mut scene.warnings);
     warnings.extend(material_warnings);
+    warnings.extend(left_out.warnings());
     let contents = Contents {
-        scenes: root.scenes.len(),
+        scenes: root.scenes.iter().map(|scene| scene.name.clone().unwrap_or_default()).collect(),
+        scene: scene_index,
         meshes: root.meshes.len(),
         animations: root.animations.iter().map(|clip| clip.name.clone().unwrap_or_default()).collect(),
         skins: root.skins.len(),
@@ -183,12 +192,16 @@ fn assemble(
 type Meshes = Vec<(usize, Vec<Geometry>)>;
 
 /// Reads every mesh that the scene uses, once each.
+///
+/// # Errors
+/// All primitives are left out.
 fn read_meshes(
     reader: Reader<'_>,
     raw: &Raw,
     scene: &nodes::Scene,
     materials: &[Material],
     variants: usize,
+    left_out: &mut LeftOut,
 ) -> Result<Meshes, Problem> {
     let mut used: Vec<usize> = scene.meshes.iter().map(|placed| placed.mesh).collect();
     used.sort_unstable();
@@ -200,9 +213,18 @@ fn read_meshes(
     }
     let read = |index| {
         let motion = (raw.mesh(index), joints.get(&index).copied());
-        Ok((index, mesh::read(reader, index, materials, variants, motion)?))
+        (index, mesh::read(reader, index, materials, variants, motion))
     };
-    used.into_par_iter().map(read).collect()
+    let read: Vec<(usize, (Vec<Geometry>, LeftOut))> = used.into_par_iter().map(read).collect();
+    let mut meshes = Vec::with_capacity(read.len());
+    for (index, (geometries, of_mesh)) in read {
+        left_out.append(of_mesh);
+        meshes.push((index, geometries));
+    }
+    match meshes.iter().all(|(_, geometries)| geometries.is_empty()) {
+        true => std::mem::take(left_out).into_cause().map_or(Ok(meshes), Err),
+        false => Ok(meshes),
+    }
 }
 
 fn finish_meshes(mut meshes: Meshes, materials: &[Material], canceled: Canceled<'_>) -> Meshes {

@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3, Mat4, Quat, Vec3};
 use gltf::json;
 use json::extensions::scene::khr_lights_punctual as punctual;
 
+use super::left_out::{LeftOut, Part};
 use super::objects::{read_lens, read_light};
 use super::place::{get, out_of_range, place};
 use crate::scene::error::Problem;
@@ -34,6 +35,8 @@ pub struct Scene {
     pub rig: Rig,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
+    /// Parts that cannot be used.
+    pub left_out: LeftOut,
 }
 
 /// A mesh in the world.
@@ -60,6 +63,12 @@ struct Hierarchy {
     children: Vec<Vec<usize>>,
     /// How many parents each node has.
     parents: Vec<usize>,
+}
+
+/// The index of the scene to show: the chosen one, or else that of the file, or the first.
+pub fn chosen_scene(root: &json::Root, chosen: Option<usize>) -> usize {
+    let chosen = chosen.filter(|index| *index < root.scenes.len());
+    chosen.or(root.scene.map(|index| index.value())).unwrap_or_default()
 }
 
 /// Walks the chosen scene, or else the default scene, or the first scene, or all nodes without a parent. Meshes and lights of hidden nodes are left
@@ -104,7 +113,7 @@ pub fn walk(root: &json::Root, chosen: Option<usize>, switched: &HashSet<usize>)
             is_hidden: hides,
             weights,
         });
-        scene.add(root, node, (index, at), &world_from_object, &place)?;
+        scene.add(root, node, (index, at), &world_from_object, &place);
         let children = hierarchy.children[index].iter().rev();
         stack.extend(children.map(|child| (*child, Some(at), world_from_object, is_hidden)));
     }
@@ -117,7 +126,7 @@ pub fn walk(root: &json::Root, chosen: Option<usize>, switched: &HashSet<usize>)
             _ => format!("none that is seen, since {VISIBILITY} hides {hidden} nodes with all below them"),
         };
         let found = format!("{} nodes, {} meshes in the file, {left}", root.nodes.len(), root.meshes.len());
-        return Err(Problem::NothingToDraw { found });
+        return Err(scene.left_out.into_cause().unwrap_or(Problem::NothingToDraw { found }));
     }
     Ok(scene)
 }
@@ -257,19 +266,13 @@ pub fn local_transform(
 }
 
 impl Scene {
-    fn add(
-        &mut self,
-        root: &json::Root,
-        node: &json::Node,
-        (index, at): (usize, usize),
-        world: &DMat4,
-        place: &str,
-    ) -> Result<(), Problem> {
+    fn add(&mut self, root: &json::Root, node: &json::Node, (index, at): (usize, usize), world: &DMat4, place: &str) {
         let name: Arc<str> = node.name.as_deref().unwrap_or_default().into();
         let is_shown = !self.last_node().is_hidden;
-        if let Some(mesh) = node.mesh.filter(|_| is_shown) {
-            let named = get(&root.meshes, mesh, place, "meshes")?.name.clone().unwrap_or_default();
-            self.last_node().mesh = Some(named);
+        let found =
+            node.mesh.filter(|_| is_shown).map(|mesh| get(&root.meshes, mesh, place, "meshes").map(|of| (mesh, of)));
+        if let Some((mesh, of_file)) = found.and_then(|found| self.left_out.unless(Part::MESH, place, found)) {
+            self.last_node().mesh = Some(of_file.name.clone().unwrap_or_default());
             self.meshes.push(PlacedMesh {
                 mesh: mesh.value(),
                 node: index,
@@ -280,9 +283,11 @@ impl Scene {
                 skin: None,
             });
         }
-        if let Some(camera) = node.camera {
-            let lens = read_lens(get(&root.cameras, camera, place, "cameras")?, camera.value())?;
-            let source = camera.value();
+        let found = node.camera.map(|camera| {
+            let of_file = get(&root.cameras, camera, place, "cameras")?;
+            Ok((camera.value(), read_lens(of_file, camera.value())?))
+        });
+        if let Some((source, lens)) = found.and_then(|found| self.left_out.unless(Part::CAMERA, place, found)) {
             let own = root.cameras[source].name.as_deref().filter(|name| !name.is_empty());
             let (name, eye) = (own.map_or(name, Arc::from), Vec3::ZERO);
             let number = self.cameras.len();
@@ -292,17 +297,17 @@ impl Scene {
             self.rig.cameras.push((at, source));
         }
         let extensions = node.extensions.as_ref().filter(|_| is_shown);
-        if let Some(light) = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
+        let found = extensions.and_then(|extensions| extensions.khr_lights_punctual.as_ref()).map(|light| {
             let lights: &[punctual::Light] = root.as_ref();
-            let source = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
-            let light_index = light.light.value();
-            let light = read_light(source, light_index, world, &mut self.warnings)?;
+            let of_file = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
+            Ok((light.light.value(), read_light(of_file, light.light.value(), world, &mut self.warnings)?))
+        });
+        if let Some((light_index, light)) = found.and_then(|found| self.left_out.unless(Part::LIGHT, place, found)) {
             let number = self.lights.len();
             self.last_node().light = Some(number);
             self.lights.push((light, world.w_axis.truncate()));
             self.rig.lights.push((at, light_index));
         }
-        Ok(())
     }
 
     /// The node that is being added.

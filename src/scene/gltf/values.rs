@@ -1,4 +1,4 @@
-//! Checks numbers: one that is not finite or makes no sense is an error, and one outside its range is clamped with a warning.
+//! Checks numbers: one that is not finite is an error, and one outside its range is clamped with a warning.
 //! Also reads the raw JSON of extensions that the parser does not know.
 
 use std::ops::RangeInclusive;
@@ -18,22 +18,13 @@ pub fn finite(value: f32, place: &str) -> Result<f32, Problem> {
     if value.is_finite() { Ok(value) } else { Err(Problem::invalid(place, "a finite number", value.to_string())) }
 }
 
-/// Clamps a number to its range, with a warning.
-pub fn clamp(value: f32, range: RangeInclusive<f32>, place: &str, warnings: &mut Vec<String>) -> Result<f32, Problem> {
-    let clamped = finite(value, place)?.clamp(*range.start(), *range.end());
+/// Clamps a number to its range, with a warning. JSON has no NaN.
+pub fn clamp(value: f32, range: RangeInclusive<f32>, place: &str, warnings: &mut Vec<String>) -> f32 {
+    let clamped = value.clamp(*range.start(), *range.end());
     if clamped != value {
         warnings.push(format!("{place} is {value}, outside of its range: {clamped} is used."));
     }
-    Ok(clamped)
-}
-
-/// Checks a roughness or glossiness. A value outside 0..1 is an error and not clamped, since it probably has another unit
-/// (an exponent, an angle).
-pub fn roughness(value: f32, place: &str) -> Result<f32, Problem> {
-    match finite(value, place)? {
-        value @ 0.0..=1.0 => Ok(value),
-        value => Err(Problem::invalid(place, "a number of 0 to 1", value.to_string())),
-    }
+    clamped
 }
 
 /// An object of raw JSON with its path.
@@ -102,7 +93,7 @@ impl<'a> Fields<'a> {
         range: RangeInclusive<f32>,
         warnings: &mut Vec<String>,
     ) -> Result<f32, Problem> {
-        clamp(self.number(key, default)?, range, &self.at(key), warnings)
+        Ok(clamp(self.number(key, default)?, range, &self.at(key), warnings))
     }
 
     /// Numbers in a range, as [`clamp`].
@@ -115,14 +106,9 @@ impl<'a> Fields<'a> {
     ) -> Result<[f32; N], Problem> {
         let mut numbers = self.numbers(key, default)?;
         for number in &mut numbers {
-            *number = clamp(*number, range.clone(), &self.at(key), warnings)?;
+            *number = clamp(*number, range.clone(), &self.at(key), warnings);
         }
         Ok(numbers)
-    }
-
-    /// As [`roughness`].
-    pub fn roughness(&self, key: &str, default: f32) -> Result<f32, Problem> {
-        roughness(self.number(key, default)?, &self.at(key))
     }
 
     /// A required index.

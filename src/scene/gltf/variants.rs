@@ -37,7 +37,9 @@ pub fn mapping(
     let Some(others) = primitive.extensions.as_ref().map(|extensions| &extensions.others) else {
         return Ok(Vec::new());
     };
-    let Some(fields) = Fields::open(others, NAME, &format!("{place}.extensions"))? else { return Ok(Vec::new()) };
+    // Without variants, which may be left out, mappings are for nobody.
+    let fields = if variants > 0 { Fields::open(others, NAME, &format!("{place}.extensions"))? } else { None };
+    let Some(fields) = fields else { return Ok(Vec::new()) };
     let mut mapping = Vec::new();
     for (index, entry) in list(&fields, "mappings")?.iter().enumerate() {
         let place = format!("{}[{index}]", fields.at("mappings"));

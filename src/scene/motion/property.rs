@@ -13,6 +13,12 @@ pub enum Property {
     Emission(usize),
     /// Strength and angle in radians of a material's anisotropy.
     Anisotropy(usize),
+    /// Glossiness of a material that has it in place of roughness.
+    Glossiness(usize),
+    /// Scale of the clear coat's normal texture.
+    CoatNormalScale(usize),
+    /// Thickness of the thin film where its texture is 0, nanometers.
+    ThinnestFilm(usize),
     /// Another factor of a material.
     Factor(usize, Factor),
     /// The transform of a material's texture, `interface::TEXTURE_*`: offset, rotation in radians, scale.
@@ -36,6 +42,9 @@ impl Property {
             Self::BaseColor(index)
             | Self::Emission(index)
             | Self::Anisotropy(index)
+            | Self::Glossiness(index)
+            | Self::CoatNormalScale(index)
+            | Self::ThinnestFilm(index)
             | Self::Factor(index, _)
             | Self::Texture(index, _) => Some(index),
             Self::Light(_) | Self::Range(_) | Self::Cone(_) | Self::Fovy(_) | Self::Height(_) => None,

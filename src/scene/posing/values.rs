@@ -39,6 +39,12 @@ fn move_material(material: &mut Material, value: &Values) {
             material.numbers.anisotropy_strength = value.at(0).clamp(0.0, 1.0);
             material.numbers.anisotropy_rotation = [cos, sin];
         }
+        Property::Glossiness(_) if material.specular_glossiness => {
+            material.numbers.roughness_factor = value.at(0).clamp(0.0, 1.0);
+        }
+        Property::Glossiness(_) => {}
+        Property::CoatNormalScale(_) => material.numbers.clearcoat_normal_scale = value.at(0),
+        Property::ThinnestFilm(_) => material.numbers.iridescence_thickness_nm[0] = value.at(0).max(0.0),
         Property::Factor(_, factor) => set_factor(material, factor, value),
         Property::Texture(_, slot) => {
             let [u, v, angle, width, height] = [0, 1, 2, 3, 4].map(|number| value.at(number));

@@ -126,6 +126,40 @@ fn a_uri_with_a_scheme() {
     render(directory.path(), "bad.gltf", &[]).expect(1, &["bad.gltf", "https:"]);
 }
 
+/// The mesh whose buffer is missing is left out with a warning, and the picture is that of the rest.
+#[test]
+fn a_missing_buffer_costs_its_meshes_alone() {
+    let directory = directory();
+    let (mut json, bin) = document();
+    fs::write(directory.path().join("rest.glb"), glb::container(&json, &bin)).unwrap();
+    let accessors = json["accessors"].as_array().unwrap().clone();
+    let views = json["bufferViews"].as_array().unwrap().len();
+    for (index, mut accessor) in accessors.iter().cloned().enumerate() {
+        let mut view = json["bufferViews"][index].clone();
+        (view["buffer"], accessor["bufferView"]) = (json!(1), json!(views + index));
+        json["bufferViews"].as_array_mut().unwrap().push(view);
+        json["accessors"].as_array_mut().unwrap().push(accessor);
+    }
+    let mut gone = json["meshes"][0].clone();
+    gone["name"] = json!("gone");
+    for accessor in gone["primitives"][0]["attributes"].as_object_mut().unwrap().values_mut() {
+        *accessor = json!(accessor.as_u64().unwrap() as usize + accessors.len());
+    }
+    json["meshes"].as_array_mut().unwrap().push(gone);
+    json["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": bin.len(), "uri": "gone.bin" }));
+    json["nodes"].as_array_mut().unwrap().push(json!({ "mesh": 1, "translation": [0.5, 0.0, 1.0] }));
+    json["scenes"][0]["nodes"] = json!([0, 1]);
+    fs::write(directory.path().join("whole.glb"), glb::container(&json, &bin)).unwrap();
+    let picture = |name: &str, words: &[&str]| {
+        render(directory.path(), name, &[]).expect(0, words);
+        open_image(&directory.path().join("out.png")).into_rgba8()
+    };
+    let words = ["warning: whole", "meshes[1] \"gone\".primitives[0]", "gone.bin", "left out. Put it there or export"];
+    assert!(picture("whole.glb", &words) == picture("rest.glb", &[]), "the rest looks different");
+    fs::write(directory.path().join("gone.bin"), &bin).unwrap();
+    assert!(picture("whole.glb", &[]) != picture("rest.glb", &[]), "the mesh is never shown");
+}
+
 #[test]
 fn a_path_out_of_the_models_folder() {
     let directory = directory();

@@ -79,6 +79,43 @@ fn a_second_drop_opens_its_own_file_whatever_the_first_said_late() {
 }
 
 #[test]
+fn the_scenes_of_a_file_are_shown_by_command_and_palette() {
+    let tree = Tree::new();
+    let model = tree.beside("scenes.glb");
+    let (mut json, bin) = glb::document(&glb::quad(1.0), &glb::gray());
+    json["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0, "translation": [9, 0, 0], "rotation": [0, 0.3, 0, 0.954] }, {}]);
+    json["scenes"] = json!([{ "nodes": [0] }, { "name": "turned", "nodes": [1] }, { "name": "empty", "nodes": [2] }]);
+    std::fs::write(&model, glb::container(&json, &bin)).unwrap();
+    let mut viewer = Viewer::driven(tree, &["scenes.glb"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    viewer.running.done(json!({"command": "scene", "number": 1}));
+    let turned = viewer.screenshot();
+    assert!(turned != first, "the scene is the same");
+    // It is framed, wherever it is.
+    assert!(turned.pixels().any(|pixel| pixel != turned.get_pixel(0, 0)), "an empty picture");
+    let refused = viewer.running.refused(json!({"command": "scene", "number": 3}));
+    assert!(refused.contains("there is no scene 3: the model's file has 3"), "{refused}");
+    // One that cannot be shown leaves the one on screen, which is also shown when the file is read again.
+    let refused = viewer.running.refused(json!({"command": "scene", "number": 2}));
+    assert!(refused.contains("nothing to draw"), "{refused}");
+    assert!(viewer.screenshot() == turned, "a scene without meshes changed the picture");
+    json["nodes"][1]["scale"] = json!([1.0, 0.5, 1.0]);
+    std::fs::write(&model, glb::container(&json, &bin)).unwrap();
+    viewer.until("the scene of the file as it was saved", |shot| *shot != turned);
+    json["nodes"][1].as_object_mut().unwrap().remove("scale");
+    std::fs::write(&model, glb::container(&json, &bin)).unwrap();
+    viewer.until("the scene as before", |shot| *shot == turned);
+    viewer.running.done(json!({"command": "open", "model": "sphere-grid"}));
+    viewer.running.done(json!({"command": "open", "model": model}));
+    assert!(viewer.screenshot() == first, "another file has not ended the choice of a scene");
+    viewer.running.done(json!({"command": "run", "entry": "Scene: turned"}));
+    viewer.until("the scene that the palette shows", |shot| *shot == turned);
+    viewer.running.end_input();
+    viewer.quit();
+}
+
+#[test]
 fn a_model_is_added_beside_and_an_undo_takes_it_away() {
     let tree = Tree::new();
     let (model, bad) = (tree.beside("second.glb"), tree.beside("bad.glb"));

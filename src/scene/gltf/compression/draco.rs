@@ -14,6 +14,7 @@ use serde::Deserialize;
 use super::stream::{MAX_DECODED_BYTES, add_buffer, failed, spend};
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
+use crate::scene::gltf::left_out::LeftOut;
 use crate::scene::gltf::place::place;
 use crate::scene::load_options::Canceled;
 
@@ -33,7 +34,6 @@ struct Stream {
     mesh: usize,
     primitive: usize,
     place: String,
-    compressed: Compressed,
 }
 
 /// A decoded primitive.
@@ -50,24 +50,31 @@ pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
     budget: &mut u64,
-    warnings: &mut Vec<String>,
+    left_out: &mut LeftOut,
     canceled: Canceled<'_>,
-) -> Result<(), Problem> {
-    let streams = streams(root, budget)?;
-    let decoded: Vec<_> = streams
-        .par_iter()
-        .map(|stream| if canceled() { Err(Problem::Canceled) } else { stream.decode(root, buffers) })
-        .collect();
-    for (stream, decoded) in streams.iter().zip(decoded) {
+) {
+    let decode = |(stream, compressed): (Stream, Result<Compressed, Problem>)| {
+        let decoded = match compressed {
+            _ if canceled() => Err(Problem::Canceled),
+            Ok(compressed) => stream.decode(&compressed, root, buffers),
+            Err(problem) => Err(problem),
+        };
+        (stream, decoded)
+    };
+    let decoded: Vec<_> = streams(root, budget).into_par_iter().map(decode).collect();
+    for (stream, decoded) in decoded {
         match decoded {
             Ok(decoded) => stream.replace(decoded, root, buffers),
-            Err(problem) => failed(root, EXTENSION, problem, warnings)?,
+            Err(problem) => {
+                if let Some(problem) = failed(root, EXTENSION, &stream.place, problem, left_out) {
+                    stream.lose(problem, root, buffers);
+                }
+            }
         }
     }
-    Ok(())
 }
 
-fn streams(root: &json::Root, budget: &mut u64) -> Result<Vec<Stream>, Problem> {
+fn streams(root: &json::Root, budget: &mut u64) -> Vec<(Stream, Result<Compressed, Problem>)> {
     let mut streams = Vec::new();
     for (mesh_index, mesh) in root.meshes.iter().enumerate() {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
@@ -75,15 +82,15 @@ fn streams(root: &json::Root, budget: &mut u64) -> Result<Vec<Stream>, Problem> 
             let Some(value) = extension else { continue };
             let mesh = place("meshes", mesh_index, mesh.name.as_deref());
             let place = format!("{mesh}.primitives[{index}].extensions.{EXTENSION}");
-            let compressed = json::deserialize::from_value(value.clone())
-                .map_err(|error| Problem::invalid(&place, "a compressed primitive", error.to_string()))?;
             let accessors = primitive.attributes.values().chain(&primitive.indices);
             let bytes = accessors.filter_map(|accessor| root.accessors.get(accessor.value())).map(claimed_bytes);
-            spend(budget, bytes.sum(), &place)?;
-            streams.push(Stream { mesh: mesh_index, primitive: index, place, compressed });
+            let compressed = json::deserialize::from_value(value.clone())
+                .map_err(|error| Problem::invalid(&place, "a compressed primitive", error.to_string()))
+                .and_then(|compressed: Compressed| spend(budget, bytes.sum(), &place).map(|()| compressed));
+            streams.push((Stream { mesh: mesh_index, primitive: index, place }, compressed));
         }
     }
-    Ok(streams)
+    streams
 }
 
 /// Bytes of an accessor's elements, tightly packed; `None` if they do not fit 64 bits.
@@ -103,9 +110,9 @@ fn format(accessor: &Accessor) -> Option<(Type, C)> {
 }
 
 impl Stream {
-    fn decode(&self, root: &json::Root, buffers: &Buffers<'_>) -> Result<Decoded, Problem> {
+    fn decode(&self, compressed: &Compressed, root: &json::Root, buffers: &Buffers<'_>) -> Result<Decoded, Problem> {
         let primitive = &root.meshes[self.mesh].primitives[self.primitive];
-        let source = buffers.view(root, self.compressed.buffer_view, &self.place)?;
+        let source = buffers.view(root, compressed.buffer_view, &self.place)?;
         let limits =
             DecodeLimits::default().with_max_decoded_bytes(MAX_DECODED_BYTES).with_max_faces(MAX_DECODED_BYTES / 12);
         let mut mesh = Mesh::new();
@@ -116,7 +123,7 @@ impl Stream {
         let mut attributes = Vec::new();
         for (semantic, accessor) in &primitive.attributes {
             let name = semantic.to_string();
-            let Some(&id) = self.compressed.attributes.get(&name) else { continue };
+            let Some(&id) = compressed.attributes.get(&name) else { continue };
             let stored = mesh.attribute_by_unique_id(id).ok_or_else(|| {
                 Problem::invalid(&self.place, format!("an attribute {id} in the stream ({name})"), "none")
             })?;
@@ -131,46 +138,65 @@ impl Stream {
 
     /// Points the primitive to accessors that hold the decoded data.
     fn replace(&self, decoded: Decoded, root: &mut json::Root, buffers: &mut Buffers<'_>) {
-        let add = |root: &mut json::Root, buffers: &mut Buffers<'_>, bytes: Vec<u8>, accessor: Accessor| {
-            let byte_length = USize64::from(bytes.len());
-            let buffer = add_buffer(root, buffers, bytes);
-            let view = root.push(View {
-                buffer,
-                byte_length,
-                byte_offset: None,
-                byte_stride: None,
-                name: None,
-                target: None,
-                extensions: None,
-                extras: json::Extras::default(),
-            });
-            root.push(Accessor { buffer_view: Some(view), byte_offset: None, ..accessor })
-        };
         for (semantic, bytes) in decoded.attributes {
             let old = root.meshes[self.mesh].primitives[self.primitive].attributes[&semantic];
             let accessor = Accessor { count: USize64::from(decoded.vertices), ..root.accessors[old.value()].clone() };
-            let new = add(root, buffers, bytes, accessor);
+            let new = add(root, buffers, Ok(bytes), accessor);
             root.meshes[self.mesh].primitives[self.primitive].attributes.insert(semantic, new);
         }
-        let accessor = Accessor {
-            buffer_view: None,
-            byte_offset: None,
-            count: USize64::from(decoded.indices.len()),
-            component_type: Checked::Valid(GenericComponentType(C::U32)),
-            extensions: None,
-            extras: json::Extras::default(),
-            type_: Checked::Valid(Type::Scalar),
-            min: None,
-            max: None,
-            name: None,
-            normalized: false,
-            sparse: None,
-        };
         let bytes = decoded.indices.iter().flat_map(|index| index.to_le_bytes()).collect();
-        let indices = add(root, buffers, bytes, accessor);
+        let indices = add(root, buffers, Ok(bytes), plain(Type::Scalar, C::U32, decoded.indices.len()));
         let primitive = &mut root.meshes[self.mesh].primitives[self.primitive];
         // A stream holds triangles, whatever the mode says.
         (primitive.indices, primitive.mode) = (Some(indices), Checked::Valid(Mode::Triangles));
+    }
+
+    /// Points the primitive to positions that cannot be read. Its own accessors have no data, and would be read as zeros.
+    fn lose(&self, problem: Problem, root: &mut json::Root, buffers: &mut Buffers<'_>) {
+        let positions = add(root, buffers, Err(problem), plain(Type::Vec3, C::F32, 1));
+        let primitive = &mut root.meshes[self.mesh].primitives[self.primitive];
+        primitive.attributes = [(Checked::Valid(Semantic::Positions), positions)].into();
+        primitive.indices = None;
+    }
+}
+
+/// Adds an accessor whose data are these bytes. Returns its index.
+fn add(
+    root: &mut json::Root,
+    buffers: &mut Buffers<'_>,
+    bytes: Result<Vec<u8>, Problem>,
+    accessor: Accessor,
+) -> json::Index<Accessor> {
+    let byte_length = USize64::from(bytes.as_ref().map_or(0, Vec::len));
+    let buffer = add_buffer(root, buffers, bytes);
+    let view = root.push(View {
+        buffer,
+        byte_length,
+        byte_offset: None,
+        byte_stride: None,
+        name: None,
+        target: None,
+        extensions: None,
+        extras: json::Extras::default(),
+    });
+    root.push(Accessor { buffer_view: Some(view), byte_offset: None, ..accessor })
+}
+
+/// An accessor of tightly packed elements.
+fn plain(kind: Type, component: C, count: usize) -> Accessor {
+    Accessor {
+        buffer_view: None,
+        byte_offset: None,
+        count: USize64::from(count),
+        component_type: Checked::Valid(GenericComponentType(component)),
+        extensions: None,
+        extras: json::Extras::default(),
+        type_: Checked::Valid(kind),
+        min: None,
+        max: None,
+        name: None,
+        normalized: false,
+        sparse: None,
     }
 }
 

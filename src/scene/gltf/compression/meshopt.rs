@@ -9,6 +9,7 @@ use serde::Deserialize;
 use super::stream::{MAX_DECODED_BYTES, add_buffer, failed, spend};
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
+use crate::scene::gltf::left_out::LeftOut;
 use crate::scene::gltf::place::place;
 use crate::scene::load_options::Canceled;
 
@@ -49,12 +50,12 @@ enum Filter {
     Color,
 }
 
-/// A compressed view: its index, the extension that describes it, the place in messages.
+/// A compressed view: its index, the extension that describes it, the place in messages, what the extension says.
 struct Stream {
     view: usize,
     extension: &'static str,
     place: String,
-    compressed: Compressed,
+    compressed: Result<Compressed, Problem>,
 }
 
 /// Decodes all compressed buffer views, each into a buffer of its own.
@@ -62,57 +63,63 @@ pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
     budget: &mut u64,
-    warnings: &mut Vec<String>,
+    left_out: &mut LeftOut,
     canceled: Canceled<'_>,
-) -> Result<(), Problem> {
-    let streams = streams(root, budget)?;
-    let decoded: Vec<_> = streams
-        .par_iter()
-        .map(|stream| if canceled() { Err(Problem::Canceled) } else { stream.decode(root, buffers) })
-        .collect();
-    for (stream, decoded) in streams.iter().zip(decoded) {
-        let bytes = match decoded {
-            Ok(bytes) => bytes,
-            Err(problem) => {
-                failed(root, stream.extension, problem, warnings)?;
-                continue;
+) {
+    let decode = |Stream { view, extension, place, compressed }: Stream| {
+        let decoded = match compressed {
+            _ if canceled() => Err(Problem::Canceled),
+            Ok(compressed) => {
+                let is_vertices = matches!(compressed.mode, Mode::Attributes);
+                let stride = is_vertices.then_some(json::buffer::Stride(compressed.byte_stride as usize));
+                compressed.decode(root, buffers, &place).map(|bytes| (bytes, stride))
             }
+            Err(problem) => Err(problem),
         };
-        let byte_length = USize64::from(bytes.len());
+        (view, extension, place, decoded)
+    };
+    let decoded: Vec<_> = streams(root, budget).into_par_iter().map(decode).collect();
+    for (view, extension, place, decoded) in decoded {
+        let (bytes, stride) = match decoded {
+            Ok((bytes, stride)) => (Ok(bytes), stride),
+            Err(problem) => match failed(root, extension, &place, problem, left_out) {
+                Some(problem) => (Err(problem), None),
+                None => continue,
+            },
+        };
+        let byte_length = USize64::from(bytes.as_ref().map_or(0, Vec::len));
         let buffer = add_buffer(root, buffers, bytes);
-        let view = &mut root.buffer_views[stream.view];
+        let view = &mut root.buffer_views[view];
         (view.buffer, view.byte_offset, view.byte_length) = (buffer, None, byte_length);
-        if matches!(stream.compressed.mode, Mode::Attributes) {
-            view.byte_stride = Some(json::buffer::Stride(stream.compressed.byte_stride as usize));
-        }
+        view.byte_stride = stride.or(view.byte_stride);
     }
-    Ok(())
 }
 
-fn streams(root: &json::Root, budget: &mut u64) -> Result<Vec<Stream>, Problem> {
+fn streams(root: &json::Root, budget: &mut u64) -> Vec<Stream> {
     let mut streams = Vec::new();
     for (index, view) in root.buffer_views.iter().enumerate() {
         let others = view.extensions.as_ref().map(|extensions| &extensions.others);
         let named = others.and_then(|others| [KHR, EXT].into_iter().find_map(|name| Some((name, others.get(name)?))));
         let Some((extension, value)) = named else { continue };
         let place = format!("{}.extensions.{extension}", place("bufferViews", index, view.name.as_deref()));
-        let compressed: Compressed = json::deserialize::from_value(value.clone())
-            .map_err(|error| Problem::invalid(&place, "a compressed buffer view", error.to_string()))?;
-        spend(budget, compressed.count.checked_mul(compressed.byte_stride), &place)?;
+        let compressed = json::deserialize::from_value(value.clone())
+            .map_err(|error| Problem::invalid(&place, "a compressed buffer view", error.to_string()))
+            .and_then(|compressed: Compressed| {
+                spend(budget, compressed.count.checked_mul(compressed.byte_stride), &place).map(|()| compressed)
+            });
         streams.push(Stream { view: index, extension, place, compressed });
     }
-    Ok(streams)
+    streams
 }
 
-impl Stream {
-    fn decode(&self, root: &json::Root, buffers: &Buffers<'_>) -> Result<Vec<u8>, Problem> {
-        let Compressed { buffer, byte_offset, byte_length, byte_stride, count, mode, filter } = self.compressed;
-        let source = buffers.range(root, buffer, byte_offset, byte_length, &self.place)?;
+impl Compressed {
+    fn decode(self, root: &json::Root, buffers: &Buffers<'_>, place: &str) -> Result<Vec<u8>, Problem> {
+        let Self { buffer, byte_offset, byte_length, byte_stride, count, mode, filter } = self;
+        let source = buffers.range(root, buffer, byte_offset, byte_length, place)?;
         // `spend` has limited the product.
         let (count, stride) = (count as usize, byte_stride as usize);
         let mut workspace = Workspace::new(Limits { max_bytes: MAX_DECODED_BYTES as usize, ..Limits::default() });
-        let damaged =
-            |error: meshoptimizer_rs::Error| Problem::invalid(&self.place, "a valid stream", error.to_string());
+        let damaged = |error: meshoptimizer_rs::Error| Problem::invalid(place, "a valid stream", error.to_string());
         let mut bytes = match mode {
             Mode::Attributes => codec::decode_vertex_buffer(count, stride, source, &mut workspace),
             Mode::Triangles => codec::decode_index_buffer(count, stride, source, &mut workspace),

@@ -7,24 +7,26 @@ mod stream;
 use gltf::json;
 
 use super::file::buffers::Buffers;
+use super::left_out::LeftOut;
 use crate::scene::error::Problem;
 use crate::scene::load_options::Canceled;
 
 /// The extensions that this module decodes.
 pub const EXTENSIONS: [&str; 3] = [draco::EXTENSION, meshopt::KHR, meshopt::EXT];
 
-/// Decodes all streams. If a stream that the file does not require cannot be decoded, the uncompressed data remains, with a warning.
+/// Decodes all streams. One that is damaged or decodes to too much data costs the parts that lie in it, unless the file has them
+/// uncompressed as well.
 ///
 /// # Errors
-/// A required stream is damaged or decodes to too much data, or the load was canceled.
+/// The load was canceled.
 pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
+    left_out: &mut LeftOut,
     canceled: Canceled<'_>,
-) -> Result<Vec<String>, Problem> {
+) -> Result<(), Problem> {
     let mut budget = stream::MAX_DECODED_BYTES;
-    let mut warnings = Vec::new();
-    meshopt::decode(root, buffers, &mut budget, &mut warnings, canceled)?;
-    draco::decode(root, buffers, &mut budget, &mut warnings, canceled)?;
-    Ok(warnings)
+    meshopt::decode(root, buffers, &mut budget, left_out, canceled);
+    draco::decode(root, buffers, &mut budget, left_out, canceled);
+    if canceled() { Err(Problem::Canceled) } else { Ok(()) }
 }

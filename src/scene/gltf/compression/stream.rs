@@ -5,6 +5,7 @@ use json::validation::USize64;
 
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
+use crate::scene::gltf::left_out::{LeftOut, Part};
 
 /// Maximum number of bytes that the compressed streams of a file may decode to.
 pub const MAX_DECODED_BYTES: u64 = 1 << 30;
@@ -22,20 +23,29 @@ pub fn spend(budget: &mut u64, bytes: Option<u64>, place: &str) -> Result<(), Pr
     Ok(())
 }
 
-/// The error of a stream that the file requires; a warning otherwise, since the file has uncompressed data as well.
-pub fn failed(root: &json::Root, extension: &str, problem: Problem, warnings: &mut Vec<String>) -> Result<(), Problem> {
-    match problem {
-        Problem::Invalid { place, expected, found } if !root.extensions_required.iter().any(|r| r == extension) => {
-            warnings.push(format!("{place}: expected {expected}, found {found}. Its uncompressed data is used."));
-            Ok(())
-        }
-        problem => Err(problem),
+/// Leaves out a damaged stream: its uncompressed data is used if the file does not require the extension, since it then has such data.
+/// Otherwise returns the problem, which is one of all that lies in the stream.
+pub fn failed(
+    root: &json::Root,
+    extension: &str,
+    place: &str,
+    problem: Problem,
+    left_out: &mut LeftOut,
+) -> Option<Problem> {
+    if root.extensions_required.iter().any(|required| required == extension) {
+        return Some(problem);
     }
+    left_out.add(Part::STREAM, place, problem);
+    None
 }
 
-/// Adds a buffer that holds `bytes`. Returns its index.
-pub fn add_buffer(root: &mut json::Root, buffers: &mut Buffers<'_>, bytes: Vec<u8>) -> json::Index<json::Buffer> {
-    let byte_length = USize64::from(bytes.len());
+/// Adds a buffer that holds `bytes`, or cannot be read. Returns its index.
+pub fn add_buffer(
+    root: &mut json::Root,
+    buffers: &mut Buffers<'_>,
+    bytes: Result<Vec<u8>, Problem>,
+) -> json::Index<json::Buffer> {
+    let byte_length = USize64::from(bytes.as_ref().map_or(0, Vec::len));
     buffers.push(bytes);
     root.push(json::Buffer { byte_length, name: None, uri: None, extensions: None, extras: json::Extras::default() })
 }

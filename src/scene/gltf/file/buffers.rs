@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use gltf::json;
 
@@ -11,6 +12,7 @@ use super::opened::Place;
 use super::uri::{self, UriTarget};
 use crate::regular_file;
 use crate::scene::error::Problem;
+use crate::scene::gltf::left_out::{LeftOut, Part};
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 
@@ -99,29 +101,52 @@ fn linked_outside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>
     Ok(if end.starts_with(folder.canonicalize()?) { None } else { Some(end) })
 }
 
-/// The contents of all buffers. A buffer without data is an error only when something reads it.
-pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
+/// The contents of all buffers. A buffer that cannot be read is a problem of those parts of the model that lie in it.
+pub struct Buffers<'a>(Vec<Buffer<'a>>);
+
+/// The bytes of a buffer, and why some or all of them are missing.
+struct Buffer<'a> {
+    bytes: Cow<'a, [u8]>,
+    problem: Option<Arc<Problem>>,
+}
+
+impl<'a> Buffer<'a> {
+    fn new(bytes: Result<Cow<'a, [u8]>, Problem>) -> Self {
+        match bytes {
+            Ok(bytes) => Self { bytes, problem: None },
+            Err(problem) => Self { bytes: Cow::Borrowed(&[]), problem: Some(problem.into()) },
+        }
+    }
+}
 
 impl<'a> Buffers<'a> {
     /// Reads all buffers of a file; `bin` is the GLB's binary chunk.
-    pub fn load(root: &json::Root, bin: Option<&'a [u8]>, files: &mut Files<'_>) -> Result<Self, Problem> {
+    ///
+    /// # Errors
+    /// The load was canceled.
+    pub fn load(
+        root: &json::Root,
+        bin: Option<&'a [u8]>,
+        files: &mut Files<'_>,
+        left_out: &mut LeftOut,
+    ) -> Result<Self, Problem> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             let place = place("buffers", index, buffer.name.as_deref());
             let bytes = match (&buffer.uri, bin) {
-                (Some(uri), _) => Some(Cow::Owned(files.load(uri, &place)?)),
-                (None, Some(bin)) if index == 0 => Some(Cow::Borrowed(bin)),
-                (None, _) => None,
+                (Some(uri), _) => files.load(uri, &place).map(Cow::Owned),
+                (None, Some(bin)) if index == 0 => Ok(Cow::Borrowed(bin)),
+                (None, _) => Err(Problem::invalid(&place, "a uri, or to be the binary chunk of a GLB", "neither")),
             };
-            let claimed = buffer.byte_length.0;
-            if let Some(bytes) = &bytes
-                && (bytes.len() as u64) < claimed
-            {
-                return Err(Problem::invalid(
-                    place,
-                    format!("{claimed} bytes (byteLength)"),
-                    format!("{} bytes", bytes.len()),
-                ));
+            if (files.canceled)() {
+                return Err(Problem::Canceled);
+            }
+            let (claimed, mut bytes) = (buffer.byte_length.0, Buffer::new(bytes));
+            if bytes.problem.is_none() && (bytes.bytes.len() as u64) < claimed {
+                let found = format!("{} bytes", bytes.bytes.len());
+                let short = Arc::new(Problem::invalid(&place, format!("{claimed} bytes (byteLength)"), found));
+                left_out.add(Part::END, &place, Problem::Unreadable(short.clone()));
+                bytes.problem = Some(short);
             }
             buffers.push(bytes);
         }
@@ -151,22 +176,25 @@ impl<'a> Buffers<'a> {
         let Some(buffer) = self.0.get(buffer_index) else {
             return Err(out_of_range(place, "buffers", buffer_index, self.0.len()));
         };
-        let Some(bytes) = buffer else {
-            let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");
-            return Err(Problem::invalid(place, expected, "neither"));
-        };
+        let Buffer { bytes, problem } = buffer;
+        let missing = problem.as_ref().map(|problem| Problem::Unreadable(problem.clone()));
         // `byteLength` is the limit. Data beyond it is padding.
         let limit = root.buffers[buffer_index].byte_length.0.min(bytes.len() as u64);
         let end = start.checked_add(length).filter(|&end| end <= limit);
         let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
-        range.and_then(|range| bytes.get(range)).ok_or_else(|| {
-            let found = format!("byteOffset {start} and byteLength {length}");
-            Problem::invalid(place, format!("a range inside of the {limit} bytes of buffers[{buffer_index}]"), found)
-        })
+        match (range.and_then(|range| bytes.get(range)), missing) {
+            (Some(found), None) => Ok(found),
+            (Some(found), Some(_)) if !bytes.is_empty() => Ok(found),
+            (_, Some(missing)) => Err(missing),
+            (None, None) => {
+                let expected = format!("a range inside of the {limit} bytes of buffers[{buffer_index}]");
+                Err(Problem::invalid(place, expected, format!("byteOffset {start} and byteLength {length}")))
+            }
+        }
     }
 
-    /// Adds a buffer.
-    pub fn push(&mut self, bytes: Vec<u8>) {
-        self.0.push(Some(Cow::Owned(bytes)));
+    /// Adds a buffer, or the reason for which it cannot be read.
+    pub fn push(&mut self, bytes: Result<Vec<u8>, Problem>) {
+        self.0.push(Buffer::new(bytes.map(Cow::Owned)));
     }
 }

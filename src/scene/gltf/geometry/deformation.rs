@@ -11,6 +11,7 @@ use super::source::Source;
 use super::triangles::face_normal;
 use crate::interface as contract;
 use crate::scene::error::Problem;
+use crate::scene::gltf::left_out::{LeftOut, Part};
 use crate::scene::gltf::place::LARGEST_COORDINATE;
 use crate::scene::gltf::values;
 use crate::scene::model::Vertex;
@@ -27,27 +28,35 @@ const COLOR: Format = Format {
 /// Maximum number of displacements of a primitive, which take 68 bytes each.
 const MOST_DISPLACEMENTS: usize = 1 << 23;
 
-/// Reads the deformation of a primitive with `count` vertices and these attributes; `None` if it keeps its shape.
+/// Reads the deformation of a primitive with `count` vertices and these attributes; `None` if it keeps its shape. Leaves out joints and
+/// targets that are invalid.
 pub fn read(
     source: &Source<'_>,
     count: usize,
     attributes: u32,
+    left_out: &mut LeftOut,
     warnings: &mut Vec<String>,
-) -> Result<Option<Deformation>, Problem> {
+) -> Option<Deformation> {
     let mut deformation = Deformation::default();
     if let Some(joints) = source.joints {
-        (deformation.influences_per_vertex, deformation.influences) = influences(source, count, joints)?;
+        let read = left_out.unless(Part::SKIN, source.place, influences(source, count, joints));
+        (deformation.influences_per_vertex, deformation.influences) = read.unwrap_or_default();
     }
-    if source.targets.len().saturating_mul(count) > MOST_DISPLACEMENTS {
+    // Weights count targets, so that one that is left out keeps its place.
+    let most = MOST_DISPLACEMENTS / count.max(1);
+    for number in 0..source.targets.len().min(most) {
+        let read = target(source, number, count, attributes, warnings);
+        let target = left_out.unless(Part::TARGET, source.place, read);
+        deformation.targets.push(target.unwrap_or_else(|| vec![Displacement::default(); count]));
+    }
+    if source.targets.len() > most {
         let expected = format!("at most {MOST_DISPLACEMENTS} vertices of morph targets");
         let found = format!("{} targets of {count} vertices", source.targets.len());
-        return Err(Problem::invalid(format!("{}.targets", source.place), expected, found));
-    }
-    for number in 0..source.targets.len() {
-        deformation.targets.push(target(source, number, count, attributes, warnings)?);
+        let place = format!("{}.targets", source.place);
+        left_out.add(Part::TARGET, &place, Problem::invalid(&place, expected, found));
     }
     let is_still = deformation.influences_per_vertex == 0 && deformation.targets.is_empty();
-    Ok((!is_still).then_some(deformation))
+    (!is_still).then_some(deformation)
 }
 
 /// The influences of all vertices, and how many each vertex has: 4 for each pair of JOINTS_n and WEIGHTS_n.

@@ -14,6 +14,7 @@ use super::source::Source;
 use super::triangles::{self, Corners};
 use crate::interface as contract;
 use crate::scene::error::Problem;
+use crate::scene::gltf::left_out::{LeftOut, Part};
 use crate::scene::gltf::motion::raw::RawMesh;
 use crate::scene::gltf::place::{LARGEST_COORDINATE, get, place};
 use crate::scene::gltf::variants;
@@ -31,14 +32,15 @@ pub struct Geometry {
 /// a vertex.
 const MAX_INDICES: usize = 1 << 30;
 
-/// Reads the drawable primitives of a mesh. `joints`: how many the skins have with which it is shown.
+/// Reads the drawable primitives of a mesh, and what it leaves out. `joints`: how many the skins have with which it is shown.
 pub fn read(
     reader: Reader<'_>,
     index: usize,
     materials: &[Material],
     variants: usize,
     (raw, joints): (&RawMesh, Option<usize>),
-) -> Result<Vec<Geometry>, Problem> {
+) -> (Vec<Geometry>, LeftOut) {
+    let mut left_out = LeftOut::default();
     let mesh = &reader.root.meshes[index];
     let mesh_place = place("meshes", index, mesh.name.as_deref());
     let mut geometries = Vec::with_capacity(mesh.primitives.len());
@@ -46,26 +48,30 @@ pub fn read(
         let place = format!("{mesh_place}.primitives[{number}]");
         let title = mesh.name.as_deref().filter(|name| !name.is_empty());
         let name = format!("{} #{number}", title.map_or_else(|| format!("mesh {index}"), str::to_owned));
-        let material = match primitive.material {
-            None => 0,
-            Some(material) => {
-                get(&reader.root.materials, material, &place, "materials")?;
-                // Index 0 is the default material.
-                material.value() + 1
-            }
-        };
+        let source = Source { reader, primitive, targets: raw.targets(number), joints, place: &place };
+        let read = source.read(name, &mut left_out);
+        let Some(mut geometry) = left_out.unless(Part::PRIMITIVE, &place, read) else { continue };
+        let material = primitive.material.and_then(|material| {
+            let known = get(&reader.root.materials, material, &place, "materials");
+            // Index 0 is the default material.
+            left_out.unless(Part::MATERIAL, &place, known).map(|_| material.value() + 1)
+        });
+        let material = material.unwrap_or_default();
         debug_assert!(material < materials.len());
-        let mapping = variants::mapping(primitive, variants, reader.root.materials.len(), &place)?;
-        let targets = raw.targets(number);
-        let mut geometry = Source { reader, primitive, targets, joints, place: &place }.read(name, material)?;
-        geometry.primitive.variant_materials = mapping.into_iter().map(|(of, material)| (of, material + 1)).collect();
+        let mapping = variants::mapping(primitive, variants, reader.root.materials.len(), &place);
+        let mapping = left_out.unless(Part::MAPPING, &place, mapping).unwrap_or_default();
+        let in_variants = mapping.into_iter().map(|(of, material)| (of, material + 1)).collect();
+        let of_geometry = &mut geometry.primitive;
+        (of_geometry.material, of_geometry.default_material) = (material, material);
+        of_geometry.variant_materials = in_variants;
         geometries.push(geometry);
     }
-    Ok(geometries)
+    (geometries, left_out)
 }
 
 impl Source<'_> {
-    fn read(&self, name: String, material: usize) -> Result<Geometry, Problem> {
+    /// The primitive, with the default material.
+    fn read(&self, name: String, left_out: &mut LeftOut) -> Result<Geometry, Problem> {
         let mut warnings = Vec::new();
         let Some(positions) = self.attribute::<3>(Semantic::Positions, "POSITION", &POSITION, None)? else {
             return Err(Problem::invalid(self.place, "the attribute POSITION", "none"));
@@ -92,14 +98,14 @@ impl Source<'_> {
             vertices.iter_mut().zip(tangents).for_each(|(vertex, tangent)| vertex.tangent = tangent);
         }
         attributes |= self.read_uvs_and_colors(&mut vertices, &mut warnings)?;
-        let deformation = deformation::read(self, count, attributes, &mut warnings)?.map(Arc::new);
+        let deformation = deformation::read(self, count, attributes, left_out, &mut warnings).map(Arc::new);
         let mut primitive = Primitive {
             name,
             vertices,
             indices,
             topology,
-            material,
-            default_material: material,
+            material: 0,
+            default_material: 0,
             variant_materials: Vec::new(),
             attributes,
             bounds: Bounds::default(),

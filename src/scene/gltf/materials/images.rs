@@ -8,10 +8,11 @@ use gltf::json;
 use image::{DynamicImage, ImageFormat, ImageReader};
 use rayon::prelude::*;
 
+use super::placeholder::Failure;
 use super::textures::Origin;
 use super::{ktx2, placeholder};
 use crate::message::catch_panic;
-use crate::scene::error::Problem;
+use crate::scene::error::{EXPORT_AGAIN, Problem};
 use crate::scene::gltf::file::buffers::{Buffers, Files};
 use crate::scene::gltf::file::uri;
 use crate::scene::gltf::place::{out_of_range, place};
@@ -31,20 +32,25 @@ const LONGEST_REASON: usize = 120;
 /// The first bytes of other formats, and their names.
 const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "a .basis file")];
 
+/// What to do about an image in a format that Specula does not read.
+const OTHER_FORMAT: &str = "Export the image as PNG, JPEG, WebP or KTX2.";
+/// What to do about an image that is damaged.
+const DAMAGED: &str = "Export or copy the image again.";
+
 /// An image before decoding.
 pub struct Encoded<'a> {
     name: String,
     /// The image in messages: `image 'a.png'`.
     title: String,
-    bytes: Result<Cow<'a, [u8]>, String>,
+    bytes: Result<Cow<'a, [u8]>, Failure>,
 }
 
 /// An image after decoding, or the placeholder if decoding failed.
 pub struct Decoded {
     /// The image.
     pub image: Image,
-    /// If decoding failed: the image and the reason, as part of a sentence.
-    pub failure: Option<String>,
+    /// Why it could not be read or decoded.
+    pub failure: Option<Failure>,
 }
 
 /// Reads the encoded bytes of an image. Opens no file outside the model's folder unless the options allow it.
@@ -62,11 +68,14 @@ pub fn find<'a>(root: &json::Root, buffers: &'a Buffers<'_>, files: &mut Files<'
     };
     let title = file.or(name).map_or_else(|| number.clone(), |name| format!("image '{}'", name.escape_debug()));
     let bytes = match (lacking, index) {
-        (None, Some(index)) => read(root, buffers, files, index).map_err(|problem| {
-            let reason = shorten(&reason(problem));
-            format!("{title} cannot be read ({reason})")
+        (None, Some(index)) => read(root, buffers, files, index).map_err(|problem| Failure {
+            reason: format!("{title} cannot be read ({})", shorten(&reason(&problem))),
+            remedy: problem.remedy().unwrap_or(EXPORT_AGAIN),
         }),
-        (lacking, _) => Err(format!("{title} cannot be decoded ({})", lacking.unwrap_or_default())),
+        (lacking, _) => Err(Failure {
+            reason: format!("{title} cannot be decoded ({})", lacking.unwrap_or_default()),
+            remedy: OTHER_FORMAT,
+        }),
     };
     Encoded { name: name.or(file).cloned().unwrap_or(number), title, bytes }
 }
@@ -98,17 +107,14 @@ fn read<'a>(
     }
 }
 
-/// A short form of a problem, for a warning.
-fn reason(problem: Problem) -> String {
+/// The reason of a problem, without the file that the image's title names.
+fn reason(problem: &Problem) -> String {
     match problem {
         Problem::External { source, .. } if source.kind() == ErrorKind::NotFound => "there is no such file".into(),
         Problem::External { source, .. } => source.to_string(),
-        Problem::Outside { found, .. } => {
-            format!("expected a file in the model's folder, found {found}; --allow-outside reads it")
-        }
+        Problem::Outside { found, .. } => format!("expected a file in the model's folder, found {found}"),
         Problem::Scheme { scheme, .. } => format!("the scheme `{scheme}:` is never opened"),
-        Problem::Invalid { place, expected, found } => format!("{place}: expected {expected}, found {found}"),
-        other => other.to_string(),
+        other => other.reason(),
     }
 }
 
@@ -134,7 +140,10 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
     let pixels = bytes.and_then(|bytes| {
         // A decoder that panics at a damaged image fails only that image.
         let pixels = catch_panic(|| pixels(&bytes)).unwrap_or_else(|_| Err("the decoder failed".into()));
-        pixels.map_err(|reason| format!("{title} cannot be decoded ({})", shorten(&reason)))
+        pixels.map_err(|reason| Failure {
+            reason: format!("{title} cannot be decoded ({})", shorten(&reason)),
+            remedy: if ktx2::is_ktx2(&bytes) || known_format(&bytes).is_some() { DAMAGED } else { OTHER_FORMAT },
+        })
     });
     match pixels {
         Ok((width, height, texels)) => Decoded { image: Image::new(name, width, height, texels), failure: None },
@@ -142,22 +151,25 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
     }
 }
 
+/// The format of an image's content: mimeType and file endings are often wrong or absent.
+fn known_format(bytes: &[u8]) -> Option<ImageFormat> {
+    let known = |format: &ImageFormat| matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP);
+    image::guess_format(bytes).ok().filter(known)
+}
+
 /// Width, height and texels, or the reason of a failure.
 fn pixels(bytes: &[u8]) -> Result<(u32, u32, Texels), String> {
     if ktx2::is_ktx2(bytes) {
         return ktx2::texels(bytes, MAX_SIZE);
     }
-    let other = OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
-    // Trust only the content: mimeType and file endings are often wrong or absent.
-    let format = match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
-        _ if bytes.is_empty() => return Err("it is empty".into()),
-        found => {
-            let name = other.map(str::to_owned).or_else(|| Some(format!("{:?}", found.ok()?)));
-            return Err(
-                name.map_or("it is not PNG, JPEG, WebP or KTX2".into(), |name| format!("{name} is not supported"))
-            );
-        }
+    if bytes.is_empty() {
+        return Err("it is empty".into());
+    }
+    let Some(format) = known_format(bytes) else {
+        let other =
+            OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| (*name).to_owned());
+        let name = other.or_else(|| image::guess_format(bytes).ok().map(|format| format!("{format:?}")));
+        return Err(name.map_or("it is not PNG, JPEG, WebP or KTX2".into(), |name| format!("{name} is not supported")));
     };
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_SIZE);

@@ -13,6 +13,15 @@ const GRAYS: [u8; 2] = [72, 184];
 /// Maximum number of materials that a warning names.
 const MOST_NAMES: usize = 3;
 
+/// Why an image cannot be shown.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The image and the reason, as part of a sentence.
+    pub reason: String,
+    /// What to do, as a sentence.
+    pub remedy: &'static str,
+}
+
 /// The placeholder for a base color: an opaque checkerboard in mid-gray.
 pub fn checkerboard(name: String) -> Image {
     let gray = |pixel: u32| GRAYS[((pixel % SIDE / SQUARE + pixel / SIDE / SQUARE) % 2) as usize];
@@ -39,7 +48,7 @@ pub fn pixel(name: String, model: &Model, image: usize) -> Image {
 /// Removes failed images from the materials, except for base colors, which show the checkerboard. Returns a warning for each
 /// image and slot. `failures` has an entry for each image of the model, `None` if it is good. The default material, which
 /// comes first, has no textures.
-pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Option<String>]) -> Vec<String> {
+pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Option<Failure>]) -> Vec<String> {
     let mut warnings = Vec::new();
     for (image, failure) in failures.iter().enumerate() {
         let Some(failure) = failure else { continue };
@@ -49,8 +58,10 @@ pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Opt
             let users: Vec<usize> = (0..materials.len()).filter(|&index| uses_it(&materials[index])).collect();
             let Some(&first) = users.first() else { continue };
             let (title, instead) = words(slot as u32, &materials[first]);
-            warnings.push(format!("{}, {title} texture: {failure}; {instead}.", names(&users, materials)));
-            for material in users {
+            let Failure { reason, remedy } = failure;
+            warnings.push(format!("{}, {title} texture: {reason}; {instead}. {remedy}", names(&users, materials)));
+            // A base color shows the checkerboard.
+            for material in users.into_iter().filter(|_| slot != contract::TEXTURE_BASE_COLOR as usize) {
                 clear(&mut materials[material], slot as u32);
             }
         }
@@ -58,12 +69,11 @@ pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Opt
     warnings
 }
 
-fn clear(material: &mut Material, slot: u32) {
-    match slot {
-        contract::TEXTURE_BASE_COLOR => return,
-        // Most of an emissive texture is black. The factor alone would make the whole surface emit.
-        contract::TEXTURE_EMISSIVE => material.numbers.emissive_factor = [0.0; 3],
-        _ => {}
+/// Removes the texture of a slot.
+pub fn clear(material: &mut Material, slot: u32) {
+    // Most of an emissive texture is black. The factor alone would make the whole surface emit.
+    if slot == contract::TEXTURE_EMISSIVE {
+        material.numbers.emissive_factor = [0.0; 3];
     }
     material.textures[slot as usize] = None;
 }

@@ -8,8 +8,10 @@ use json::extensions::texture::TextureTransform;
 use json::texture::{MagFilter, MinFilter, WrappingMode};
 use json::validation::Checked;
 
+use super::placeholder;
 use crate::scene::error::Problem;
-use crate::scene::gltf::place::{out_of_range, place};
+use crate::scene::gltf::left_out::{LeftOut, Part};
+use crate::scene::gltf::place::{get, out_of_range, place};
 use crate::scene::gltf::values::{self, Extensions, Fields};
 use crate::scene::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 
@@ -27,6 +29,8 @@ pub struct Collector<'a> {
     pub images: Vec<Origin>,
     /// Corrected values, one sentence each.
     pub warnings: Vec<String>,
+    /// Parts of materials that cannot be used.
+    pub left_out: LeftOut,
     root: &'a json::Root,
     /// Indices into `images`.
     image_of: HashMap<Origin, usize>,
@@ -86,19 +90,23 @@ impl<'a> Collector<'a> {
     /// An empty collector.
     pub fn new(root: &'a json::Root) -> Self {
         let (textures, images, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        Self { textures, images, warnings, root, image_of: HashMap::new(), texture_of: HashMap::new() }
+        let (image_of, texture_of) = (HashMap::new(), HashMap::new());
+        Self { textures, images, warnings, left_out: LeftOut::default(), root, image_of, texture_of }
     }
 
-    /// Sets the texture of a material's slot, `interface::TEXTURE_*`.
+    /// Sets the texture of a material's slot, `interface::TEXTURE_*`, or leaves it out.
     pub fn bind(
         &mut self,
         material: &mut Material,
         texture: u32,
-        slot: Option<TextureSlot>,
+        slot: Result<Option<TextureSlot>, Problem>,
         place: &str,
-    ) -> Result<(), Problem> {
-        material.textures[texture as usize] = slot.map(|slot| self.texture_use(&slot, place)).transpose()?;
-        Ok(())
+    ) {
+        let used = slot.and_then(|slot| slot.map(|slot| self.texture_use(&slot, place)).transpose());
+        match self.left_out.unless(Part::TEXTURE, place, used) {
+            Some(used) => material.textures[texture as usize] = used,
+            None => placeholder::clear(material, texture),
+        }
     }
 
     fn texture_use(&mut self, slot: &TextureSlot, place: &str) -> Result<TextureUse, Problem> {
@@ -107,15 +115,12 @@ impl<'a> Collector<'a> {
             return Err(out_of_range(place, "textures", slot.texture, textures.len()));
         };
         let origin = self.origin(texture, slot.texture)?;
-        let sampler = match texture.sampler {
-            None => Sampler::default(),
-            Some(at) => match self.root.samplers.get(at.value()) {
-                Some(sampler) => read_sampler(sampler, at.value())?,
-                None => {
-                    return Err(out_of_range(place, "samplers", at.value(), self.root.samplers.len()));
-                }
-            },
-        };
+        let sampler = texture.sampler.and_then(|at| {
+            let sampler = get(&self.root.samplers, at, place, "samplers");
+            let sampler = sampler.and_then(|sampler| read_sampler(sampler, at.value()));
+            self.left_out.unless(Part::SAMPLER, place, sampler)
+        });
+        let sampler = sampler.unwrap_or_default();
         let mut uv_set = slot.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(slot.uv_set);
         if uv_set > LAST_UV_SET {
             self.warnings

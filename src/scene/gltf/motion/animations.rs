@@ -1,6 +1,6 @@
 //! Reads animations. A channel that cannot be read costs that channel, with a warning, and not the model.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use gltf::json;
@@ -10,6 +10,7 @@ use serde::Deserialize;
 use super::pointers::{self, Pointed};
 use crate::scene::error::Problem;
 use crate::scene::gltf::geometry::accessor::{Format, Normalized as N, Reader};
+use crate::scene::gltf::left_out::{LeftOut, Part};
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::motion::{Channel, Clip, Curve, Interpolation, Rig, Target, Values};
 
@@ -57,7 +58,7 @@ pub fn read(
     reader: Reader<'_>,
     animations: &[json::Value],
     rig: &Rig,
-    warnings: &mut Vec<String>,
+    left_out: &mut LeftOut,
 ) -> (Vec<Clip>, Vec<Values>) {
     if animations.is_empty() {
         return Default::default();
@@ -67,33 +68,9 @@ pub fn read(
     for (at, node) in rig.nodes.iter().enumerate() {
         clips.nodes.entry(node.index).or_default().push(at);
     }
-    let mut faults = Faults::default();
-    let read = |(index, value): (usize, &json::Value)| clips.read(index, value, &mut faults);
+    let read = |(index, value): (usize, &json::Value)| clips.read(index, value, left_out);
     let read = animations.iter().enumerate().map(read).collect();
-    faults.tell(warnings);
     (read, clips.values)
-}
-
-/// The problems of channels. Equal sentences are told once.
-#[derive(Default)]
-struct Faults(BTreeMap<String, usize>);
-
-impl Faults {
-    fn add(&mut self, problem: Problem) {
-        let text = match problem {
-            Problem::Invalid { place, expected, found } => format!("{place}: expected {expected}, found {found}"),
-            other => other.to_string(),
-        };
-        *self.0.entry(text).or_default() += 1;
-    }
-
-    fn tell(self, warnings: &mut Vec<String>) {
-        let sentence = |(text, count): (String, usize)| match count {
-            1 => format!("{text}: the channel is not played."),
-            more => format!("{text}: {more} such channels are not played."),
-        };
-        warnings.extend(self.0.into_iter().map(sentence));
-    }
 }
 
 struct Clips<'a> {
@@ -111,23 +88,21 @@ struct Clips<'a> {
 }
 
 impl Clips<'_> {
-    fn read(&mut self, index: usize, value: &json::Value, faults: &mut Faults) -> Clip {
+    fn read(&mut self, index: usize, value: &json::Value, left_out: &mut LeftOut) -> Clip {
         let name = value.get("name").and_then(json::Value::as_str);
         let place = place("animations", index, name);
         let animation: RawAnimation = match json::deserialize::from_value(value.clone()) {
             Ok(animation) => animation,
             Err(error) => {
-                faults.add(Problem::invalid(place, "an animation", error.to_string()));
+                left_out.add(Part::CHANNEL, &place, Problem::invalid(&place, "an animation", error.to_string()));
                 return Clip { name: name.unwrap_or_default().to_owned(), ..Clip::default() };
             }
         };
         let mut clip = Clip { name: animation.name.clone().unwrap_or_default(), ..Clip::default() };
         for (number, channel) in animation.channels.iter().enumerate() {
-            let place = format!("{place}.channels[{number}]");
-            match self.channels(&animation, channel, &place) {
-                Ok(channels) => clip.channels.extend(channels),
-                Err(problem) => faults.add(problem),
-            }
+            let channels = self.channels(&animation, channel, &format!("{place}.channels[{number}]"));
+            // The place is the animation's, so that equal faults of its channels are one warning.
+            clip.channels.extend(left_out.unless(Part::CHANNEL, &place, channels).into_iter().flatten());
         }
         clip.duration_s = clip.channels.iter().map(|channel| channel.curve.end_s()).fold(0.0, f32::max);
         clip
@@ -159,6 +134,7 @@ impl Clips<'_> {
                     };
                     Ok(values.into_iter().map(channel).collect())
                 }
+                Some(Pointed::Unused) => Ok(Vec::new()),
                 None => {
                     let place = place.split_once(".channels").map_or(place, |(animation, _)| animation);
                     let expected = "a pointer to what Specula can move";

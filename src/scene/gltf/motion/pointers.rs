@@ -6,6 +6,7 @@ use gltf::json;
 use serde_json::Value;
 
 use crate::interface as contract;
+use crate::scene::extensions::SPECULAR_GLOSSINESS;
 use crate::scene::motion::{Property, Rig, Values};
 use crate::settings::Factor;
 
@@ -25,6 +26,8 @@ pub enum Pointed {
     Weight(Vec<usize>, usize),
     /// Numbers of properties, from the given one on, and how many.
     Values(Vec<Values>, usize, usize),
+    /// Numbers that Specula does not use, so that nothing moves.
+    Unused,
 }
 
 /// The place of a factor: below a material, its property, its first number there, and the values that the file may leave out.
@@ -56,10 +59,12 @@ const MATERIAL: &[Place] = &[
         0,
         &[0.0],
     ),
+    ("extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", Property::CoatNormalScale, 0, &[1.0]),
     ("extensions/KHR_materials_sheen/sheenColorFactor", |m| Property::Factor(m, Factor::SheenColor), 0, &[0.0; 3]),
     ("extensions/KHR_materials_sheen/sheenRoughnessFactor", |m| Property::Factor(m, Factor::SheenRoughness), 0, &[0.0]),
     ("extensions/KHR_materials_iridescence/iridescenceFactor", |m| Property::Factor(m, Factor::Iridescence), 0, &[0.0]),
     ("extensions/KHR_materials_iridescence/iridescenceIor", |m| Property::Factor(m, Factor::IridescenceIor), 0, &[1.3]),
+    ("extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", Property::ThinnestFilm, 0, &[100.0]),
     (
         "extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
         |m| Property::Factor(m, Factor::IridescenceThickness),
@@ -100,6 +105,18 @@ const MATERIAL: &[Place] = &[
     ),
 ];
 
+/// The factors of a material with specular-glossiness, which it has in place of those of `pbrMetallicRoughness`.
+const GLOSSY: &[Place] = &[
+    ("extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor", Property::BaseColor, 0, &[1.0; 4]),
+    (
+        "extensions/KHR_materials_pbrSpecularGlossiness/specularFactor",
+        |m| Property::Factor(m, Factor::SpecularColor),
+        0,
+        &[1.0; 3],
+    ),
+    ("extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor", Property::Glossiness, 0, &[1.0]),
+];
+
 /// The textures of materials.
 const TEXTURES: &[(&str, u32)] = &[
     ("pbrMetallicRoughness/baseColorTexture", contract::TEXTURE_BASE_COLOR),
@@ -127,6 +144,18 @@ const TEXTURES: &[(&str, u32)] = &[
         "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
         contract::TEXTURE_DIFFUSE_TRANSMISSION_COLOR,
     ),
+    ("extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture", contract::TEXTURE_BASE_COLOR),
+    ("extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture", contract::TEXTURE_METALLIC_ROUGHNESS),
+];
+
+/// The numbers of a camera that do not change what Specula shows.
+const UNUSED_OF_CAMERA: [&str; 6] = [
+    "perspective/aspectRatio",
+    "perspective/zfar",
+    "perspective/znear",
+    "orthographic/xmag",
+    "orthographic/zfar",
+    "orthographic/znear",
 ];
 
 /// The members of KHR_texture_transform.
@@ -165,6 +194,7 @@ pub fn resolve(pointer: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
             if path.starts_with("weights") { nodes(all, path) } else { None }
         }
         "materials" => material(index, path, root),
+        "cameras" if UNUSED_OF_CAMERA.contains(&path) => root.cameras.get(index).map(|_| Pointed::Unused),
         "cameras" => {
             let (make, member, default): (fn(usize) -> Property, _, _) = match path {
                 "perspective/yfov" => (Property::Fovy, path, 0.8),
@@ -193,6 +223,11 @@ fn material(index: usize, path: &str, root: &json::Root) -> Option<Pointed> {
     let of_file = serde_json::to_value(root.materials.get(index)?).ok()?;
     // Index 0 of the model's materials is the default material.
     let material = index + 1;
+    let is_glossy = of_file.pointer(&format!("/extensions/{SPECULAR_GLOSSINESS}")).is_some();
+    if is_glossy && path.starts_with("pbrMetallicRoughness/") {
+        // A fallback for other viewers.
+        return Some(Pointed::Unused);
+    }
     if let Some((texture, member)) = path.split_once("/extensions/KHR_texture_transform/") {
         let (_, slot) = TEXTURES.iter().find(|(name, _)| *name == texture)?;
         let (_, first, default) = TRANSFORM.iter().find(|(name, _, _)| *name == member)?;
@@ -205,10 +240,11 @@ fn material(index: usize, path: &str, root: &json::Root) -> Option<Pointed> {
         };
         return Some(Pointed::Values(vec![values], *first, default.len()));
     }
-    let (_, make, first, default) = MATERIAL.iter().find(|(name, ..)| *name == path)?;
+    let places = if is_glossy && GLOSSY.iter().any(|(name, ..)| *name == path) { GLOSSY } else { MATERIAL };
+    let (_, make, first, default) = places.iter().find(|(name, ..)| *name == path)?;
     let property = make(material);
     // All numbers of the property, in their order.
-    let parts = MATERIAL.iter().filter(|(_, make, ..)| make(material) == property);
+    let parts = places.iter().filter(|(_, make, ..)| make(material) == property);
     let rest = parts.flat_map(|(path, _, _, default)| numbers(&of_file, path, default)).collect();
     Some(Pointed::Values(vec![Values { property, numbers: rest }], *first, default.len()))
 }

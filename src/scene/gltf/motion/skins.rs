@@ -9,6 +9,7 @@ use json::accessor::{ComponentType as C, Type};
 use super::raw::Raw;
 use crate::scene::error::Problem;
 use crate::scene::gltf::geometry::accessor::{Format, Normalized as N, Reader};
+use crate::scene::gltf::left_out::Part;
 use crate::scene::gltf::nodes::{PlacedMesh, Scene, local_transform};
 use crate::scene::gltf::place::{get, place};
 use crate::scene::motion::{Rig, RigNode, Skin};
@@ -24,11 +25,8 @@ pub struct Weights {
     pub names: Vec<String>,
 }
 
-/// Gives the meshes of a scene their skins and their nodes morph weights.
-///
-/// # Errors
-/// A skin is invalid.
-pub fn attach(reader: Reader<'_>, raw: &Raw, scene: &mut Scene) -> Result<Weights, Problem> {
+/// Gives the meshes of a scene their skins and their nodes morph weights. A skin that is invalid is left out.
+pub fn attach(reader: Reader<'_>, raw: &Raw, scene: &mut Scene) -> Weights {
     let mut nodes = Nodes::new(reader.root, &scene.rig);
     let mut skins = HashMap::new();
     let mut weights = Weights::default();
@@ -36,23 +34,22 @@ pub fn attach(reader: Reader<'_>, raw: &Raw, scene: &mut Scene) -> Result<Weight
         add_weights(reader.root, raw, mesh, &mut scene.rig, &mut weights);
         let Some(index) = reader.root.nodes[mesh.node].skin else { continue };
         let user = place("nodes", mesh.node, Some(&mesh.name));
-        let source = get(&reader.root.skins, index, &user, "skins")?;
+        let source = get(&reader.root.skins, index, &user, "skins");
+        let Some(source) = scene.left_out.unless(Part::SKIN, &user, source) else { continue };
         if source.joints.is_empty() {
             let skin = place("skins", index.value(), source.name.as_deref());
             scene.warnings.push(format!("{skin} has no joints: its meshes are where their nodes are."));
             continue;
         }
-        mesh.skin = Some(match skins.get(&index.value()) {
-            Some(known) => *known,
-            None => {
-                let skin = read(reader, (index.value(), source), &mut nodes, &mut scene.rig, &mut scene.warnings)?;
+        mesh.skin = *skins.entry(index.value()).or_insert_with(|| {
+            let skin = read(reader, (index.value(), source), &mut nodes, &mut scene.rig, &mut scene.warnings);
+            scene.left_out.unless(Part::SKIN, &user, skin).map(|skin| {
                 scene.rig.skins.push(skin);
-                skins.insert(index.value(), scene.rig.skins.len() - 1);
                 scene.rig.skins.len() - 1
-            }
+            })
         });
     }
-    Ok(weights)
+    weights
 }
 
 /// Adds the morph weights of a node: its own, or those of its mesh, or 0.

@@ -1,15 +1,23 @@
 //! Compressed files hold the same model as plain ones.
 
+use std::collections::HashSet;
+
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder, PointAttribute,
     PointIndex,
 };
 use meshoptimizer_rs::{Workspace, codec};
 
+use super::super::file::buffers::{Buffers, Files};
+use super::super::file::container;
+use super::super::file::opened::Place;
+use super::super::geometry::accessor::Reader;
+use super::super::left_out::LeftOut;
+use super::super::{instancing, nodes};
 use super::*;
 
 /// A plane of `side` x `side` quads, that is not flat.
-fn plane(side: usize) -> (Vec<f32>, Vec<u32>) {
+pub(super) fn plane(side: usize) -> (Vec<f32>, Vec<u32>) {
     let row = side + 1;
     let position = |at: usize| [(at % row) as f32, (at / row) as f32, ((at * 7) % 5) as f32];
     let corner = |quad: usize| (quad / side * row + quad % side) as u32;
@@ -42,7 +50,7 @@ fn compress(builder: &mut Builder, extension: &str, view: usize, stream: &[u8], 
 }
 
 /// A plane whose positions and indices are compressed by meshopt.
-fn meshopt(extension: &str, shape: &(Vec<f32>, Vec<u32>)) -> Builder {
+pub(super) fn meshopt(extension: &str, shape: &(Vec<f32>, Vec<u32>)) -> Builder {
     let (positions, indices) = shape;
     let mut workspace = Workspace::default();
     let mut builder = plain(shape);
@@ -91,7 +99,7 @@ fn meshopt_gives_the_plain_model() {
 }
 
 #[test]
-fn a_damaged_stream_is_an_error_and_its_fallback_is_used() {
+fn a_damaged_stream_costs_its_meshes_unless_there_is_a_fallback() {
     let extension = "EXT_meshopt_compression";
     let mut builder = meshopt(extension, &plane(3));
     builder.json["bufferViews"][0]["extensions"][extension]["byteLength"] = json!(20);
@@ -113,7 +121,7 @@ fn a_damaged_stream_is_an_error_and_its_fallback_is_used() {
     builder.json.as_object_mut().unwrap().remove("extensionsRequired");
     let model = builder.model();
     assert_eq!(corners(&model), corners(&original.model()));
-    assert_eq!(model.warnings.iter().filter(|w| w.contains("Its uncompressed data is used")).count(), 2);
+    assert_eq!(model.warnings.iter().filter(|w| w.contains("the uncompressed data is used")).count(), 2);
 }
 
 #[test]
@@ -128,7 +136,7 @@ fn streams_that_claim_too_much_are_refused_at_once() {
 }
 
 /// A triangle strip of one triangle whose accessors have no data: it is in a Draco stream.
-fn draco(shape: &(Vec<f32>, Vec<u32>)) -> Builder {
+pub(super) fn draco(shape: &(Vec<f32>, Vec<u32>)) -> Builder {
     let (positions, indices) = shape;
     let mut position = PointAttribute::new();
     position.init(GeometryAttributeType::Position, 3, DataType::Float32, false, positions.len() / 3);
@@ -198,7 +206,39 @@ fn instances_of_a_node() {
     assert_eq!(model.instances.len(), 2);
     assert_eq!([at(0), at(1)], [glam::vec3(2.0, 0.0, 5.0), glam::vec3(3.0, 2.0, 5.0)]);
     builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = json!({});
-    assert!(builder.error().contains("expected TRANSLATION, ROTATION or SCALE, found none of them"));
+    assert_eq!(builder.model().instances.len(), 1);
+    let told = builder.told();
+    assert!(
+        told.contains("expected TRANSLATION, ROTATION or SCALE, found none of them; the extension is left"),
+        "{told}"
+    );
+}
+
+#[test]
+fn instances_are_limited_by_their_memory_alone() {
+    let with = |count: usize| {
+        let mut builder = Builder::triangle();
+        let twin = builder.primitive().clone();
+        builder.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(twin);
+        let at = builder.push("accessors", json!({ "componentType": F32, "type": "VEC3", "count": count }));
+        builder.json["nodes"][0]["extensions"] =
+            json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": at } } });
+        builder
+    };
+    let model = with(40_000).model();
+    assert_eq!((model.instances.len(), model.warnings.len()), (80_000, 0), "{:?}", model.warnings);
+    // More are only expanded here, since a model of a million draws takes seconds.
+    let glb = with((1 << 19) + 3).glb();
+    let document = container::parse(&glb).unwrap();
+    let (mut tried, mut left_out, mut warnings) = (Vec::new(), LeftOut::default(), Vec::new());
+    let mut files = Files::new(Place::Nowhere, false, &|| false, &mut tried);
+    let buffers = Buffers::load(&document.root, document.bin, &mut files, &mut left_out).unwrap();
+    let reader = Reader { root: &document.root, buffers: &buffers };
+    let scene = nodes::walk(&document.root, None, &HashSet::new()).unwrap();
+    let placed = instancing::expand(reader, scene.meshes, &mut left_out, &mut warnings);
+    assert_eq!((placed.len(), left_out.warnings().count()), (1 << 19, 0));
+    let expected = "1048576 instances of primitives take the 1024 MiB that there are for them; 3 more are left out.";
+    assert!(warnings.len() == 1 && warnings[0].contains(expected), "{warnings:?}");
 }
 
 #[test]

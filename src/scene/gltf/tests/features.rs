@@ -177,7 +177,7 @@ fn variants_change_materials_and_back() {
 }
 
 #[test]
-fn mistakes_in_variants_are_named() {
+fn mistakes_in_variants_cost_the_variants_alone() {
     let names = "/extensions/KHR_materials_variants/variants";
     let mappings = "/meshes/0/primitives/1/extensions/KHR_materials_variants/mappings";
     for (pointer, value, words) in [
@@ -196,8 +196,12 @@ fn mistakes_in_variants_are_named() {
     ] {
         let mut builder = shoe();
         *builder.json.pointer_mut(pointer).unwrap() = value;
-        let error = builder.error();
-        assert!(error.contains(words), "{error}\nlacks {words}");
+        let (told, model) = (builder.told(), builder.model());
+        assert!(told.contains(words) && model.warnings.len() == 1, "{told}\nlacks {words}");
+        // With the variants go all mappings; a mapping is that of its primitive.
+        let has_variants = !told.contains("the model has no variants");
+        assert_eq!(model.variants.is_empty(), !has_variants, "{told}");
+        assert!(model.primitives.iter().all(|primitive| primitive.variant_materials.is_empty()));
     }
     let mut twins = shoe();
     twins.json["extensions"]["KHR_materials_variants"]["variants"][2]["name"] = json!("Fire");

@@ -1,4 +1,4 @@
-//! Bad input: every mistake is an error that names its place, and nothing panics.
+//! Bad input: every mistake is named with its place, as an error if nothing is left to show, and nothing panics.
 
 use super::*;
 
@@ -29,8 +29,8 @@ fn rich() -> Builder {
     builder
 }
 
-/// Sets a value in the JSON of [`rich`] and expects an error with a word.
-fn assert_refused(pointer: &str, value: Value, word: &str) {
+/// [`rich`] with another value in its JSON.
+fn damaged(pointer: &str, value: &Value) -> Builder {
     let mut builder = rich();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
     let parent = builder.json.pointer_mut(parent).unwrap_or_else(|| panic!("{parent}"));
@@ -38,8 +38,21 @@ fn assert_refused(pointer: &str, value: Value, word: &str) {
         Ok(index) => parent[index] = value.clone(),
         Err(_) => parent[key] = value.clone(),
     }
-    let error = builder.error();
+    builder
+}
+
+/// Sets a value in the JSON of [`rich`] and expects an error with a word.
+#[track_caller]
+fn assert_refused(pointer: &str, value: Value, word: &str) {
+    let error = damaged(pointer, &value).error();
     assert!(error.contains(word), "{pointer} = {value}: {error}");
+}
+
+/// Sets a value in the JSON of [`rich`] and expects a model with a warning that has a word.
+#[track_caller]
+fn assert_told(pointer: &str, value: Value, word: &str) {
+    let told = damaged(pointer, &value).told();
+    assert!(told.contains(word), "{pointer} = {value}: {told}");
 }
 
 #[test]
@@ -209,7 +222,7 @@ fn buffers_and_views() {
     assert_refused("/bufferViews/0/byteLength", json!(u64::MAX), "a range inside");
     assert_refused("/bufferViews/0/byteOffset", json!(u64::MAX), "a range inside");
     assert_refused("/bufferViews/0/buffer", json!(3), "an index into buffers");
-    assert_refused("/buffers/0/byteLength", json!(1 << 30), "bytes (byteLength)");
+    assert_told("/buffers/0/byteLength", json!(1 << 30), "bytes (byteLength)");
     assert_refused("/buffers/0/byteLength", json!(8), "a range inside of the 8 bytes");
     assert_refused("/buffers/0/uri", json!("%ff"), "the external file `%ff`");
     assert_refused("/buffers/0/uri", json!(""), "expected a relative path, found an empty text");
@@ -223,7 +236,6 @@ fn primitives_and_references() {
     let primitive = "/meshes/0/primitives/0";
     for (key, value, word) in [
         ("mode", json!(9), "a mode of 0 to 6"),
-        ("material", json!(5), "an index into materials"),
         ("indices", json!(99), "an index into accessors"),
         ("indices", json!(0), "expected Scalar of U8"),
         ("attributes", json!({}), "the attribute POSITION"),
@@ -231,12 +243,13 @@ fn primitives_and_references() {
     ] {
         assert_refused(&format!("{primitive}/{key}"), value, word);
     }
-    assert_refused("/textures/0/source", json!(9), "an index into images");
-    assert_refused("/textures/0/sampler", json!(9), "an index into samplers");
-    assert_refused("/samplers/0/wrapS", json!(1), "samplers[0].wrapS");
-    assert_refused("/samplers/0/minFilter", json!(1), "samplers[0].minFilter");
-    assert_refused("/materials/0/normalTexture/index", json!(9), "an index into textures");
-    assert_refused("/materials/0/alphaMode", json!("GLASS"), "OPAQUE, MASK or BLEND");
+    assert_told(&format!("{primitive}/material"), json!(5), "replaced by the default material");
+    assert_told("/textures/0/source", json!(9), "an index into images");
+    assert_told("/textures/0/sampler", json!(9), "an index into samplers");
+    assert_told("/samplers/0/wrapS", json!(1), "samplers[0].wrapS");
+    assert_told("/samplers/0/minFilter", json!(1), "samplers[0].minFilter");
+    assert_told("/materials/0/normalTexture/index", json!(9), "an index into textures");
+    assert_told("/materials/0/alphaMode", json!("GLASS"), "OPAQUE, MASK or BLEND");
     assert_refused("/meshes/0/primitives", json!([]), "nothing to draw");
     let mut builder = Builder::square();
     builder.indices(U16, &[0, 1, 4]);

@@ -1,6 +1,7 @@
 //! Tests of the loader on small files built in code.
 
 mod compression;
+mod curves;
 mod damaged;
 mod extensions;
 mod features;
@@ -8,11 +9,13 @@ mod geometry;
 mod growth;
 mod image_based;
 mod invalid;
+mod left_out;
 mod materials;
 mod motion;
 mod nodes;
 mod opened;
 mod placeholders;
+mod pointers;
 mod together;
 mod visibility;
 
@@ -149,6 +152,14 @@ impl Builder {
         let model = self.load().unwrap_or_else(|error| panic!("{error}"));
         assert_sound(&model);
         model
+    }
+
+    /// The warnings of a file that loads without some part of it.
+    #[track_caller]
+    fn told(&self) -> String {
+        let warnings = self.model().warnings;
+        assert!(!warnings.is_empty(), "no warning");
+        warnings.join("\n")
     }
 
     /// The message of a file that must not load.

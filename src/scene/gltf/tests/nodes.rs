@@ -57,8 +57,6 @@ fn hierarchy_mistakes_are_named() {
         (json!([{ "mesh": 0 }, { "children": [1] }]), "cycles"),
         (json!([{ "children": [7] }]), "nodes[0]: expected an index into nodes of 0 to 0, found 7"),
         (json!([{ "mesh": 3 }]), "an index into meshes of 0 to 0, found 3"),
-        (json!([{ "mesh": 0, "camera": 0 }]), "no use of cameras"),
-        (json!([{ "mesh": 0, "extensions": { "KHR_lights_punctual": { "light": 0 } } }]), "KHR_lights_punctual.lights"),
         (json!([{ "mesh": 0, "scale": [1e39, 1, 1] }]), "finite"),
         (json!([{ "mesh": 0, "rotation": [1e39, 0, 0, 1] }]), "finite"),
         (json!([{ "mesh": 0, "matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }]), "last row"),
@@ -76,6 +74,16 @@ fn hierarchy_mistakes_are_named() {
             "{nodes}: {error}"
         );
     }
+    let beside = |part: Value| {
+        let mut builder = Builder::triangle();
+        builder.json["nodes"] = json!([{ "mesh": 0, "children": [1] }, part]);
+        assert_eq!(builder.model().instances.len(), 1);
+        builder.told()
+    };
+    assert!(beside(json!({ "mesh": 3 })).contains("an index into meshes of 0 to 0, found 3; the mesh is left out"));
+    assert!(beside(json!({ "camera": 0 })).contains("no use of cameras"));
+    let light = json!({ "extensions": { "KHR_lights_punctual": { "light": 0 } } });
+    assert!(beside(light).contains("no use of KHR_lights_punctual.lights"));
     let mut builder = Builder::triangle();
     builder.json["scenes"][0]["nodes"] = json!([5]);
     assert!(builder.error().contains("found 5"));
@@ -240,7 +248,9 @@ fn punctual_lights() {
         json!({ "type": "point", "intensity": 1e38, "color": [1e3, 1, 1] }),
     ] {
         builder.json["extensions"]["KHR_lights_punctual"]["lights"][0] = bad;
-        assert!(builder.error().contains("KHR_lights_punctual.lights[0]"));
+        let told = builder.told();
+        assert!(told.contains("KHR_lights_punctual.lights[0]") && told.contains("the light is left out"), "{told}");
+        assert_eq!(builder.model().lights.len(), 2);
     }
     for (key, bad, found) in [
         ("intensity", json!(-1), "at least 0, found -1"),
@@ -255,8 +265,8 @@ fn punctual_lights() {
         }
         light[key] = bad;
         builder.json["extensions"]["KHR_lights_punctual"]["lights"][0] = light;
-        let (error, place) = (builder.error(), format!("KHR_lights_punctual.lights[0].{key}"));
-        assert!(error.contains(&place) && error.contains(found), "{error}");
+        let (told, place) = (builder.told(), format!("KHR_lights_punctual.lights[0].{key}"));
+        assert!(told.contains(&place) && told.contains(found), "{told}");
     }
 }
 
@@ -282,6 +292,7 @@ fn cameras() {
         [json!({ "type": "perspective" }), json!({ "type": "perspective", "perspective": { "yfov": 0, "znear": 1 } })]
     {
         builder.json["cameras"][0] = bad;
-        assert!(builder.error().contains("cameras[0]"));
+        assert!(builder.told().contains("cameras[0]") && builder.told().contains("the camera is left out"));
+        assert_eq!(builder.model().cameras.len(), 1);
     }
 }

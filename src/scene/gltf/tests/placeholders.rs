@@ -27,7 +27,7 @@ fn a_base_color_that_cannot_be_decoded_is_a_checkerboard() {
     let mut builder = with_image("baseColorTexture", DDS);
     builder.json["images"][0]["name"] = json!("a.dds");
     let expected = "material 'Helmet', base color texture: image 'a.dds' cannot be decoded (DDS is not supported); \
-                    a checkerboard is shown in its place.";
+                    a checkerboard is shown in its place. Export the image as PNG, JPEG, WebP or KTX2.";
     assert_eq!(warning(&builder), expected);
     let model = builder.model();
     let used = model.materials[1].textures[BASE_COLOR].expect("the placeholder");
@@ -78,6 +78,11 @@ fn every_kind_of_bad_image_is_named_and_unused_ones_are_not_decoded() {
         let said = warning(&builder);
         assert!(said.starts_with("material 'Helmet', emissive texture: image 'glow' cannot be decoded ("), "{said}");
         assert!(said.len() < 300 && !said.contains('\n'), "{said}");
+        // A file cut short is copied again, another format exported.
+        let is_other = said.contains("not supported") || said.contains("is empty") || said.contains("it is not PNG");
+        let remedy =
+            if is_other { "Export the image as PNG, JPEG, WebP or KTX2." } else { "Export or copy the image again." };
+        assert!(said.ends_with(remedy), "{said}");
         builder.json["materials"] = json!([{}]);
         let model = builder.model();
         assert!(model.images.is_empty() && model.warnings.is_empty(), "{:?}", model.warnings);
@@ -86,18 +91,24 @@ fn every_kind_of_bad_image_is_named_and_unused_ones_are_not_decoded() {
 
 #[test]
 fn an_image_that_cannot_be_found_costs_only_itself() {
-    for (image, words) in [
-        (json!({ "bufferView": 99 }), "image 0 cannot be read (images[0]: expected an index into bufferViews"),
-        (json!({ "bufferView": 0, "uri": "x.png" }), "image 'x.png' cannot be read (images[0]: expected a uri or a"),
-        (json!({}), "found neither"),
-        (json!({ "uri": "https://example.org/a.png" }), "the scheme `https:` is never opened"),
-        (json!({ "uri": "data:image/png;base64,!!" }), "base64"),
-        (json!({ "uri": "" }), "expected a relative path"),
+    let again = "Export the model again, or run it through the Khronos glTF validator.";
+    let beside = "Save that file beside the model and name it by its relative path.";
+    for (image, words, remedy) in [
+        (json!({ "bufferView": 99 }), "image 0 cannot be read (images[0]: expected an index into bufferViews", again),
+        (
+            json!({ "bufferView": 0, "uri": "x.png" }),
+            "image 'x.png' cannot be read (images[0]: expected a uri or a",
+            again,
+        ),
+        (json!({}), "found neither", again),
+        (json!({ "uri": "https://example.org/a.png" }), "the scheme `https:` is never opened", beside),
+        (json!({ "uri": "data:image/png;base64,!!" }), "base64", again),
+        (json!({ "uri": "" }), "expected a relative path", again),
     ] {
         let mut builder = with_image("baseColorTexture", &materials::png(2, 2));
         builder.json["images"][0] = image.clone();
         let said = warning(&builder);
-        assert!(said.contains(words) && said.contains("checkerboard"), "{image}: {said}");
+        assert!(said.contains(words) && said.contains("checkerboard") && said.ends_with(remedy), "{image}: {said}");
     }
     // A view with an image in it may not be cut short.
     let mut builder = with_image("baseColorTexture", &materials::png(2, 2));
@@ -142,11 +153,9 @@ fn files_outside_of_the_folder_are_not_read_for_images_either() {
     let model = open(uri, true);
     assert!(model.images[0].width == 3 && model.warnings.is_empty(), "{:?}", model.warnings);
     let model = open("gone.png", false);
-    assert!(
-        model.warnings[0].contains("image 'gone.png' cannot be read (there is no such file)"),
-        "{:?}",
-        model.warnings
-    );
+    let [said] = model.warnings.as_slice() else { panic!("{:?}", model.warnings) };
+    assert!(said.contains("image 'gone.png' cannot be read (there is no such file)"), "{said}");
+    assert!(said.ends_with("Put it there or export a self-contained .glb."), "{said}");
 }
 
 #[test]
