@@ -18,6 +18,9 @@ const SUN: &str = " [sun ";
 #[derive(Default)]
 pub(super) struct Calls(HashMap<u32, Arc<str>>);
 
+/// A caller, the function that it calls, and the light that the call is about.
+type Called<'a> = (u32, &'a str, Option<(LightList, u32)>);
+
 impl Calls {
     /// Those of a log. `function`: the name of the function that begins at a log point, and the lights that one of its arguments numbers.
     pub(super) fn new<'a>(
@@ -26,7 +29,7 @@ impl Calls {
     ) -> Self {
         let mut paths: HashMap<u32, Arc<str>> = HashMap::new();
         // How often each call has called each function for each light.
-        let mut called: HashMap<(u32, &str, Option<(LightList, u32)>), usize> = HashMap::new();
+        let mut called: HashMap<Called<'_>, usize> = HashMap::new();
         // The first call behind those that are lost, and the call before the next.
         let (mut behind, mut last) = (0, 0);
         for call in calls {

@@ -5,6 +5,7 @@ use egui::{Color32, ComboBox, RichText, Sense, Stroke, Ui, vec2};
 use super::head::MENU;
 use crate::app::command::source::CHOOSE_TRACE;
 use crate::app::commands::Commands;
+use crate::app::state::trace::Traces;
 use crate::app::state::trace::choice::{Choice, ListedCall, calls, listed_calls, most_times};
 use crate::app::state::trace::rounds::{Round, TracedLoop, traced_loops};
 use crate::app::widgets::plural;
@@ -17,17 +18,42 @@ const INDENT: f32 = 12.0;
 /// Width of the list of rounds, points.
 const ROUNDS: f32 = 110.0;
 
-/// Shows the fragment, the call, the round and the time, where there is a choice. `text`: that of the traced file.
-pub(super) fn show(ui: &mut Ui, now: &Choice, (trace, text): (&Trace, &str), fragment: usize, commands: &mut Commands) {
-    let (calls, times) = (calls(trace, fragment), most_times(now, trace, text));
-    let runs_again = |event: &Event| event.time > 1 && event.doing.act == Act::Condition;
-    let loops = match trace.fragments[fragment].events.iter().any(runs_again) {
-        true => traced_loops(trace, fragment, text, now.call_of(trace, fragment)),
-        false => Vec::new(),
-    };
+/// The choices that a fragment offers. A log may have thousands of events, so they are looked for once for each trace and choice.
+#[derive(Default)]
+pub(super) struct Offers {
+    /// How many calls have statements of the file.
+    calls: usize,
+    /// How often the statement ran that ran most often in the chosen call and round.
+    times: usize,
+    loops: Vec<TracedLoop>,
+}
+
+impl Offers {
+    /// Those of the newest trace.
+    pub(super) fn new(traces: &Traces) -> Self {
+        let (Some(newest), Some(fragment)) = (traces.newest(), traces.fragment()) else { return Self::default() };
+        let (Ok(trace), text, now) = (&newest.trace, newest.text(), &traces.choice) else { return Self::default() };
+        let runs_again = |event: &Event| event.time > 1 && event.doing.act == Act::Condition;
+        let loops = match trace.fragments[fragment].events.iter().any(runs_again) {
+            true => traced_loops(trace, fragment, &text, now.call_of(trace, fragment)),
+            false => Vec::new(),
+        };
+        Self { calls: calls(trace, fragment).len(), times: most_times(now, trace, &text), loops }
+    }
+}
+
+/// Shows the fragment, the call, the round and the time, where there is a choice.
+pub(super) fn show(
+    ui: &mut Ui,
+    now: &Choice,
+    (trace, offers): (&Trace, &Offers),
+    fragment: usize,
+    commands: &mut Commands,
+) {
+    let Offers { calls, times, loops } = offers;
     let has_rounds = now.round.is_some() || loops.iter().any(|of| of.rounds.len() > 1);
     let has =
-        [trace.fragments.len() > 1, calls.len() > 1 || now.call.is_some(), has_rounds, times > 1 || now.time.is_some()];
+        [trace.fragments.len() > 1, *calls > 1 || now.call.is_some(), has_rounds, *times > 1 || now.time.is_some()];
     if has == [false; 4] {
         return;
     }
@@ -36,13 +62,13 @@ pub(super) fn show(ui: &mut Ui, now: &Choice, (trace, text): (&Trace, &str), fra
         choose_fragment(ui, &mut choice, trace, fragment);
     }
     if has[1] {
-        choose_call(ui, &mut choice, calls.len(), (trace, fragment));
+        choose_call(ui, &mut choice, *calls, (trace, fragment));
     }
     if has[2] {
-        choose_round(ui, &mut choice, &loops);
+        choose_round(ui, &mut choice, loops);
     }
     if has[3] {
-        choose_time(ui, &mut choice, times);
+        choose_time(ui, &mut choice, *times);
     }
     if choice != *now {
         commands.push(CHOOSE_TRACE.with(choice));

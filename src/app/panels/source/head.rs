@@ -59,10 +59,8 @@ pub(super) fn show(
     ui.horizontal(|ui| {
         pixel(ui, state, commands);
         let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
-        if let Some((newest, trace)) = newest.zip(trace)
-            && let Some(fragment) = state.traces.fragment()
-        {
-            choices::show(ui, &state.traces.choice, (trace, &newest.text()), fragment, commands);
+        if let Some((trace, fragment)) = trace.zip(state.traces.fragment()) {
+            choices::show(ui, &state.traces.choice, (trace, &model.offers), fragment, commands);
         }
         changes(ui, state, model, scroll);
         progress(ui, state, newest.map(|newest| &**newest), is_unsaved);

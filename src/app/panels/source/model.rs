@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::choices::Offers;
 use super::functions::{Fold, Function, functions};
 use crate::app::state::State;
 use crate::app::state::trace::Progress;
@@ -62,6 +63,8 @@ pub(super) struct CodeModel {
     pub(super) shown: Vec<Shown>,
     /// Characters of the longest line.
     pub(super) longest: usize,
+    /// What can be chosen of the trace.
+    pub(super) offers: Offers,
 }
 
 impl CodeModel {
@@ -111,6 +114,7 @@ impl CodeModel {
         if self.inputs.as_ref() == Some(&inputs) {
             return;
         }
+        self.offers = Offers::new(&state.traces);
         self.lines = lines(state, shaders, &inputs);
         self.functions = functions(&inputs.text);
         let about = |line: &CodeLine| inputs.diagnostics.iter().any(|found| found.line == Some(line.row.line));

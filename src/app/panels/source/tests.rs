@@ -212,7 +212,7 @@ fn a_frame_of_600_lines() {
             frames.push(harness.state().took);
         }
         frames.sort();
-        println!("{what}: median {:?}, most {:?}", frames[25], frames[49]);
+        crate::message::tell(format_args!("{what}: median {:?}, most {:?}", frames[25], frames[49]));
     }
     assert_eq!(scrolled, 50);
 }

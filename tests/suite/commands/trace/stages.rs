@@ -168,6 +168,10 @@ fn toys_are_traced_with_the_frames_before() {
     let uv = vector(&json!([values(&found, file, 3, "uv")[0][0], values(&found, file, 3, "uv")[0][1], 0]));
     assert!(near(uv[0], 24.5 / 96.0, 1e-6) && near(uv[1], (64.0 - 15.5) / 64.0, 1e-6), "{uv:?}");
     assert_eq!(values(&found, file, 4, "count"), [json!(4.0)]);
+    // Of the stage around it, nothing. An assertion needs no path.
+    assert!(found["lines"].as_array().unwrap().iter().all(|line| line["file"] == file), "{found}");
+    let asserted = ["toy.glsl", "--at", "24,15", "--frames", "4", "--assert", "toy.glsl:4 count > 3"];
+    trace(directory.path(), &asserted).expect(0, &[]);
     let stage = ["toy.glsl", "--at", "24,15", "--json", "--frames", "4", "--file", "opened/buffer.glsl"];
     let found = trace(directory.path(), &stage).expect(0, &[]).json();
     assert_eq!(values(&found, "opened/buffer.glsl", 3, "before"), [json!(3.0)], "{found}");
