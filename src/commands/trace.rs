@@ -86,11 +86,13 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let mode = shaders.modes.iter().find(|mode| mode.slug == slug).cloned();
     let mode = mode.ok_or_else(|| Failure::Usage(format!("the shaders have no mode {slug}")))?;
     progress.say("tracing the pixel");
-    args.assert.iter_mut().for_each(|assertion| assertion.file = whole_path(&shaders, &assertion.file));
-    let mut named: Vec<String> = args.file.iter().map(|file| whole_path(&shaders, file)).collect();
+    let opened = args.common.source()?.opened();
+    let whole = |file: &str| whole_path(&shaders, opened.as_ref(), file);
+    args.assert.iter_mut().for_each(|assertion| assertion.file = whole(&assertion.file));
+    let mut named: Vec<String> = args.file.iter().map(|file| whole(file)).collect();
     if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
         // The stage around a single file is not what the user has written.
-        named.extend(args.common.source()?.opened().map(|opened| opened.to_string()));
+        named.extend(opened.as_ref().map(TreePath::to_string));
     }
     let asserted_files = args.assert.iter().map(|assertion| assertion.file.as_str());
     let files: Vec<&str> = named.iter().map(String::as_str).chain(asserted_files).collect();
@@ -135,9 +137,12 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     }
 }
 
-/// The path of a file of the tree. `ndf.glsl` is enough if only one path ends so.
-fn whole_path(shaders: &ShaderSet, file: &str) -> String {
+/// The path of a file of the tree. `ndf.glsl` is enough if only one path ends so, or that of the single file that is opened.
+fn whole_path(shaders: &ShaderSet, opened: Option<&TreePath>, file: &str) -> String {
     let ending = format!("/{file}");
+    if let Some(opened) = opened.filter(|opened| opened.as_str().ends_with(&ending)) {
+        return opened.to_string();
+    }
     let mut found = shaders.texts.keys().filter(|path| path.as_str().ends_with(&ending));
     match (shaders.texts.contains_key(&TreePath::from(file)), found.next(), found.next()) {
         (false, Some(one), None) => one.to_string(),

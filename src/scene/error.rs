@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What to do about a file that violates the specification.
+/// The remedy for a file that violates the specification.
 pub(super) const EXPORT_AGAIN: &str = "Export the model again, or run it through the Khronos glTF validator.";
-/// What to do about a path that leaves the model's folder.
+/// The remedy for a path that leaves the model's folder.
 const ALLOW_OUTSIDE: &str = "Give --allow-outside to read it if you trust this model.";
-/// What to do about a URI that is never opened.
+/// The remedy for a URI that is never opened.
 const SAVE_BESIDE: &str = "Save that file beside the model and name it by its relative path.";
-/// What to do about a file that is not there.
+/// The remedy for a file that is not there.
 const PUT_THERE: &str = "Put it there or export a self-contained .glb.";
 
 /// A model that could not be loaded. The message is one paragraph: the file, what was expected, what was found, and what
@@ -190,7 +190,7 @@ impl Problem {
         }
     }
 
-    /// What to do about the fault, if it is not one of the file's own content.
+    /// The remedy, if the fault is not one of the file's own content.
     pub(super) fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Scheme { .. } => Some(SAVE_BESIDE),

@@ -41,7 +41,7 @@ pub(super) struct Status<'a> {
     pub(super) not_finite: Option<NotFinitePixels>,
     /// The findings of the checks of the picture.
     pub(super) checked: Option<&'a CheckedPicture>,
-    /// What is being written.
+    /// The captures under way.
     pub(super) captures: &'a Captures,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,

@@ -14,7 +14,7 @@ const MOST_TOLD: usize = 50;
 pub struct Part {
     noun: &'static str,
     fate: &'static str,
-    /// What to do, unless the problem says it.
+    /// The remedy, unless the problem says it.
     remedy: &'static str,
 }
 
@@ -53,7 +53,7 @@ impl Part {
     pub const SAMPLER: Self = Self::new("sampler", "replaced by the default sampler");
     /// A compressed stream beside uncompressed data.
     pub const STREAM: Self = Self::new("stream", "left out: the uncompressed data is used");
-    /// What a buffer lacks at its end.
+    /// The part that a buffer lacks at its end.
     pub const END: Self = Self::new("buffer", "used as far as it goes");
 
     const fn new(noun: &'static str, fate: &'static str) -> Self {

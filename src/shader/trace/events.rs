@@ -1,11 +1,12 @@
-//! The events of a log as what statements did.
+//! The trace of a log: its events as what statements did.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::calls::Calls;
 use super::elements::Elements;
 use super::log::{LoggedEvent, LoggedFragment};
-use super::{Act, Doing, Event, TracedStage, TracedValue};
+use super::{Act, Doing, Event, Fragment, Invocations, Target, Trace, TracedStage, TracedValue};
+use crate::shader::PixelValue;
 use crate::shader::spirv::trace::Purpose;
 
 /// The action of the statement of a log point. `None` for the begin of a function.
@@ -39,7 +40,7 @@ struct Times {
 }
 
 /// The events of a log, and how many between them were not logged.
-pub(super) fn of(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u32) {
+fn of_fragment(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u32) {
     let calls = Calls::new(&logged.calls, |number| match &stage.place(stage.point(number)?).purpose {
         Purpose::Enter(name, list) => Some((name.as_str(), *list)),
         _ => None,
@@ -70,4 +71,67 @@ pub(super) fn of(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u
         }
     }
     (events, times.values().map(|times| times.lost).sum())
+}
+
+impl Trace {
+    /// The trace of a log that `stage` has written of these invocations. `picture` and `redrawn`: see the members.
+    pub fn new(
+        stage: &TracedStage,
+        (of, target): (Invocations, Target),
+        words: &[u32],
+        picture: &PixelValue,
+        redrawn: &PixelValue,
+    ) -> Self {
+        let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
+        let (logged, left_out) = stage.layout().decode(words);
+        let fragment = |logged: LoggedFragment| {
+            let (events, not_logged) = of_fragment(stage, &logged);
+            // As the pixel is read: without flags in alpha.
+            let color = logged.color.map(|color| match target {
+                Target::Picture => bits(&PixelValue::decode(color.map(f32::from_bits))),
+                _ => color,
+            });
+            let (depth, vertex) = match of {
+                Invocations::Pixel(..) => (f32::from_bits(logged.number), None),
+                Invocations::Triangle(_) => (0.0, Some(logged.number)),
+                Invocations::Compute(_) => (0.0, None),
+            };
+            Fragment { depth, vertex, color, events, not_logged }
+        };
+        let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
+        // A device may draw them in any order.
+        match of {
+            Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
+            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
+        }
+        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
+        let places = stage.places().filter(|place| is_shown(&place.purpose));
+        let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
+        let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
+        Self {
+            stage: stage.path().to_owned(),
+            kind: stage.kind(),
+            fragments,
+            left_out,
+            target,
+            picture: bits(picture),
+            redrawn: bits(redrawn),
+            lights: Vec::new(),
+            endless_loop: None,
+            code: code.collect(),
+        }
+    }
+}
+
+/// Sorts vertices by the corners of their triangle. A vertex is run again for each triangle that has it, with the same values.
+fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
+    let corner = |fragment: &Fragment| corners.iter().position(|corner| Some(*corner) == fragment.vertex);
+    let mut kept: Vec<Fragment> = Vec::new();
+    for fragment in std::mem::take(fragments) {
+        if !kept.contains(&fragment) {
+            kept.push(fragment);
+        }
+    }
+    kept.sort_by_key(corner);
+    *fragments = kept;
 }

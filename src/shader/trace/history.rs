@@ -242,7 +242,7 @@ mod tests {
             other.proof_text(1),
             "blended over, together 2 ulp from the picture: the device rounds where it blends"
         );
-        // What lies behind all of them is not known.
+        // Nothing is known of the picture behind all of them.
         let none = of(&[(0.8, half), (0.5, half)], [0.1, 0.75, 0.9, 1.0]);
         assert_eq!((states(&none), none.is_proven(0)), (vec![Blended, Blended], false));
         assert!(none.proof_text(0).contains("ulp from the picture: a later pass changes it"), "{}", none.proof_text(0));

@@ -11,7 +11,7 @@
 use std::collections::HashMap;
 
 use super::Invocations;
-use super::stage::Listener;
+use super::stage::{Listener, TracedStage};
 use crate::shader::StageKind;
 use crate::shader::spirv::trace::{Logged, with_constants};
 
@@ -242,6 +242,13 @@ pub struct LoggedEvent {
     pub bits: [u32; 4],
     /// How many events of the point came between this one and the next that was kept.
     pub lost: u32,
+}
+
+impl TracedStage {
+    /// The places of the log that it writes.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.point_count())
+    }
 }
 
 #[cfg(test)]

@@ -30,8 +30,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::spirv::trace::Purpose;
-use super::{Compiler, PixelValue, ShaderSet, Source, StageKind};
+use super::{Compiler, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 pub use calls::{is_related, last_call, light_of, paths_to};
@@ -228,54 +227,6 @@ pub enum Act {
 }
 
 impl Trace {
-    /// The trace of a log that `stage` has written of these invocations. `picture` and `redrawn`: see the members.
-    pub fn new(
-        stage: &TracedStage,
-        (of, target): (Invocations, Target),
-        words: &[u32],
-        picture: &PixelValue,
-        redrawn: &PixelValue,
-    ) -> Self {
-        let bits = |pixel: &PixelValue| pixel.value.map(f32::to_bits);
-        let (logged, left_out) = stage.layout().decode(words);
-        let fragment = |logged: log::LoggedFragment| {
-            let (events, not_logged) = events::of(stage, &logged);
-            // As the pixel is read: without flags in alpha.
-            let color = logged.color.map(|color| match target {
-                Target::Picture => bits(&PixelValue::decode(color.map(f32::from_bits))),
-                _ => color,
-            });
-            let (depth, vertex) = match of {
-                Invocations::Pixel(..) => (f32::from_bits(logged.number), None),
-                Invocations::Triangle(_) => (0.0, Some(logged.number)),
-                Invocations::Compute(_) => (0.0, None),
-            };
-            Fragment { depth, vertex, color, events, not_logged }
-        };
-        let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
-        // A device may draw them in any order.
-        match of {
-            Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
-            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
-        }
-        let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
-        let places = stage.places().filter(|place| is_shown(&place.purpose));
-        let lines: BTreeSet<(&str, u32)> = places.map(|place| (place.file.as_str(), place.line)).collect();
-        let code = lines.into_iter().map(|(file, line)| ((file.to_owned(), line), stage.line(file, line)));
-        Self {
-            stage: stage.path().to_owned(),
-            kind: stage.kind(),
-            fragments,
-            left_out,
-            target,
-            picture: bits(picture),
-            redrawn: bits(redrawn),
-            lights: Vec::new(),
-            endless_loop: None,
-            code: code.collect(),
-        }
-    }
-
     /// The fragment that is seen: the nearest one with the color of the picture, or else the nearest one that was not discarded. `None`
     /// where nothing was drawn.
     pub fn visible(&self) -> Option<usize> {
@@ -315,17 +266,4 @@ impl Trace {
     fn is_shown(&self, fragment: &Fragment) -> bool {
         self.has_color() && fragment.color.is_some_and(|color| self.target.holds(color, self.picture))
     }
-}
-
-/// Sorts vertices by the corners of their triangle. A vertex is run again for each triangle that has it, with the same values.
-fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
-    let corner = |fragment: &Fragment| corners.iter().position(|corner| Some(*corner) == fragment.vertex);
-    let mut kept: Vec<Fragment> = Vec::new();
-    for fragment in std::mem::take(fragments) {
-        if !kept.contains(&fragment) {
-            kept.push(fragment);
-        }
-    }
-    kept.sort_by_key(corner);
-    *fragments = kept;
 }

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::conditions::line_of_condition;
-use super::log::Layout;
 use super::statement::{self, Site};
 use crate::shader::contract::Texts;
 use crate::shader::glsl::syntax::{Function, functions};
@@ -164,11 +163,6 @@ impl TracedStage {
     /// How many log points there are.
     pub(super) fn point_count(&self) -> usize {
         self.traced.points.len()
-    }
-
-    /// The places of the log that it writes.
-    pub fn layout(&self) -> Layout {
-        Layout::new(self.point_count())
     }
 
     /// The places that log values, in the order of the module.

@@ -2,7 +2,6 @@
 
 use egui::{Color32, ComboBox, RichText, Sense, Stroke, Ui, vec2};
 
-use super::head::MENU;
 use crate::app::command::source::CHOOSE_TRACE;
 use crate::app::commands::Commands;
 use crate::app::state::trace::Traces;
@@ -15,6 +14,8 @@ use crate::shader::trace::{Act, Event, Trace, TracedLight, last_call};
 
 /// Points by which a call stands to the right of its caller, and a round of its loop.
 const INDENT: f32 = 12.0;
+/// Height of the list of files, points.
+pub(super) const MENU: f32 = 380.0;
 /// Width of the list of rounds, points.
 const ROUNDS: f32 = 110.0;
 

@@ -28,8 +28,6 @@ use crate::shader::{ShaderSet, TreePath};
 const FILES: f32 = 176.0;
 /// Width of the list of stages, points.
 const STAGES: f32 = 130.0;
-/// Height of the list of files, points.
-pub(super) const MENU: f32 = 380.0;
 
 /// Shows the rows above the code.
 pub(super) fn show(

@@ -43,13 +43,15 @@ use number::NumberDrag;
 use scroll::Scroll;
 
 /// How the rest of the window finds the panel.
-pub(super) static PANEL: PanelSpec =
-    PanelSpec::new(Panel::SOURCE.0, Group::Shaders, "code values trace statements debugger editor lines", || {
-        Box::<SourceState>::default()
-    })
-    .opens_on_request()
-    .below_picture()
-    .scrolls_itself();
+pub(super) static PANEL: PanelSpec = PanelSpec::new(
+    Panel::SOURCE.0,
+    Group::Shaders,
+    "code values trace statements debugger editor lines which light too bright",
+    || Box::<SourceState>::default(),
+)
+.opens_on_request()
+.below_picture()
+.scrolls_itself();
 
 /// State of the panel between frames.
 #[derive(Default)]

@@ -63,7 +63,7 @@ pub(super) struct CodeModel {
     pub(super) shown: Vec<Shown>,
     /// Characters of the longest line.
     pub(super) longest: usize,
-    /// What can be chosen of the trace.
+    /// The choices that the trace offers.
     pub(super) offers: Offers,
 }
 

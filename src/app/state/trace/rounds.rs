@@ -99,7 +99,7 @@ impl Loop<'_> {
                 stored.retain(|at| events[*at].is_some_and(|of| of.calls == event.calls));
                 owners[at] = Some(number);
                 for (place, at) in stored.iter().enumerate() {
-                    // What was stored again is of a round that was not logged.
+                    // A later value is of a round that was not logged.
                     let name = |at: &usize| events[*at].map(|event| &event.doing);
                     let is_last = !stored[place + 1..].iter().any(|later| name(later) == name(at));
                     owners[*at] = Some(if is_last { number } else { 0 });

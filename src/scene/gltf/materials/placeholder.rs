@@ -18,7 +18,7 @@ const MOST_NAMES: usize = 3;
 pub struct Failure {
     /// The image and the reason, as part of a sentence.
     pub reason: String,
-    /// What to do, as a sentence.
+    /// The remedy, as a sentence.
     pub remedy: &'static str,
 }
 

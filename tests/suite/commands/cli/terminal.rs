@@ -54,6 +54,9 @@ fn names_from_a_model_are_escaped() {
 
     model["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 9 });
     fs::write(here.join(&name), glb::container(&model, &bin)).unwrap();
+    assert_plain(run(here, &["info", &name]).expect(0, &[&format!("\"{ESCAPED}\".pbrMetallicRoughness"), "found 9"]));
+    model["scenes"][0]["nodes"] = json!([9]);
+    fs::write(here.join(&name), glb::container(&model, &bin)).unwrap();
     assert_plain(run(here, &["info", &name]).expect(1, &[ESCAPED, "9"]));
 }
 
