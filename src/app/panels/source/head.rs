@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{ComboBox, Key, Label, PopupCloseBehavior, RichText, ScrollArea, Ui};
 
-use super::choices;
+use super::choices::{self, MENU};
 use super::edit::Editor;
 use super::fold::Folds;
 use super::model::CodeModel;
