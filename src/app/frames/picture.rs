@@ -8,7 +8,7 @@ use crate::app::actions::files::follow_added;
 use crate::app::actions::inspect::follow_pin;
 use crate::app::engine::Engine;
 use crate::app::engine::last_complete::{LastComplete, target};
-use crate::app::frames::progress::is_settled;
+use crate::app::frames::progress::{is_settled, lacks_nothing, moves};
 use crate::app::state::State;
 use crate::app::state::waits::Waits;
 use crate::events::{Event, emit};
@@ -173,7 +173,9 @@ pub(in crate::app) fn missing_thumbnail(
     }
     let newest = state.shown_generation();
     // The thumbnail of the newest version waits until its lighting is complete.
-    let shown = engine.shown.clone().filter(|shown| is_settled(state, engine) && shown.scene().is_some());
+    // A picture that moves has that of a moment.
+    let is_complete = is_settled(state, engine) || moves(state) && lacks_nothing(state, engine);
+    let shown = engine.shown.clone().filter(|shown| is_complete && shown.scene().is_some());
     let lacks: Vec<u64> = state.versions.without_thumbnail().map(|version| version.generation).collect();
     for generation in lacks {
         let picture =

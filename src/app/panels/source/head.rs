@@ -204,7 +204,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
 /// The time of the traced picture, if the picture on screen is of another.
 fn moment(state: &State) -> Option<String> {
     let traced = state.traces.newest()?.of.picture.clock.time_s;
-    (traced != state.picture.clock.time_s).then(|| format!(" of {traced:.2} s"))
+    (traced != state.picture.clock.time_s).then(|| format!(", at {traced:.2} s"))
 }
 
 /// How many lines the last edit has changed, and the first of them.

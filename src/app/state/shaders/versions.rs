@@ -132,7 +132,7 @@ impl Versions {
             self.list.pop_back();
         }
         // Watching another expression, and going back to the newest version, create none; the sources are unchanged.
-        if let Some(last) = self.list.back_mut().filter(|last| last.shaders.texts == shaders.texts) {
+        if let Some(last) = self.list.back_mut().filter(|last| has_same_texts(&last.shaders, shaders)) {
             (last.generation, last.shaders) = (generation, shaders.clone());
             return;
         }
@@ -245,6 +245,13 @@ impl Versions {
     }
 }
 
+/// Whether the files of both have the same texts. While stages are still to be compiled, shaders lack files that only these have.
+fn has_same_texts(a: &ShaderSet, b: &ShaderSet) -> bool {
+    let (few, all) = if a.texts.len() < b.texts.len() { (a, b) } else { (b, a) };
+    let is_same = few.texts.iter().all(|(path, text)| all.texts.get(path) == Some(text));
+    is_same && (few.texts.len() == all.texts.len() || !few.is_complete())
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
@@ -293,6 +300,13 @@ mod tests {
         versions.add(&of(0, 4, "2"), save(), false);
         assert_eq!(numbers(&versions), [1, 2]);
         assert!(versions.of_generation(4).is_some() && versions.before(4).is_some_and(|version| version.number == 1));
+        // The first shaders of a tree lack files of stages that are compiled later.
+        let mut whole = ShaderSet::clone(&of(0, 4, "2"));
+        whole.texts.insert(TreePath::from("b.glsl"), "b".into());
+        versions.complete(&Arc::new(whole));
+        let pending = std::collections::BTreeSet::from(["b.frag".to_owned()]);
+        versions.add(&Arc::new(ShaderSet { pending, ..ShaderSet::clone(&of(0, 5, "2")) }), save(), false);
+        assert_eq!(numbers(&versions), [1, 2]);
         // The same tree from scratch.
         assert_eq!(versions.change_tree(Some(a), Some(a)), 0);
         assert_eq!(numbers(&versions), [1, 2]);
