@@ -62,7 +62,7 @@ pub struct ShaderSet {
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on, as they are compiled.
     pub texts: BTreeMap<TreePath, Arc<str>>,
-    /// The texts of those files whose author wrote another one, with the same lines: see [`Source::author_text`].
+    /// The texts of those files whose author wrote another one, with the same lines: see [`crate::shader::Source::author_text`].
     pub author_texts: BTreeMap<TreePath, Arc<str>>,
     /// The watched expression.
     pub watched: Option<Watching>,

@@ -1,7 +1,7 @@
 //! The log that a traced stage writes: what each of the chosen invocations does.
 //!
 //! An invocation has a part of the log. It begins with a header and a counter for each log point. The calls of functions follow: the first
-//! [`MOST_CALLS`] and the last. Then come the events of each log point: the first and the last of them, in as many slots as there is room for,
+//! `MOST_CALLS` and the last. Then come the events of each log point: the first and the last of them, in as many slots as there is room for,
 //! so a long loop takes no room from the statements behind it. An event has its number among all events of the invocation, by which they are
 //! sorted, and the number of its call.
 //!
