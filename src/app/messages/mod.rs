@@ -5,6 +5,8 @@ mod loaded;
 mod panics;
 pub(super) mod reloads;
 
+use std::path::PathBuf;
+
 use crate::app::actions::checks::on_operations_checked;
 use crate::app::actions::compare::file::{on_picture_fits, on_picture_read};
 use crate::app::actions::compare::on_compared;
@@ -110,16 +112,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::SecondTree(number, message) => on_second_tree(state, engine, number, message),
         Message::VersionWritten(number, written) => on_version_written(state, engine, number, written),
         Message::FilesWritten(written) => on_files_written(state, written),
-        Message::Chosen(answer) => {
-            let dialog = state.choosing.take();
-            match answer {
-                Ok(paths) => {
-                    let commands = all_chosen(state, dialog, paths);
-                    commands.into_iter().for_each(|command| execute(state, engine, command));
-                }
-                Err(NoDialog) => state.workspace.request(PanelRequest::ChooseFile(dialog)),
-            }
-        }
+        Message::Chosen(answer) => on_chosen(state, engine, answer),
         Message::NewTree(Ok(path)) => execute(state, engine, OPEN.with(Open::Tree(path))),
         Message::NewTree(Err(message)) => state.say(message),
         Message::Listed(folder, files) => state.listing.take(&folder, files),
@@ -127,5 +120,17 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::Exercise(folder, exercise) => on_exercise(state, engine, folder, exercise),
         Message::Checked(checked) => on_checked(state, checked),
         Message::Panicked(task, text) => on_panic(state, engine, task, &text),
+    }
+}
+
+/// Opens what the user has chosen in the dialog that is open. Without a dialog of the desktop, the window lists the files itself.
+fn on_chosen(state: &mut State, engine: &mut Engine, answer: Result<Vec<PathBuf>, NoDialog>) {
+    let dialog = state.choosing.take();
+    match answer {
+        Ok(paths) => {
+            let commands = all_chosen(state, dialog, paths);
+            commands.into_iter().for_each(|command| execute(state, engine, command));
+        }
+        Err(NoDialog) => state.workspace.request(PanelRequest::ChooseFile(dialog)),
     }
 }

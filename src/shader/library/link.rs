@@ -145,12 +145,9 @@ impl Library {
     ) -> Update {
         let cleared = std::mem::replace(&mut self.failed, false);
         let dependencies = self.dependencies().into_iter();
-        let texts: BTreeMap<_, _> =
+        let texts: BTreeMap<TreePath, Arc<str>> =
             dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
-        let own = |path: &TreePath| snapshot.source().author_text(path).ok().map(Arc::<str>::from);
-        let is_adapted = snapshot.source().is_toy();
-        let with_own = texts.keys().filter(|_| is_adapted).filter_map(|path| Some((path.clone(), own(path)?)));
-        let author_texts = with_own.filter(|(path, own)| texts[path] != *own).collect();
+        let author_texts = author_texts(snapshot, &texts);
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         let has_broken_watch = self.has_broken_watch();
         for slot in &mut self.slots {
@@ -276,4 +273,17 @@ fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
         Some(error.on_line(line.number, Some(line.raw)).under(at..at + COVERING.len()))
     });
     found.unwrap_or_else(|| pass.desc.place.error_at("draw=", message)).with_help(help)
+}
+
+/// The texts of files whose authors wrote another text than is compiled: see [`crate::shader::Source::author_text`].
+fn author_texts(snapshot: &Snapshot<'_>, texts: &BTreeMap<TreePath, Arc<str>>) -> BTreeMap<TreePath, Arc<str>> {
+    let source = snapshot.source();
+    if !source.is_toy() {
+        return BTreeMap::new();
+    }
+    let own = |(path, text): (&TreePath, &Arc<str>)| {
+        let own: Arc<str> = source.author_text(path).ok()?.into();
+        (own != *text).then(|| (path.clone(), own))
+    };
+    texts.iter().filter_map(own).collect()
 }

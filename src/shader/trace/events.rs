@@ -28,7 +28,7 @@ fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
     Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
 }
 
-/// What is known of the events of a statement.
+/// The numbers of the events of a statement.
 #[derive(Default)]
 struct Times {
     /// Those that were kept.

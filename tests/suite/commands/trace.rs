@@ -67,6 +67,17 @@ fn tree(directory: &Path, library: &str, body: &str) -> String {
     text
 }
 
+/// The text and the trace of `user.glsl` in such a tree, which is proven.
+#[track_caller]
+fn proven(directory: &Path, library: &str, body: &str) -> (String, Value) {
+    let text = tree(directory, library, body);
+    let found = trace(directory, &["--shaders", "tree", "--at", "50,30", "--file", "user.glsl", "--json"])
+        .expect(0, &[])
+        .json();
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    (text, found)
+}
+
 fn write_sphere(directory: &Path) {
     let material = json!({ "name": "red", "pbrMetallicRoughness": {
         "baseColorFactor": [0.9, 0.3, 0.2, 1.0], "metallicFactor": 0.25, "roughnessFactor": 0.6 } });

@@ -258,7 +258,11 @@ fn a_version_is_answered_when_it_is_written() {
     viewer.tree.write(NDF, &original.replace(D, "float a2 = alpha;"));
     let reload = viewer.running.reload(true);
     viewer.running.settled(&reload);
+    let edited = viewer.tree.read(NDF);
     viewer.running.done(json!({"command": "versions", "write": 1}));
     assert_eq!(viewer.tree.read(NDF), original);
+    // It is a step, as what Source and the sliders write.
+    viewer.running.done(json!({"command": "undo"}));
+    assert_eq!(viewer.tree.read(NDF), edited);
     viewer.quit();
 }

@@ -69,16 +69,15 @@ pub(in crate::app) fn write_files(root: &Path, files: &[Write]) -> Result<Writte
             return Err(format!("cannot write {}: {}. Nothing was written", path.display(), SourceError::Outside));
         }
         let error = |error: std::io::Error| format!("cannot write {}: {error}. Nothing was written", path.display());
-        let old = match std::fs::read(path) {
+        let before = match std::fs::read(path) {
             Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => None,
             read => Some(read.map_err(error)?),
         };
-        let before = old.clone();
-        let old = old.unwrap_or_default();
-        let (has_mark, old_text) = (old.starts_with(mark), old.strip_prefix(mark).unwrap_or(&old));
+        let old = before.as_deref().unwrap_or_default();
+        let (has_mark, old_text) = (old.starts_with(mark), old.strip_prefix(mark).unwrap_or(old));
         let is_known = old.is_empty() || old_text == text.as_bytes();
         if !is_known && shown.as_ref().is_none_or(|shown| old_text != shown.as_bytes()) {
-            keep_beside(path, &old).map_err(error)?;
+            keep_beside(path, old).map_err(error)?;
         }
         let after = [if has_mark { mark } else { b"" }, text.as_bytes()].concat();
         writes.push((path.clone(), [before, Some(after)]));

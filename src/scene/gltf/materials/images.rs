@@ -32,9 +32,9 @@ const LONGEST_REASON: usize = 120;
 /// The first bytes of other formats, and their names.
 const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "a .basis file")];
 
-/// What to do about an image in a format that Specula does not read.
+/// The remedy for an image in a format that Specula does not read.
 const OTHER_FORMAT: &str = "Export the image as PNG, JPEG, WebP or KTX2.";
-/// What to do about an image that is damaged.
+/// The remedy for a damaged image.
 const DAMAGED: &str = "Export or copy the image again.";
 
 /// An image before decoding.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{done, not_reached, trace, tree};
+use super::{done, not_reached, proven};
 use crate::support::line_of;
 
 const LIBRARY: &str = "struct Pair { float a; vec2 b; };\n#define TWICE(x) ((x) * 2.0)\n\
@@ -50,11 +50,7 @@ const BODY: &str = "    float zero = min(s.roughness, 0.0);\n\
 #[test]
 fn each_statement_has_its_own_value() {
     let directory = tempfile::tempdir().unwrap();
-    let text = tree(directory.path(), LIBRARY, BODY);
-    let found = trace(directory.path(), &["--shaders", "tree", "--at", "50,30", "--file", "user.glsl", "--json"])
-        .expect(0, &[])
-        .json();
-    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    let (text, found) = proven(directory.path(), LIBRARY, BODY);
     let store = |name: &str, values: Vec<Value>| ("store".to_owned(), name.to_owned(), values);
     let condition = |values: Vec<Value>| ("condition".to_owned(), String::new(), values);
     for (part, expected) in [
