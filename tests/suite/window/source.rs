@@ -179,3 +179,29 @@ fn undefined_operations_are_marked_while_the_setting_says_so() {
     assert_eq!(marks(&mut viewer), 0);
     viewer.quit();
 }
+
+/// While a picture plays, each click has the values of its own moment. What was chosen in one tree is not asked of another.
+#[test]
+fn a_click_traces_the_moment_of_the_picture() {
+    let tree = Tree::new();
+    let text = "uniform float u_time;\nvoid main() {\n    float now = u_time;\n    gl_FragColor = vec4(fract(now), 0.0, 0.0, 1.0);\n}\n";
+    std::fs::write(tree.beside("clock.frag"), text).unwrap();
+    let mut viewer = Viewer::driven(tree, &["--size", "900x700", "sphere-grid"]);
+    viewer.running.event("ready");
+    // Whether the model covers the pixel does not matter.
+    viewer.running.ask(json!({ "command": "source", "file": NDF, "at": [171, 150] }));
+    let open = |path: &std::path::Path| json!({ "command": "open", "tree": path });
+    viewer.running.done(open(&viewer.tree.beside("clock.frag")));
+    let mut now = |at: u32| {
+        let found = viewer.running.done(json!({ "command": "source", "at": [at, 100] }));
+        assert_eq!((&found["file"], &found["proof"]["equal"]), (&"opened/clock.frag".into(), &true.into()), "{found}");
+        let line = found["lines"].as_array().unwrap().iter().find(|line| line["line"] == 3).cloned().unwrap();
+        line["done"][0]["first"][0]["value"].as_f64().unwrap_or_else(|| panic!("{line}"))
+    };
+    let (first, second) = (now(100), now(200));
+    assert!(second > first, "{first} s, and {second} s after another click");
+    viewer.running.done(open(&viewer.tree.beside("shaders")));
+    let found = viewer.running.ask(json!({ "command": "source", "at": [171, 150] })).to_string();
+    assert!(!found.contains("opened/"), "{found}");
+    viewer.quit();
+}
