@@ -93,7 +93,7 @@ fn environment(
         format!("the first level of specularImages has {} images, expected the 6 faces of a cube", first.len())
     })?;
     let encoded = indices.map(|index| images::find(root, buffers, files, Origin::Image(index))).into();
-    let decoded = images::decode(encoded, files.canceled);
+    let decoded = images::decode(encoded, &files.memory, files.canceled);
     if let Some(failure) = decoded.iter().find_map(|face| face.failure.as_ref()) {
         return Err(failure.reason.clone());
     }

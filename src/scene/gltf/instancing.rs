@@ -14,56 +14,62 @@ use crate::scene::error::Problem;
 /// The extension's name.
 pub const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// Memory for the instances of a scene, MiB.
-const MOST_MIB: usize = 1024;
 /// Memory that an instance of a primitive takes at most while the model is loaded and shown, bytes: its matrices in doubles and floats, its
 /// place in the hierarchy and in a pose, its draw, its records on the device.
-const BYTES_EACH: usize = 1024;
-/// Maximum number of instances of primitives.
-const MOST: usize = (MOST_MIB << 20) / BYTES_EACH;
+const BYTES_EACH: u64 = 1024;
 
 const VECTOR: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No)] };
 const ROTATION: Format =
     Format { types: &[Type::Vec4], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
 
-/// Replaces each mesh of an instancing node by its instances.
+/// Replaces each mesh of an instancing node by its instances. Leaves out meshes and instances for which the file has no memory left.
+///
+/// # Errors
+/// There is memory for none.
 pub fn expand(
     reader: Reader<'_>,
     meshes: Vec<PlacedMesh>,
     left_out: &mut LeftOut,
     warnings: &mut Vec<String>,
-) -> Vec<PlacedMesh> {
+) -> Result<Vec<PlacedMesh>, Problem> {
     let mut out = Vec::with_capacity(meshes.len());
-    let (mut room, mut beyond) = (MOST, 0);
+    let (mut beyond, mut lacking) = (0, 0_u64);
     for mesh in meshes {
         let node = &reader.root.nodes[mesh.node];
         let extension = node.extensions.as_ref().and_then(|extensions| extensions.others.get(EXTENSION));
-        let Some(extension) = extension else {
-            out.push(mesh);
-            continue;
-        };
-        let place = format!("{}.extensions.{EXTENSION}", place("nodes", mesh.node, node.name.as_deref()));
-        let instances = transforms(reader, &extension["attributes"], &place);
-        let Some(instances) = left_out.unless(Part::INSTANCES, &place, instances) else {
-            out.push(mesh);
-            continue;
-        };
-        let primitives = reader.root.meshes[mesh.mesh].primitives.len().max(1);
-        let shown = instances.len().min(room / primitives);
-        room -= shown * primitives;
-        beyond += instances.len() - shown;
-        out.extend(instances[..shown].iter().map(|instance| PlacedMesh {
-            name: mesh.name.clone(),
-            world_from_object: mesh.world_from_object * *instance,
-            node_from_object: Some(*instance),
-            ..mesh
-        }));
+        let instances = extension.and_then(|extension| {
+            let place = format!("{}.extensions.{EXTENSION}", place("nodes", mesh.node, node.name.as_deref()));
+            left_out.unless(Part::INSTANCES, &place, transforms(reader, &extension["attributes"], &place))
+        });
+        let count = instances.as_ref().map_or(1, Vec::len) as u64;
+        let primitives = reader.root.meshes[mesh.mesh].primitives.len() as u64;
+        let each = BYTES_EACH * primitives.max(1);
+        let shown = reader.memory.take_most(count, each);
+        beyond += count - shown;
+        lacking = lacking.saturating_add((count - shown).saturating_mul(each));
+        match instances {
+            None if shown == 0 => {}
+            None => out.push(mesh),
+            // It fits: it is not above the length.
+            Some(instances) => out.extend(instances[..shown as usize].iter().map(|instance| PlacedMesh {
+                name: mesh.name.clone(),
+                world_from_object: mesh.world_from_object * *instance,
+                node_from_object: Some(*instance),
+                ..mesh
+            })),
+        }
     }
     if beyond > 0 {
-        let full = format!("{MOST} instances of primitives take the {MOST_MIB} MiB that there are for them");
-        warnings.push(format!("{EXTENSION}: {full}; {beyond} more are left out. Export fewer of them."));
+        if out.is_empty() {
+            reader.memory.take(Some(lacking), "nodes")?;
+        }
+        warnings.push(format!(
+            "its instances of meshes would take {} MiB more than there are for so small a file; {beyond} of them are left out. \
+             Export fewer of them.",
+            (lacking >> 20) + 1
+        ));
     }
-    out
+    Ok(out)
 }
 
 /// The transform of each instance, relative to its node.

@@ -8,6 +8,7 @@ mod geometry;
 mod instancing;
 mod left_out;
 pub(super) mod materials;
+mod memory;
 mod motion;
 mod nodes;
 mod objects;
@@ -57,14 +58,17 @@ pub fn load_file(
     let path = std::path::absolute(path).map_err(Problem::Read)?;
     tried.push(path.clone());
     let Opened { path, name, bytes, place } = opened::open(&path)?;
+    let stored = path.metadata().map_or(0, |metadata| metadata.len());
     *tried = vec![path];
-    let files = Files::new(place, options.allow_outside, caller.canceled, tried);
+    let files = Files::new((place, stored), options.allow_outside, caller.canceled, tried);
     guarded(&name, &bytes, files, (options.scene, caller.take_early), start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files::new(Place::Nowhere, false, &|| false, &mut Vec::new()), (None, None), Instant::now())
+    let mut tried = Vec::new();
+    let files = Files::new((Place::Nowhere, bytes.len() as u64), false, &|| false, &mut tried);
+    guarded(name, bytes, files, (None, None), Instant::now())
 }
 
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
@@ -89,20 +93,20 @@ fn build(
     let container::Document { mut root, raw, bin, mut warnings } = container::parse(bytes)?;
     let mut left_out = LeftOut::default();
     let mut buffers = Buffers::load(&root, bin, &mut files, &mut left_out)?;
-    compression::decode(&mut root, &mut buffers, &mut left_out, files.canceled)?;
-    let reader = Reader { root: &root, buffers: &buffers };
+    compression::decode(&mut root, &mut buffers, &files.memory, &mut left_out, files.canceled)?;
     let scene_index = nodes::chosen_scene(&root, scene);
     let environment = environment::read(&root, &buffers, &mut files, scene_index, &mut warnings);
+    let reader = Reader { root: &root, buffers: &buffers, memory: &files.memory };
     let mut scene = nodes::walk(&root, scene, &pointers::switched_nodes(&raw.animations))?;
     let weights = skins::attach(reader, &raw, &mut scene);
     left_out.append(std::mem::take(&mut scene.left_out));
     let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut left_out);
-    scene.meshes = instancing::expand(reader, scene.meshes, &mut left_out, &mut scene.warnings);
     let material::Materials { materials, textures, images, warnings: material_warnings } =
         material::read(&root, &mut left_out);
     let variants = variants::names(&root, &mut warnings);
     let variants = left_out.unless(Part::VARIANTS, "extensions", variants).unwrap_or_default();
     let meshes = read_meshes(reader, &raw, &scene, &materials, variants.len(), &mut left_out)?;
+    scene.meshes = instancing::expand(reader, scene.meshes, &mut left_out, &mut scene.warnings)?;
     let encoded: Vec<images::Encoded<'_>> =
         images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
     warnings.append(&mut scene.warnings);
@@ -130,13 +134,13 @@ fn build(
     };
     let motion = Motion { clips, rig: scene.rig, values, target_names: weights.names };
     let objects = placing::Objects { meshes: scene.meshes, lights: scene.lights, cameras: scene.cameras };
-    let canceled = files.canceled;
+    let (canceled, memory) = (files.canceled, &files.memory);
     // Whoever takes the model early does so while the images are being decoded.
     let early =
         take_early.filter(|_| images::take_long(&encoded)).map(|take| (take, images::placeholders(&model, &encoded)));
     let is_early = early.is_some();
     let ((images, decode_ms), placed) = rayon::join(
-        || timed(|| background::run_if(is_early, || images::decode(encoded, canceled))),
+        || timed(|| background::run_if(is_early, || images::decode(encoded, memory, canceled))),
         || {
             let (placed, place_warnings) = assemble(model, meshes, objects, (motion, weights.rest), canceled)?;
             if let Some((take, images)) = early {

@@ -11,10 +11,11 @@ use json::validation::{Checked, USize64};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::stream::{MAX_DECODED_BYTES, add_buffer, failed, spend};
+use super::stream::{add_buffer, failed};
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
 use crate::scene::gltf::left_out::LeftOut;
+use crate::scene::gltf::memory::{self, Memory};
 use crate::scene::gltf::place::place;
 use crate::scene::load_options::Canceled;
 
@@ -49,7 +50,7 @@ struct Decoded {
 pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
-    budget: &mut u64,
+    memory: &Memory,
     left_out: &mut LeftOut,
     canceled: Canceled<'_>,
 ) {
@@ -61,7 +62,7 @@ pub fn decode(
         };
         (stream, decoded)
     };
-    let decoded: Vec<_> = streams(root, budget).into_par_iter().map(decode).collect();
+    let decoded: Vec<_> = streams(root, memory).into_par_iter().map(decode).collect();
     for (stream, decoded) in decoded {
         match decoded {
             Ok(decoded) => stream.replace(decoded, root, buffers),
@@ -74,7 +75,7 @@ pub fn decode(
     }
 }
 
-fn streams(root: &json::Root, budget: &mut u64) -> Vec<(Stream, Result<Compressed, Problem>)> {
+fn streams(root: &json::Root, memory: &Memory) -> Vec<(Stream, Result<Compressed, Problem>)> {
     let mut streams = Vec::new();
     for (mesh_index, mesh) in root.meshes.iter().enumerate() {
         for (index, primitive) in mesh.primitives.iter().enumerate() {
@@ -86,7 +87,7 @@ fn streams(root: &json::Root, budget: &mut u64) -> Vec<(Stream, Result<Compresse
             let bytes = accessors.filter_map(|accessor| root.accessors.get(accessor.value())).map(claimed_bytes);
             let compressed = json::deserialize::from_value(value.clone())
                 .map_err(|error| Problem::invalid(&place, "a compressed primitive", error.to_string()))
-                .and_then(|compressed: Compressed| spend(budget, bytes.sum(), &place).map(|()| compressed));
+                .and_then(|compressed: Compressed| memory.take(bytes.sum(), &place).map(|()| compressed));
             streams.push((Stream { mesh: mesh_index, primitive: index, place }, compressed));
         }
     }
@@ -113,8 +114,7 @@ impl Stream {
     fn decode(&self, compressed: &Compressed, root: &json::Root, buffers: &Buffers<'_>) -> Result<Decoded, Problem> {
         let primitive = &root.meshes[self.mesh].primitives[self.primitive];
         let source = buffers.view(root, compressed.buffer_view, &self.place)?;
-        let limits =
-            DecodeLimits::default().with_max_decoded_bytes(MAX_DECODED_BYTES).with_max_faces(MAX_DECODED_BYTES / 12);
+        let limits = DecodeLimits::default().with_max_decoded_bytes(memory::BASE).with_max_faces(memory::BASE / 12);
         let mut mesh = Mesh::new();
         MeshDecoder::new()
             .decode(&mut DecoderBuffer::new(source).with_limits(limits), &mut mesh)

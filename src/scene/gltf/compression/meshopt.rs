@@ -6,10 +6,11 @@ use meshoptimizer_rs::{Limits, Workspace, codec};
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::stream::{MAX_DECODED_BYTES, add_buffer, failed, spend};
+use super::stream::{add_buffer, failed};
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
 use crate::scene::gltf::left_out::LeftOut;
+use crate::scene::gltf::memory::{self, Memory};
 use crate::scene::gltf::place::place;
 use crate::scene::load_options::Canceled;
 
@@ -62,7 +63,7 @@ struct Stream {
 pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
-    budget: &mut u64,
+    memory: &Memory,
     left_out: &mut LeftOut,
     canceled: Canceled<'_>,
 ) {
@@ -78,7 +79,7 @@ pub fn decode(
         };
         (view, extension, place, decoded)
     };
-    let decoded: Vec<_> = streams(root, budget).into_par_iter().map(decode).collect();
+    let decoded: Vec<_> = streams(root, memory).into_par_iter().map(decode).collect();
     for (view, extension, place, decoded) in decoded {
         let (bytes, stride) = match decoded {
             Ok((bytes, stride)) => (Ok(bytes), stride),
@@ -95,7 +96,7 @@ pub fn decode(
     }
 }
 
-fn streams(root: &json::Root, budget: &mut u64) -> Vec<Stream> {
+fn streams(root: &json::Root, memory: &Memory) -> Vec<Stream> {
     let mut streams = Vec::new();
     for (index, view) in root.buffer_views.iter().enumerate() {
         let others = view.extensions.as_ref().map(|extensions| &extensions.others);
@@ -105,7 +106,7 @@ fn streams(root: &json::Root, budget: &mut u64) -> Vec<Stream> {
         let compressed = json::deserialize::from_value(value.clone())
             .map_err(|error| Problem::invalid(&place, "a compressed buffer view", error.to_string()))
             .and_then(|compressed: Compressed| {
-                spend(budget, compressed.count.checked_mul(compressed.byte_stride), &place).map(|()| compressed)
+                memory.take(compressed.count.checked_mul(compressed.byte_stride), &place).map(|()| compressed)
             });
         streams.push(Stream { view: index, extension, place, compressed });
     }
@@ -116,9 +117,9 @@ impl Compressed {
     fn decode(self, root: &json::Root, buffers: &Buffers<'_>, place: &str) -> Result<Vec<u8>, Problem> {
         let Self { buffer, byte_offset, byte_length, byte_stride, count, mode, filter } = self;
         let source = buffers.range(root, buffer, byte_offset, byte_length, place)?;
-        // `spend` has limited the product.
+        // The product fits: memory was taken for it.
         let (count, stride) = (count as usize, byte_stride as usize);
-        let mut workspace = Workspace::new(Limits { max_bytes: MAX_DECODED_BYTES as usize, ..Limits::default() });
+        let mut workspace = Workspace::new(Limits { max_bytes: memory::BASE as usize, ..Limits::default() });
         let damaged = |error: meshoptimizer_rs::Error| Problem::invalid(place, "a valid stream", error.to_string());
         let mut bytes = match mode {
             Mode::Attributes => codec::decode_vertex_buffer(count, stride, source, &mut workspace),

@@ -8,6 +8,7 @@ use gltf::json;
 
 use super::file::buffers::Buffers;
 use super::left_out::LeftOut;
+use super::memory::Memory;
 use crate::scene::error::Problem;
 use crate::scene::load_options::Canceled;
 
@@ -22,11 +23,11 @@ pub const EXTENSIONS: [&str; 3] = [draco::EXTENSION, meshopt::KHR, meshopt::EXT]
 pub fn decode(
     root: &mut json::Root,
     buffers: &mut Buffers<'_>,
+    memory: &Memory,
     left_out: &mut LeftOut,
     canceled: Canceled<'_>,
 ) -> Result<(), Problem> {
-    let mut budget = stream::MAX_DECODED_BYTES;
-    meshopt::decode(root, buffers, &mut budget, left_out, canceled);
-    draco::decode(root, buffers, &mut budget, left_out, canceled);
+    meshopt::decode(root, buffers, memory, left_out, canceled);
+    draco::decode(root, buffers, memory, left_out, canceled);
     if canceled() { Err(Problem::Canceled) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! A compressed stream of a file: its share of the memory, its failure, and the buffer that it becomes.
+//! A compressed stream of a file: its failure, and the buffer that it becomes.
 
 use gltf::json;
 use json::validation::USize64;
@@ -6,22 +6,6 @@ use json::validation::USize64;
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
 use crate::scene::gltf::left_out::{LeftOut, Part};
-
-/// Maximum number of bytes that the compressed streams of a file may decode to.
-pub const MAX_DECODED_BYTES: u64 = 1 << 30;
-
-/// Takes `bytes` from what a file may still decode to.
-pub fn spend(budget: &mut u64, bytes: Option<u64>, place: &str) -> Result<(), Problem> {
-    match bytes.and_then(|bytes| budget.checked_sub(bytes)) {
-        Some(left) => *budget = left,
-        None => {
-            let found = bytes.map_or("more".into(), |bytes| format!("{bytes} more bytes"));
-            let expected = format!("compressed data of at most {} MiB in all when decoded", MAX_DECODED_BYTES >> 20);
-            return Err(Problem::invalid(place, expected, found));
-        }
-    }
-    Ok(())
-}
 
 /// Leaves out a damaged stream: its uncompressed data is used if the file does not require the extension, since it then has such data.
 /// Otherwise returns the problem, which is one of all that lies in the stream.

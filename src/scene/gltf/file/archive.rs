@@ -53,6 +53,13 @@ impl Archive {
         self.files.contains_key(name)
     }
 
+    /// Bytes that a file unpacks to, as it says; 0 if it is not there.
+    pub fn size(&self, name: &str) -> u64 {
+        let mut archive = self.reader.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let entry = self.files.get(name).and_then(|index| archive.by_index_raw(*index).ok());
+        entry.map_or(0, |entry| entry.size())
+    }
+
     /// Unpacks a file.
     ///
     /// # Errors

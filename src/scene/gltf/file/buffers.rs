@@ -13,6 +13,7 @@ use super::uri::{self, UriTarget};
 use crate::regular_file;
 use crate::scene::error::Problem;
 use crate::scene::gltf::left_out::{LeftOut, Part};
+use crate::scene::gltf::memory::Memory;
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::load_options::Canceled;
 
@@ -23,6 +24,8 @@ pub struct Files<'t> {
     allow_outside: bool,
     /// Whether the load is no longer needed.
     pub canceled: Canceled<'t>,
+    /// What the model may take. Each file that it names counts as often as it does.
+    pub memory: Memory,
     /// Every file read or looked for so far, absolute.
     pub tried: &'t mut Vec<PathBuf>,
     /// The same files, for a model that names many.
@@ -30,10 +33,15 @@ pub struct Files<'t> {
 }
 
 impl<'t> Files<'t> {
-    /// The files of a model.
-    pub fn new(place: Place, allow_outside: bool, canceled: Canceled<'t>, tried: &'t mut Vec<PathBuf>) -> Self {
+    /// The files of a model whose own file, or the archive that it is in, has `stored` bytes.
+    pub fn new(
+        (place, stored): (Place, u64),
+        allow_outside: bool,
+        canceled: Canceled<'t>,
+        tried: &'t mut Vec<PathBuf>,
+    ) -> Self {
         let known = tried.iter().cloned().collect();
-        Self { place, allow_outside, canceled, tried, known }
+        Self { place, allow_outside, canceled, memory: Memory::new(stored), tried, known }
     }
 
     /// Loads the bytes of a URI. `user` is for messages.
@@ -61,6 +69,7 @@ impl<'t> Files<'t> {
                 };
                 let name = named.iter().find(|name| archive.has(name)).unwrap_or(first);
                 let path = PathBuf::from(name);
+                self.memory.take(Some(archive.size(name)), user)?;
                 archive.read(name).map_err(|source| Problem::External { place: user.into(), path, source })
             }
             Place::Folder(folder) => self.load_from(&folder, &names, user),
@@ -69,11 +78,12 @@ impl<'t> Files<'t> {
 
     /// Reads the first of these files that exists.
     fn load_from(&mut self, folder: &Path, names: &[PathBuf], user: &str) -> Result<Vec<u8>, Problem> {
-        let mut named = &names[0];
+        let (mut named, mut is_new) = (&names[0], false);
         for name in names {
             let path = folder.join(name);
             let exists = path.exists();
-            if self.known.insert(path.clone()) {
+            is_new = self.known.insert(path.clone());
+            if is_new {
                 self.tried.push(path);
             }
             if exists {
@@ -88,9 +98,16 @@ impl<'t> Files<'t> {
                 let found = format!("a link to {}", end.display());
                 Err(Problem::Outside { place: user.into(), uri: named.display().to_string(), found })
             }
-            found => found
-                .and_then(|_| regular_file::read(&path, regular_file::LARGEST))
-                .map_err(|source| Problem::External { place: user.into(), path, source }),
+            found => {
+                let external = |source| Problem::External { place: user.into(), path: path.clone(), source };
+                found.map_err(external)?;
+                let size = path.metadata().map_or(0, |metadata| metadata.len());
+                if is_new {
+                    self.memory.add_stored(size);
+                }
+                self.memory.take(Some(size), user)?;
+                regular_file::read(&path, regular_file::LARGEST).map_err(external)
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ use json::validation::Checked;
 
 use crate::scene::error::Problem;
 use crate::scene::gltf::file::buffers::Buffers;
+use crate::scene::gltf::memory::Memory;
 use crate::scene::gltf::place::{out_of_range, place};
 
 /// Maximum number of elements of an accessor without a buffer view, which no data limits.
@@ -21,6 +22,8 @@ pub struct Reader<'a> {
     pub root: &'a json::Root,
     /// Its buffers.
     pub buffers: &'a Buffers<'a>,
+    /// What is read takes of it.
+    pub memory: &'a Memory,
 }
 
 /// The formats in which a semantic may be stored.
@@ -143,9 +146,14 @@ impl<'a> Reader<'a> {
                 // `view` has checked the index.
                 let stride = self.root.buffer_views[view.value()].byte_stride.map_or(size, |stride| stride.0);
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                strided(bytes, offset, *count, size, stride, place)?.map(|bytes| decode(&bytes[..size])).collect()
+                let stored = strided(bytes, offset, *count, size, stride, place)?;
+                self.memory.take_of::<T>(*count, place)?;
+                stored.map(|bytes| decode(&bytes[..size])).collect()
             }
-            None if *count as u64 <= MAX_ZEROS => vec![zero; *count],
+            None if *count as u64 <= MAX_ZEROS => {
+                self.memory.take_of::<T>(*count, place)?;
+                vec![zero; *count]
+            }
             None => {
                 let expected = format!("at most {MAX_ZEROS} elements without a bufferView");
                 return Err(Problem::invalid(place, expected, count.to_string()));

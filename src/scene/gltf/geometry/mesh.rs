@@ -79,6 +79,8 @@ impl Source<'_> {
         self.check_positions(&positions)?;
         let count = positions.len();
         let (topology, indices) = self.indices(count, &mut warnings)?;
+        // Without normals or tangents, each corner may become a vertex.
+        self.reader.memory.take_of::<Vertex>(count.saturating_add(indices.len()), self.place)?;
         let mut attributes = 0;
         let mut vertices: Vec<Vertex> = positions
             .into_iter()

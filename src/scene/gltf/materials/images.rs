@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::io::{Cursor, ErrorKind};
 
 use gltf::json;
-use image::{DynamicImage, ImageFormat, ImageReader};
+use image::{DynamicImage, ImageDecoder as _, ImageFormat, ImageReader};
 use rayon::prelude::*;
 
 use super::placeholder::Failure;
@@ -15,6 +15,7 @@ use crate::message::catch_panic;
 use crate::scene::error::{EXPORT_AGAIN, Problem};
 use crate::scene::gltf::file::buffers::{Buffers, Files};
 use crate::scene::gltf::file::uri;
+use crate::scene::gltf::memory::Memory;
 use crate::scene::gltf::place::{out_of_range, place};
 use crate::scene::images::{TexelForm, Texels};
 use crate::scene::load_options::Canceled;
@@ -131,15 +132,15 @@ pub fn placeholders(model: &Model, encoded: &[Encoded<'_>]) -> Vec<Image> {
 }
 
 /// Decodes images in parallel, and frees the encoded bytes of each as soon as it is decoded. Stops early if the load is `canceled`.
-pub fn decode(encoded: Vec<Encoded<'_>>, canceled: Canceled<'_>) -> Vec<Decoded> {
-    encoded.into_par_iter().map(|image| (!canceled()).then(|| decode_one(image))).while_some().collect()
+pub fn decode(encoded: Vec<Encoded<'_>>, memory: &Memory, canceled: Canceled<'_>) -> Vec<Decoded> {
+    encoded.into_par_iter().map(|image| (!canceled()).then(|| decode_one(image, memory))).while_some().collect()
 }
 
-fn decode_one(encoded: Encoded<'_>) -> Decoded {
+fn decode_one(encoded: Encoded<'_>, memory: &Memory) -> Decoded {
     let Encoded { name, title, bytes } = encoded;
     let pixels = bytes.and_then(|bytes| {
         // A decoder that panics at a damaged image fails only that image.
-        let pixels = catch_panic(|| pixels(&bytes)).unwrap_or_else(|_| Err("the decoder failed".into()));
+        let pixels = catch_panic(|| pixels(&bytes, memory)).unwrap_or_else(|_| Err("the decoder failed".into()));
         pixels.map_err(|reason| Failure {
             reason: format!("{title} cannot be decoded ({})", shorten(&reason)),
             remedy: if ktx2::is_ktx2(&bytes) || known_format(&bytes).is_some() { DAMAGED } else { OTHER_FORMAT },
@@ -158,9 +159,9 @@ fn known_format(bytes: &[u8]) -> Option<ImageFormat> {
 }
 
 /// Width, height and texels, or the reason of a failure.
-fn pixels(bytes: &[u8]) -> Result<(u32, u32, Texels), String> {
+fn pixels(bytes: &[u8], memory: &Memory) -> Result<(u32, u32, Texels), String> {
     if ktx2::is_ktx2(bytes) {
-        return ktx2::texels(bytes, MAX_SIZE);
+        return ktx2::texels(bytes, MAX_SIZE, &|bytes| take(memory, bytes));
     }
     if bytes.is_empty() {
         return Err("it is empty".into());
@@ -177,7 +178,12 @@ fn pixels(bytes: &[u8]) -> Result<(u32, u32, Texels), String> {
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| error.to_string())?;
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    // Kept as RGBA of 8 or 16 bits a channel.
+    let (across, up) = decoder.dimensions();
+    let deep = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count();
+    take(memory, u64::from(across) * u64::from(up) * 4 * u64::from(deep))?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
     let (width, height) = (decoded.width(), decoded.height());
     if width == 0 || height == 0 {
         return Err(format!("it has {width}x{height} pixels"));
@@ -189,6 +195,12 @@ fn pixels(bytes: &[u8]) -> Result<(u32, u32, Texels), String> {
         _ => (TexelForm::Rgba8, decoded.into_rgba8().into_raw()),
     };
     Ok((width, height, Texels::Stored { form, levels: 1, bytes }))
+}
+
+/// Takes memory for the texels of an image.
+fn take(memory: &Memory, bytes: u64) -> Result<(), String> {
+    let of_file = memory.take(Some(bytes), "its texels");
+    of_file.map_err(|problem| problem.reason())
 }
 
 /// The texels of an image with 16 bits a channel. One that was widened from 8 bits, so that both bytes of each channel are equal, has 8.

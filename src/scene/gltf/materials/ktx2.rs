@@ -21,8 +21,11 @@ pub fn is_ktx2(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
+/// Takes memory for some bytes, or says why there is none.
+type Take<'t> = &'t dyn Fn(u64) -> Result<(), String>;
+
 /// Width, height and texels, or the reason of a failure. `largest`: the maximum of width and height.
-pub fn texels(bytes: &[u8], largest: u32) -> Result<(u32, u32, Texels), String> {
+pub fn texels(bytes: &[u8], largest: u32, take: Take<'_>) -> Result<(u32, u32, Texels), String> {
     // Only the header and the levels, since the crate's reader panics on some damaged descriptors.
     let header = bytes.first_chunk().ok_or("damaged KTX2: it is cut short")?;
     let header = Header::from_bytes(header).map_err(|error| format!("damaged KTX2: {error}"))?;
@@ -36,21 +39,24 @@ pub fn texels(bytes: &[u8], largest: u32) -> Result<(u32, u32, Texels), String> 
     if header.level_count > mips::count(width, height) {
         return Err(format!("damaged KTX2: {} levels of {width}x{height} pixels", header.level_count));
     }
+    let basis = || {
+        // Where the device samples no compressed form. Of floats it is twice as much.
+        take(u64::from(width) * u64::from(height) * 4)?;
+        Basis::read(bytes, header.level_count).map(Texels::Basis)
+    };
     let texels = match header.format {
-        None => Texels::Basis(Basis::read(bytes, header.level_count)?),
+        None => basis()?,
         // ASTC of less than 8 bits a channel needs the transcoder where the device does not sample it.
-        Some(format) if astc_block(format).is_some() => Texels::Basis(Basis::read(bytes, header.level_count)?),
+        Some(format) if astc_block(format).is_some() => basis()?,
         // So do those of floats, which Basis Universal calls UASTC HDR and ASTC HDR.
-        Some(Format::ASTC_4x4_SFLOAT_BLOCK | Format::ASTC_6x6_SFLOAT_BLOCK) => {
-            Texels::Basis(Basis::read(bytes, header.level_count)?)
-        }
-        Some(format) => stored(bytes, &header, format)?,
+        Some(Format::ASTC_4x4_SFLOAT_BLOCK | Format::ASTC_6x6_SFLOAT_BLOCK) => basis()?,
+        Some(format) => stored(bytes, &header, format, take)?,
     };
     Ok((width, height, texels))
 }
 
 /// The levels of a format of Vulkan, each in the form that the model keeps.
-fn stored(bytes: &[u8], header: &Header, format: Format) -> Result<Texels, String> {
+fn stored(bytes: &[u8], header: &Header, format: Format, take: Take<'_>) -> Result<Texels, String> {
     let unsupported = || format!("the KTX2 format {format:?} is not supported");
     let file = file_form(format).ok_or_else(unsupported)?;
     let levels = header.level_count.max(1);
@@ -59,6 +65,7 @@ fn stored(bytes: &[u8], header: &Header, format: Format) -> Result<Texels, Strin
     if total > MOST_BYTES {
         return Err(format!("it takes {} MiB", total >> 20));
     }
+    take(total)?;
     let mut all = Vec::new();
     for level in 0..levels {
         let (width, height) = size(level);
@@ -254,7 +261,7 @@ mod tests {
 
     /// The form on a device that samples `forms`, and its texels.
     fn opened_on(forms: &TexelForms, file: &[u8]) -> Result<(TexelForm, Vec<u8>), String> {
-        let (width, height, texels) = texels(file, 64)?;
+        let (width, height, texels) = texels(file, 64, &|_| Ok(()))?;
         let mut image = Image::new(String::new(), width, height, texels);
         image.settle(forms);
         let mut out = vec![0; image.bytes() as usize];
@@ -293,7 +300,7 @@ mod tests {
     }
 
     fn texels_of(format: Format) -> Result<(u32, u32, Texels), String> {
-        texels(&file(format.value(), 0, (4, 4), NO_MODEL, &[&[0; 16]], 16), 64)
+        texels(&file(format.value(), 0, (4, 4), NO_MODEL, &[&[0; 16]], 16), 64, &|_| Ok(()))
     }
 
     #[test]
@@ -330,7 +337,7 @@ mod tests {
         let own = file(Format::R8G8B8A8_UNORM.value(), 0, (2, 2), NO_MODEL, &levels, 16);
         assert_eq!(opened(&own), levels.concat());
         let many: Vec<&[u8]> = vec![&[9; 16]; 3];
-        let problem = texels(&file(Format::R8G8B8A8_UNORM.value(), 0, (2, 2), NO_MODEL, &many, 16), 64);
+        let problem = texels(&file(Format::R8G8B8A8_UNORM.value(), 0, (2, 2), NO_MODEL, &many, 16), 64, &|_| Ok(()));
         assert_eq!(problem.unwrap_err(), "damaged KTX2: 3 levels of 2x2 pixels");
     }
 
@@ -388,6 +395,6 @@ mod tests {
             let _ = opened_on(&TexelForms::default(), bytes);
             let _ = opened_on(&all, bytes);
         });
-        assert!(texels(&files[2][..150], 64).is_err());
+        assert!(texels(&files[2][..150], 64, &|_| Ok(())).is_err());
     }
 }

@@ -158,7 +158,7 @@ fn a_damaged_stream_costs_its_primitive() {
             drawn,
             "KHR_draco_mesh_compression: expected an attribute 77 in the stream (POSITION), found none; the primitive",
         ),
-        (greedy, "compressed data of at most 1024 MiB in all when decoded"),
+        (greedy, "a file whose parts take at most 1024 MiB in all when decoded"),
         (odd, "KHR_draco_mesh_compression: expected a compressed primitive, found"),
     ] {
         let model = builder.model();

@@ -11,6 +11,7 @@ mod image_based;
 mod invalid;
 mod left_out;
 mod materials;
+mod memory;
 mod motion;
 mod nodes;
 mod opened;
