@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::picture::may_hold_look;
 use crate::shader::is_specula_tree;
 
 /// Most files of a folder that are listed.
@@ -68,14 +69,19 @@ pub(crate) struct Listed {
     pub(crate) kind: FileKind,
 }
 
-/// The folders in a folder, then its files, by their names.
+/// The folders in a folder, then its files, by their names. A picture or a TOML file without a look is [`FileKind::Other`].
 ///
 /// # Errors
 /// A message: it cannot be read.
 pub(crate) fn list(folder: &Path) -> Result<Vec<Listed>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let listed = |entry: std::fs::DirEntry| {
-        Some(Listed { kind: FileKind::of(&entry.path()), name: entry.file_name().into_string().ok()? })
+        let path = entry.path();
+        let kind = match FileKind::of(&path) {
+            FileKind::Look if !may_hold_look(&path) => FileKind::Other,
+            kind => kind,
+        };
+        Some(Listed { kind, name: entry.file_name().into_string().ok()? })
     };
     let mut files: Vec<Listed> = entries.flatten().take(MOST_LISTED).filter_map(listed).collect();
     files.sort_by_key(|file| (!file.kind.is_folder(), file.name.to_lowercase()));
