@@ -172,7 +172,36 @@ fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: 
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
+
+    /// Where nothing of the model is, the list has the picture's color; other modes of light would tell that of the background.
+    #[test]
+    fn the_list_of_a_background_pixel_has_the_picture_alone() {
+        let mode = |slug: &str, name: &str| Mode {
+            slug: slug.to_owned(),
+            name: name.to_owned(),
+            group: "Light".to_owned(),
+            ..Mode::default()
+        };
+        let modes = [mode(FINAL, "Final"), mode("ambient", "Ambient"), mode("depth", "Depth")];
+        let seen = PixelValue { value: [0.5, 0.5, 0.5, 1.0], ..PixelValue::default() };
+        let listed = |depth: PixelValue| {
+            let values = [(FINAL, seen), ("ambient", seen), ("depth", depth)];
+            let reading = Reading::sample(values.map(|(slug, value)| (slug.to_owned(), (value, 1))).into());
+            let mut current = String::new();
+            let harness = Harness::builder().with_size(vec2(320.0, 300.0)).build_ui(|ui| {
+                show(ui, &reading, &Words::default(), &modes, None, &mut current, |_| {});
+            });
+            let folded = |count: usize| harness.query_by_label(&format!("{count} without data")).is_some();
+            let names = ["Final", "Ambient", "Depth"];
+            (names.map(|name| harness.query_by_label(name).is_some()), [1, 2].map(folded))
+        };
+        assert_eq!(listed(PixelValue::default()), ([true, false, false], [false, true]));
+        assert_eq!(listed(seen), ([true; 3], [false; 2]), "a pixel of the model");
+    }
 
     #[test]
     fn a_pixel_that_nothing_covers_has_no_data() {
