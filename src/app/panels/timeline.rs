@@ -95,7 +95,7 @@ impl PanelUi for TimelineState {
 fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<Command>) {
     let area = ui.available_size();
     // A wide tile runs from left to right, with the newest version first as in a tall one.
-    let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
+    let is_strip = area.x > 3.0 * area.y && area.y > 40.0;
     let count = state.versions.iter().count();
     // A strip has no height to spare, so the search stands beside the buttons there.
     let beside = (is_strip && count > search::FEW).then_some(&mut own.search);
@@ -246,8 +246,8 @@ impl Entry<'_> {
         let files = middle(ui.painter(), &self.version.title(), &small_font(), ui.available_width());
         ui.add(elided(RichText::new(files).small()).selectable(false));
         let whole_ms = reload.compile_ms + reload.pipeline_ms + reload.first_frame_ms;
-        let gpu = device_ms.map_or_else(String::new, |ms| format!(", GPU {ms:.1}"));
-        ui.add(elided(monospace(format!("{whole_ms:.0} ms{gpu}")).color(QUIET)).selectable(false));
+        let gpu = device_ms.map_or_else(String::new, |ms| format!(", GPU {ms:.*}", usize::from(ms < 10.0)));
+        ui.add(elided(RichText::new(format!("{whole_ms:.0} ms{gpu}")).small().color(QUIET)).selectable(false));
     }
 
     /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
