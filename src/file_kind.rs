@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::picture::may_hold_look;
 use crate::shader::is_specula_tree;
 
 /// Most files of a folder that are listed.
@@ -69,11 +68,12 @@ pub(crate) struct Listed {
     pub(crate) kind: FileKind,
 }
 
-/// The folders in a folder, then its files, by their names. A picture or a TOML file without a look is [`FileKind::Other`].
+/// The folders in a folder, then its files, by their names. `may_hold_look`: whether a file that has the ending of one may be a look; others
+/// are [`FileKind::Other`].
 ///
 /// # Errors
 /// A message: it cannot be read.
-pub(crate) fn list(folder: &Path) -> Result<Vec<Listed>, String> {
+pub(crate) fn list(folder: &Path, may_hold_look: impl Fn(&Path) -> bool) -> Result<Vec<Listed>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let listed = |entry: std::fs::DirEntry| {
         let path = entry.path();

@@ -115,6 +115,7 @@ fn group(kind: FileKind) -> &'static str {
 mod tests {
     use super::*;
     use crate::file_kind::list;
+    use crate::picture::may_hold_look;
 
     #[test]
     fn a_path_lists_what_can_be_opened() {
@@ -131,7 +132,7 @@ mod tests {
         let absolute = std::path::absolute(&typed).unwrap();
         assert_eq!(commands, [LIST_FOLDER.with(absolute.clone())]);
         listing.ask(absolute.clone());
-        listing.take(&absolute, list(&absolute));
+        listing.take(&absolute, list(&absolute, may_hold_look));
         let titles = |query: &str, dialog| -> Vec<String> {
             let found = entries(&listing, query, dialog, &mut Vec::new()).unwrap();
             found.into_iter().map(|entry| entry.title).collect()

@@ -54,17 +54,12 @@ fn cost(ui: &mut Ui, state: &State) {
         (_, Some((row, by))) => (format!("The last edit slows {} down by {by:.2} ms", row.name), WARNING),
         _ => ("The last edit costs no time".to_owned(), QUIET),
     };
-    let [before, after] = cost.generations.map(|generation| named_version(state, generation));
+    let [before, after] = cost.generations.map(|generation| state.version_name(generation));
     let [frames_before, frames_after] = cost.frames;
     ui.add(Label::new(RichText::new(text).small().color(color)).wrap()).on_hover_text(format!(
         "Medians of {frames_before} frames of {before} and {frames_after} of {after}, of the same mode, \
          size and model. Less than 5 % or 0.02 ms counts as noise"
     ));
-}
-
-/// The version that a generation of the shaders is, as the panel Timeline counts.
-fn named_version(state: &State, generation: u64) -> String {
-    state.version_number(generation).map_or_else(|| "an older version".to_owned(), |number| format!("version {number}"))
 }
 
 /// The CPU time of the last frames.

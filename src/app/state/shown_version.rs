@@ -12,8 +12,14 @@ impl State {
     }
 
     /// The number of the version that a generation of the shaders is, if it is kept.
-    pub(in crate::app) fn version_number(&self, generation: u64) -> Option<u64> {
+    fn version_number(&self, generation: u64) -> Option<u64> {
         self.versions.of_generation(generation).map(|version| version.number)
+    }
+
+    /// The version that a generation of the shaders is, in words.
+    pub(in crate::app) fn version_name(&self, generation: u64) -> String {
+        let number = self.version_number(generation);
+        number.map_or_else(|| "an older version".to_owned(), |number| format!("version {number}"))
     }
 
     /// Whether a version is on screen.

@@ -171,13 +171,16 @@ fn choose_round(ui: &mut Ui, choice: &mut Choice, loops: &[TracedLoop]) {
 
 fn choose_time(ui: &mut Ui, choice: &mut Choice, times: usize) {
     let mut time = choice.time.unwrap_or(0);
-    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
-        0.0 => "all".to_owned(),
-        number => format!("{number:.0}"),
-    };
-    let parse = |text: &str| if text.trim() == "all" { Some(0.0) } else { text.trim().parse().ok() };
     let most = times.max(time);
-    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1).prefix("Time ");
+    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
+        0.0 => format!("All {most} times"),
+        number => format!("Time {number:.0} of {most}"),
+    };
+    let parse = |text: &str| match text.trim().to_lowercase().starts_with("all") {
+        true => Some(0.0),
+        false => text.split_whitespace().find_map(|word| word.parse().ok()),
+    };
+    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1);
     let drag = ui.add(drag.custom_formatter(text).custom_parser(parse));
     named(drag, "Time").on_hover_text(
         "Of a statement that ran more than once in the chosen call, as in a loop: which time. Drag, or type a number",

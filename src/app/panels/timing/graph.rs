@@ -2,7 +2,6 @@
 
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use super::named_version;
 use crate::app::state::State;
 use crate::app::state::timing::{FRAMES, Timing};
 use crate::app::widgets::theme::{EDGE, LINE, QUIET, TEXT, Tone, WARNING, small_font};
@@ -114,7 +113,7 @@ pub(super) fn passes(ui: &mut Ui, state: &State, names: &[String]) {
         format!(
             "{:7.2} ms  whole frame, {}\n{}",
             sample.device_ms,
-            named_version(state, sample.shown.generation),
+            state.version_name(sample.shown.generation),
             lines.join("\n")
         )
     });

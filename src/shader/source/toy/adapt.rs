@@ -4,11 +4,9 @@
 //! names that are words of GLSL 4.60, are replaced by names of the same length. Only initial values and arguments that an author may
 //! leave out in WebGL make a line longer.
 
-use std::ops::Range;
-
 use super::channel::{Channel, channel, channels, samplers};
 use super::declared::{Storage, declarations, has_texture, is_built_in};
-use super::initial::{Edit, apply, initial_values};
+use super::initial::{Edit, apply, blank, initial_values};
 use super::plain::{renamed, with_plain_names, with_word};
 use crate::shader::glsl::{Token, TokenKind, code, find_word, includes, lines, tokens};
 
@@ -140,12 +138,6 @@ pub(super) fn with_names(message: &str) -> String {
     let webgl = WEBGL.iter().map(|(name, own)| (*name, (*own).to_owned()));
     let message = with_plain_names(message).replace("'Main'", "'main'");
     names.chain(webgl).fold(message, |message, (name, own)| with_word(&message, &own, name))
-}
-
-/// Spaces in place of these bytes; line breaks stay.
-pub(super) fn blank(text: &str, bytes: Range<usize>) -> Edit {
-    let spaces = text[bytes.clone()].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' });
-    (bytes, spaces.collect())
 }
 
 /// Lines that name channels and keys, versions, and extensions of WebGL.

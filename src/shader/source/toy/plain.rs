@@ -1,8 +1,7 @@
 //! The text of an opened file with words that WebGL has as names, macros that stand for `uniform`, and arrays of samplers replaced by what
 //! the rest of this module knows. Each line keeps its number, and all but those with such a macro their columns.
 
-use super::adapt::blank;
-use super::initial::{Edit, apply};
+use super::initial::{Edit, apply, blank};
 use crate::shader::glsl::syntax::closing;
 use crate::shader::glsl::{Token, TokenKind, find_word, tokens};
 
