@@ -65,6 +65,9 @@ const float iSampleRate = 44100.0;
 #define gl_FragDepthEXT gl_FragDepth
 
 #ifdef TOY_FILE
+// The first two are types in Vulkan's GLSL. A file may define them as functions, so they have other names in it.
+#define texture2_ texture
+#define textureCub_ texture
 #define toyES 1
 #define HW_PERFORMANCE 1
 // Precisions mean nothing here, and must not tell two declarations of a function apart.

@@ -68,14 +68,20 @@ pub(crate) struct Listed {
     pub(crate) kind: FileKind,
 }
 
-/// The folders in a folder, then its files, by their names.
+/// The folders in a folder, then its files, by their names. `may_hold_look`: whether a file that has the ending of one may be a look; others
+/// are [`FileKind::Other`].
 ///
 /// # Errors
 /// A message: it cannot be read.
-pub(crate) fn list(folder: &Path) -> Result<Vec<Listed>, String> {
+pub(crate) fn list(folder: &Path, may_hold_look: impl Fn(&Path) -> bool) -> Result<Vec<Listed>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let listed = |entry: std::fs::DirEntry| {
-        Some(Listed { kind: FileKind::of(&entry.path()), name: entry.file_name().into_string().ok()? })
+        let path = entry.path();
+        let kind = match FileKind::of(&path) {
+            FileKind::Look if !may_hold_look(&path) => FileKind::Other,
+            kind => kind,
+        };
+        Some(Listed { kind, name: entry.file_name().into_string().ok()? })
     };
     let mut files: Vec<Listed> = entries.flatten().take(MOST_LISTED).filter_map(listed).collect();
     files.sort_by_key(|file| (!file.kind.is_folder(), file.name.to_lowercase()));

@@ -13,7 +13,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat};
 use crate::recovery::SessionState;
 use crate::render::Capture;
 use crate::settings::Settings;
-pub use look::{Look, ReadError, read_checked_look, read_look};
+pub use look::{Look, ReadError, may_hold_look, read_checked_look, read_look};
 use part::PartFile;
 pub use part::{Halt, remove_unfinished};
 

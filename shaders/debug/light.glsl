@@ -117,9 +117,9 @@ bool debug_light(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     else if (MODE == MODE_LAMBERT) value = if_present(present, lambert_without_cosine(s, range));
     else if (MODE == MODE_AMBIENT) value = if_present(is_lit, lit.ambient.all + lit.behind);
     else if (MODE == MODE_EMISSIVE_ONLY) value = lit.emitted;
-    else if (MODE == MODE_LIGHT_1) value = if_present(present, reflected_radiance(lit));
-    else if (MODE == MODE_LIGHT_2) value = if_present(present, reflected_radiance(lit));
-    else if (MODE == MODE_LIGHT_3) value = if_present(present, reflected_radiance(lit));
+    else if (MODE == MODE_LIGHT_1) value = if_present(present, lit.punctual.all + lit.area.all);
+    else if (MODE == MODE_LIGHT_2) value = if_present(present, lit.punctual.all + lit.area.all);
+    else if (MODE == MODE_LIGHT_3) value = if_present(present, lit.punctual.all + lit.area.all);
     else if (MODE == MODE_LUMINANCE) value = vec3(luminance(radiance));
     else if (MODE == MODE_DFG) value = if_present(is_lit, vec3(s.dfg.a, s.dfg.b, s.dfg.e));
     else if (MODE == MODE_CLEARCOAT_LIGHT) {

@@ -192,11 +192,11 @@ const uint MODE_LAMBERT = 404u;
 const uint MODE_AMBIENT = 405u;
 //@mode emissive-only "Emission" group="Light" encode=color unit="cd/m^2" tonemap doc="Emission alone, exposed like the picture."
 const uint MODE_EMISSIVE_ONLY = 406u;
-//@mode light-1 "Light 1" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 1 alone, with ambient light."
+//@mode light-1 "Light 1" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 1 alone."
 const uint MODE_LIGHT_1 = 407u;
-//@mode light-2 "Light 2" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 2 alone, with ambient light."
+//@mode light-2 "Light 2" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 2 alone."
 const uint MODE_LIGHT_2 = 408u;
-//@mode light-3 "Light 3" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 3 alone, with ambient light."
+//@mode light-3 "Light 3" group="Light" encode=color unit="cd/m^2" tonemap doc="Light 3 alone."
 const uint MODE_LIGHT_3 = 409u;
 //@mode luminance "Luminance" group="Light" encode=color components=1 unit="cd/m^2" tonemap doc="Luminance Y of the picture (ITU-R BT.709)."
 const uint MODE_LUMINANCE = 410u;

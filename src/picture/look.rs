@@ -2,7 +2,7 @@
 //! the keyword `specula-files` the model, the shader tree and other files, with paths from the picture's folder.
 
 use std::fmt;
-use std::io::{self, BufReader, Cursor};
+use std::io::{self, BufReader, Cursor, Read as _};
 use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +17,9 @@ use crate::settings::{LookError, Settings};
 const SETTINGS: &str = "specula";
 /// Keyword of the chunk of files.
 const FILES: &str = "specula-files";
+/// Most bytes of a look file, and most chunks before the pixels of a picture, that are read to tell whether there is a look.
+const GLANCE: u64 = 64 << 10;
+const MOST_CHUNKS: usize = 64;
 
 /// The content of a look file, or of the texts in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +164,43 @@ pub fn read_checked_look(path: &Path) -> Result<Look, String> {
     Ok(look)
 }
 
+/// Whether a file may hold a look, at a glance: a PNG has the chunk of settings before its pixels, and a look file names a setting.
+pub fn may_hold_look(path: &Path) -> bool {
+    match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        true => has_settings(path).unwrap_or(false),
+        false => regular_file::read(path, GLANCE)
+            .is_ok_and(|bytes| String::from_utf8(bytes).is_ok_and(|text| Settings::may_be_toml(&text))),
+    }
+}
+
+/// Whether a chunk before the pixels of a PNG is that of settings. Of each chunk, its head and keyword are read.
+fn has_settings(path: &Path) -> io::Result<bool> {
+    const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
+    let mut file = BufReader::with_capacity(64, regular_file::open(path)?.into_inner());
+    let mut signature = [0; 8];
+    file.read_exact(&mut signature)?;
+    if signature != SIGNATURE {
+        return Ok(false);
+    }
+    let keyword = [SETTINGS.as_bytes(), &[0]].concat();
+    for _ in 0..MOST_CHUNKS {
+        let mut head = [0; 8];
+        file.read_exact(&mut head)?;
+        let (length, kind) = (u32::from_be_bytes([head[0], head[1], head[2], head[3]]), &head[4..]);
+        if kind == b"IDAT" || kind == b"IEND" {
+            return Ok(false);
+        }
+        let mut start = vec![0; keyword.len().min(length as usize)];
+        file.read_exact(&mut start)?;
+        if kind == b"iTXt" && start == keyword {
+            return Ok(true);
+        }
+        // The rest of the chunk and its checksum.
+        file.seek_relative(i64::from(length) - start.len() as i64 + 4)?;
+    }
+    Ok(false)
+}
+
 /// The texts of settings and of files in a PNG file.
 fn decode(path: &Path) -> Result<(String, Option<String>), String> {
     let file = regular_file::open(path).map_err(|e| format!("cannot be read: {e}"))?;
@@ -252,6 +292,26 @@ mod tests {
         // Without the place, its name stays.
         std::fs::remove_dir(folder.path().join("glsl")).unwrap();
         assert_eq!(read_look(&moved).unwrap().shaders, Some("../glsl".into()));
+    }
+
+    #[test]
+    fn a_file_with_a_look_is_told_from_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let is_look = |name: &str, bytes: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).unwrap();
+            may_hold_look(&path)
+        };
+        let with = encode(&capture(), &SessionState::default(), folder.path()).unwrap();
+        let mut without = Cursor::new(Vec::new());
+        image::RgbaImage::new(300, 200).write_to(&mut without, image::ImageFormat::Png).unwrap();
+        let without = without.into_inner();
+        assert!(is_look("a.png", &with) && !is_look("b.PNG", &without));
+        assert!(!is_look("c.png", &with[..40]) && !is_look("d.png", b"") && !is_look("e.png", b"text"));
+        assert!(is_look("f.toml", Settings::default().to_toml().as_bytes()));
+        assert!(is_look("g.toml", b"[view]\nev = 1.0\n") && is_look("h.toml", b"[view\n"));
+        assert!(!is_look("i.toml", b"[package]\nname = \"a\"\n") && !is_look("j.toml", &[0xff; 9]));
+        assert!(!may_hold_look(folder.path()));
     }
 
     #[test]

@@ -53,6 +53,15 @@ impl Settings {
         })
     }
 
+    /// Whether a text may be meant as a look file: it names a setting, or is no TOML, as a look with a mistake.
+    pub fn may_be_toml(text: &str) -> bool {
+        let own = toml::Table::try_from(Self::default()).unwrap_or_default();
+        let table = toml::from_str::<toml::Table>(text);
+        // Lists that are empty are not in the table of defaults.
+        let is_own = |key: &String| own.contains_key(key) || ["added", "bookmarks"].contains(&key.as_str());
+        table.map_or(true, |table| table.keys().any(is_own))
+    }
+
     /// The settings as a look file.
     pub fn to_toml(&self) -> String {
         toml::to_string_pretty(self).unwrap_or_default()

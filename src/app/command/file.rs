@@ -19,7 +19,7 @@ use crate::app::state::dialog::Dialog;
 use crate::app::state::workspace::PanelRequest;
 use crate::file_kind::{self, FileKind};
 use crate::message::did_you_mean;
-use crate::picture::read_checked_look;
+use crate::picture::{may_hold_look, read_checked_look};
 use crate::scene::{BUILT_IN, Problem, find_model};
 use crate::settings::{AddedModel, MOST_ADDED};
 use crate::shader::Source;
@@ -96,7 +96,7 @@ pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> =
 pub(in crate::app) static LIST_FOLDER: Spec<PathBuf> = Spec::act("list-folder", |state, engine, folder: PathBuf| {
     state.listing.ask(folder.clone());
     engine.threads.wait(move || {
-        let files = file_kind::list(&folder);
+        let files = file_kind::list(&folder, may_hold_look);
         Some(Message::Listed(folder, files))
     });
 })

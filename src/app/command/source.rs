@@ -88,12 +88,8 @@ pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage",
 });
 
 /// Chooses the fragment, the call and the time whose values the panel Source shows.
-pub(in crate::app) static CHOOSE_TRACE: Spec<Choice> = Spec::act("choose-trace", |state, _, choice: Choice| {
-    if choice.call != state.traces.choice.call {
-        state.traces.seeks = choice.call.as_deref().and_then(|call| state.traces.begin_of(call));
-    }
-    state.traces.choice = choice;
-});
+pub(in crate::app) static CHOOSE_TRACE: Spec<Choice> =
+    Spec::act("choose-trace", |state, _, choice: Choice| state.traces.choose(choice));
 
 fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment, call, time }: Source) -> Outcome {
     let file = file.map(|file| file_of(state, &file)).transpose()?;

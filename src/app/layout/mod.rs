@@ -39,16 +39,18 @@ pub(super) struct Layout {
     preset: Preset,
     /// The arrangement before a temporary one, whether the user had customized it, and the preset before.
     before: Option<(Tree<Panel>, bool, Preset)>,
+    /// The user's own arrangement for single files.
+    of_file: Option<Tree<Panel>>,
 }
 
 impl Layout {
     /// The arrangement of the last run, or the first preset.
     pub(super) fn restored() -> Self {
-        let Some(store::Stored { mut tree, is_own, own, is_light, preset }) = store::load() else {
+        let Some(store::Stored { mut tree, is_own, own, is_light, preset, of_file }) = store::load() else {
             return Self { is_changed: true, ..Self::of_tree(Preset::Debug.tree()) };
         };
         repair(&mut tree);
-        Self { is_own, own, is_light, preset, ..Self::of_tree(tree) }
+        Self { is_own, own, is_light, preset, of_file, ..Self::of_tree(tree) }
     }
 
     /// An arrangement that is not stored until it changes.
@@ -70,40 +72,83 @@ impl Layout {
             is_temporary: false,
             preset: Preset::default(),
             before: None,
+            of_file: None,
         }
+    }
+
+    /// Replaces the tiles. Theme and kept arrangements stay.
+    fn replace(&mut self, tree: Tree<Panel>) {
+        let (own, of_file) = (self.own.take(), self.of_file.take());
+        let (is_light, preset) = (self.is_light, self.preset);
+        *self = Self { own, of_file, is_light, preset, is_changed: true, ..Self::of_tree(tree) };
     }
 
     /// Shows a preset. The user's own arrangement is kept for [`Self::arrange_own`].
     pub(super) fn arrange(&mut self, preset: Preset) {
+        self.keep_of_file();
         if self.is_own {
             self.own = Some(self.fit.measured(&self.tree));
         }
-        let own = self.own.take();
-        *self = Self { own, is_changed: true, is_light: self.is_light, preset, ..Self::of_tree(preset.tree()) };
+        self.replace(preset.tree());
+        self.preset = preset;
     }
 
     /// Shows the preset that was chosen last without the user's changes.
     pub(super) fn reset(&mut self) {
-        let (is_temporary, before) = (self.is_temporary, self.before.take());
+        let (is_temporary, is_of_file, before) = (self.is_temporary, self.is_of_file(), self.before.take());
         self.arrange(self.preset);
         (self.is_temporary, self.before) = (is_temporary, before);
+        if is_of_file {
+            self.of_file = None;
+        }
     }
 
-    /// Shows a preset until the user chooses another arrangement, or until [`Self::arrange_as_before`]. It is not stored for the
-    /// next window.
+    /// Shows a preset until the user chooses another arrangement, or until [`Self::arrange_as_before`]. The next window is arranged as
+    /// before. Panels that no preset has stay open, and that for single files is as the user has changed it.
     pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
         let before = self.before.take();
         let before = before.unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own, self.preset));
+        let is_added = |panel: &Panel| !panel.is_in_presets() && self.is_open(*panel);
+        let added: Vec<Panel> = Panel::groups().concat().into_iter().filter(is_added).collect();
         self.arrange(preset);
         (self.is_temporary, self.before) = (true, Some(before));
+        if let Some(tree) = self.of_file.clone().filter(|_| preset == Preset::Toy) {
+            (self.tree, self.is_own) = (tree, true);
+        }
+        for panel in added {
+            if !self.is_open(panel) {
+                self.insert(panel);
+            }
+        }
     }
 
     /// Shows the arrangement before [`Self::arrange_temporarily`], unless the user has chosen another one since.
     pub(super) fn arrange_as_before(&mut self) {
+        self.keep_of_file();
         let before = self.before.take().filter(|_| self.is_temporary && !self.is_own);
         let Some((tree, is_own, preset)) = before else { return };
-        let own = self.own.take().filter(|_| !is_own);
-        *self = Self { own, is_own, is_changed: true, is_light: self.is_light, preset, ..Self::of_tree(tree) };
+        self.own.take_if(|_| is_own);
+        self.replace(tree);
+        (self.is_own, self.preset) = (is_own, preset);
+    }
+
+    /// Whether the arrangement for a single file is shown.
+    fn is_of_file(&self) -> bool {
+        self.is_temporary && self.preset == Preset::Toy
+    }
+
+    /// The arrangement for single files, if the user has changed it.
+    fn own_of_file(&self) -> Option<Tree<Panel>> {
+        match self.is_of_file() && self.is_own {
+            true => Some(self.fit.measured(&self.tree)),
+            false => self.of_file.clone(),
+        }
+    }
+
+    /// Keeps the arrangement for single files if it is shown and the user has changed it.
+    fn keep_of_file(&mut self) {
+        self.of_file = self.own_of_file();
+        self.is_own &= !self.is_of_file();
     }
 
     /// Whether there is an own arrangement of the user to restore.
@@ -114,8 +159,9 @@ impl Layout {
     /// Shows the user's own arrangement again.
     pub(super) fn arrange_own(&mut self) {
         if let Some(tree) = self.own.take() {
-            let (is_light, preset) = (self.is_light, self.preset);
-            *self = Self { is_own: true, is_changed: true, is_light, preset, ..Self::of_tree(tree) };
+            self.keep_of_file();
+            self.replace(tree);
+            self.is_own = true;
         }
     }
 
@@ -143,7 +189,7 @@ impl Layout {
     /// Marks the layout as customized. An existing own arrangement stays while the user changes a preset.
     fn edited(&mut self) {
         self.is_changed = true;
-        self.is_own |= self.own.is_none();
+        self.is_own |= self.own.is_none() || self.is_of_file();
     }
 
     pub(super) fn is_open(&self, panel: Panel) -> bool {
@@ -250,15 +296,16 @@ impl Layout {
     /// The content of the file: this arrangement, or the previous one if this is temporary. The theme is stored in both cases.
     fn stored(&self) -> store::Stored {
         let Self { is_light, is_own, preset, .. } = *self;
+        let of_file = self.own_of_file();
         if !self.is_temporary {
             let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
-            return store::Stored { tree, is_own, own, is_light, preset };
+            return store::Stored { tree, is_own, own, is_light, preset, of_file };
         }
         match store::load() {
-            Some(before) => store::Stored { is_light, ..before },
+            Some(before) => store::Stored { is_light, of_file, ..before },
             None => {
                 let preset = Preset::default();
-                store::Stored { tree: preset.tree(), is_own: false, own: None, is_light, preset }
+                store::Stored { tree: preset.tree(), is_own: false, own: None, is_light, preset, of_file }
             }
         }
     }

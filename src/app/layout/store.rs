@@ -24,6 +24,9 @@ pub(super) struct Stored {
     /// The preset that was chosen last.
     #[serde(default)]
     pub(super) preset: Preset,
+    /// The user's own arrangement for single files.
+    #[serde(default)]
+    pub(super) of_file: Option<Tree<Panel>>,
 }
 
 /// The stored arrangement.
@@ -34,6 +37,7 @@ pub(super) fn load() -> Option<Stored> {
 fn parse(text: &str) -> Option<Stored> {
     let mut stored: Stored = serde_json::from_str(text).ok()?;
     stored.own = stored.own.filter(is_whole);
+    stored.of_file = stored.of_file.filter(is_whole);
     is_whole(&stored.tree).then_some(stored)
 }
 
@@ -65,7 +69,8 @@ mod tests {
     fn an_arrangement_is_read_as_it_was_written() {
         for preset in Preset::ALL {
             let own = Some(Preset::Look.tree());
-            let stored = Stored { tree: preset.tree(), is_own: true, own, is_light: true, preset };
+            let of_file = Some(Preset::Toy.tree());
+            let stored = Stored { tree: preset.tree(), is_own: true, own, is_light: true, preset, of_file };
             let value = serde_json::to_value(&stored).unwrap();
             let read = parse(&value.to_string()).unwrap();
             assert_eq!(serde_json::to_value(read).unwrap(), value);
@@ -75,7 +80,7 @@ mod tests {
     #[test]
     fn what_is_no_arrangement_counts_as_absent() {
         let preset = Preset::Debug;
-        let stored = Stored { tree: preset.tree(), is_own: false, own: None, is_light: false, preset };
+        let stored = Stored { tree: preset.tree(), is_own: false, own: None, is_light: false, preset, of_file: None };
         let whole = serde_json::to_string(&stored).unwrap();
         let broken = ["", "{}", "[1]", &whole[..whole.len() / 2]];
         assert!(broken.iter().all(|text| parse(text).is_none()));

@@ -118,6 +118,35 @@ fn a_reset_shows_the_preset_that_was_chosen_last() {
     assert!(layout.is_open(Panel::TIMELINE));
 }
 
+/// The panels that the user opens beside those of presets, and changes of the arrangement for single files, outlive a change between
+/// files and trees.
+#[test]
+fn the_arrangement_for_a_single_file_is_the_users() {
+    let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));
+    let show = |layout: &mut Layout| {
+        layout.is_changed = false;
+        shown(layout, &egui, Vec2::new(1280.0, 720.0))
+    };
+    show(&mut layout);
+    layout.open(Panel::SOURCE);
+    layout.arrange_temporarily(Preset::Toy);
+    show(&mut layout);
+    assert!(layout.is_open(Panel::SOURCE) && layout.is_open(Panel::PASSES) && !layout.is_open(Panel("Camera")));
+    layout.close(Panel::TIMELINE);
+    layout.arrange_as_before();
+    show(&mut layout);
+    assert!(layout.is_open(Panel::SOURCE) && layout.is_open(Panel::TIMELINE) && layout.is_open(Panel("Camera")));
+    layout.close(Panel::SOURCE);
+    layout.arrange_temporarily(Preset::Toy);
+    show(&mut layout);
+    assert!(layout.is_open(Panel::SOURCE) && !layout.is_open(Panel::TIMELINE), "as it was left");
+    layout.reset();
+    layout.arrange_as_before();
+    assert!(!layout.is_open(Panel::SOURCE));
+    layout.arrange_temporarily(Preset::Toy);
+    assert!(!layout.is_open(Panel::SOURCE) && layout.is_open(Panel::TIMELINE), "as it was at first");
+}
+
 #[test]
 fn a_panel_on_the_picture_moves_beside_it() {
     let (egui, mut layout) = (egui::Context::default(), Layout::of_preset(Preset::Debug));

@@ -119,6 +119,9 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
             tell_expression(state, &set.shaders);
+            if state.session.shaders.as_ref().is_some_and(|before| before.tree != set.shaders.tree) {
+                state.playback.restart();
+            }
             state.session.shaders = Some(set.shaders.clone());
             engine.resources.set_pipelines(set);
             follow_edits(state, engine, &set.shaders);

@@ -115,13 +115,16 @@ fn group(kind: FileKind) -> &'static str {
 mod tests {
     use super::*;
     use crate::file_kind::list;
+    use crate::picture::may_hold_look;
 
     #[test]
     fn a_path_lists_what_can_be_opened() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.hdr", "photo.jpg"] {
+        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.hdr", "photo.jpg", "photo.png"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
+        std::fs::write(folder.path().join("look.toml"), "mode = \"d\"\n").unwrap();
+        std::fs::write(folder.path().join("package.toml"), "[package]\n").unwrap();
         std::fs::create_dir(folder.path().join("tree")).unwrap();
         let (mut listing, mut commands) = (Listing::default(), Vec::new());
         let typed = format!("{}/", folder.path().display());
@@ -129,17 +132,18 @@ mod tests {
         let absolute = std::path::absolute(&typed).unwrap();
         assert_eq!(commands, [LIST_FOLDER.with(absolute.clone())]);
         listing.ask(absolute.clone());
-        listing.take(&absolute, list(&absolute));
+        listing.take(&absolute, list(&absolute, may_hold_look));
         let titles = |query: &str, dialog| -> Vec<String> {
             let found = entries(&listing, query, dialog, &mut Vec::new()).unwrap();
             found.into_iter().map(|entry| entry.title).collect()
         };
         let own = format!("Open {}", folder.path().file_name().unwrap().to_string_lossy());
-        assert_eq!(titles(&typed, None)[1..], ["tree/", "a.glb", "b.hdr"]);
+        assert_eq!(titles(&typed, None)[1..], ["tree/", "a.glb", "b.hdr", "look.toml"]);
         assert_eq!(titles(&typed, None)[0], own);
         assert_eq!(titles(&format!("{typed}B"), None), ["b.hdr"]);
         assert_eq!(titles(&format!("{typed}."), None), [".hidden.hdr"]);
-        assert_eq!(titles(&typed, Some(Dialog::Picture)), ["tree/", "b.hdr", "photo.jpg"]);
+        assert_eq!(titles(&typed, Some(Dialog::Picture)), ["tree/", "b.hdr", "photo.jpg", "photo.png"]);
+        assert_eq!(titles(&typed, Some(Dialog::Look)), ["tree/", "look.toml"]);
         assert_eq!(titles(&typed, Some(Dialog::New)), [own.as_str(), "tree/"]);
         let completed = entries(&listing, &format!("{typed}t"), None, &mut Vec::new()).unwrap().remove(0);
         assert!(matches!(completed.action, Action::Complete(path) if path == format!("{typed}tree/")));

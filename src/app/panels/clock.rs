@@ -7,8 +7,13 @@ use crate::app::state::playback::Playback;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::{QUIET, icon};
 
-/// Buttons that run, stop and restart the clock. Returns what the user changes.
-pub(super) fn buttons(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields> {
+/// The time of the clock, as wide at 100 s as at 1 s, so that the row does not break while it runs.
+pub(super) fn time_text(playback: &Playback) -> String {
+    format!("{:>6.1} s", playback.time_s())
+}
+
+/// Buttons that run, stop and restart the clock, and a text with the time. Returns what the user changes.
+pub(super) fn buttons(ui: &mut Ui, playback: &Playback, time: &str) -> Option<PlaybackFields> {
     let mut asked = None;
     ui.horizontal_wrapped(|ui| {
         let label = if playback.paused { "Play" } else { "Pause" };
@@ -27,18 +32,16 @@ pub(super) fn buttons(ui: &mut Ui, playback: &Playback) -> Option<PlaybackFields
         if ui.add(drag).on_hover_text("Playback speed").changed() {
             asked = Some(PlaybackFields { speed: Some(speed), ..PlaybackFields::default() });
         }
-        let time = RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET);
-        ui.add(Label::new(time).extend());
+        ui.add(Label::new(RichText::new(time).monospace().color(QUIET)).extend());
     });
     asked
 }
 
-/// A slider over `length_s` seconds, which begin again and again. Returns what the user changes: the time, at which the clock then stops.
-pub(super) fn scrub(ui: &mut Ui, playback: &Playback, length_s: f32) -> Option<PlaybackFields> {
-    let mut time = playback.time_s().rem_euclid(length_s);
+/// A slider with the time in a clip of `length_s` seconds. Returns the time at which the user wants to stop.
+pub(super) fn scrub(ui: &mut Ui, time_s: f32, length_s: f32) -> Option<f32> {
+    let mut time = time_s;
     ui.spacing_mut().slider_width = ui.available_width();
     let slider = Slider::new(&mut time, 0.0..=length_s).show_value(false);
     let response = named(ui.add(slider), "Time in the animation");
-    let response = response.on_hover_text("Stop the clock at this time");
-    response.changed().then(|| PlaybackFields { time: Some(time), paused: Some(true), ..PlaybackFields::default() })
+    response.on_hover_text("Stop the clock at this time").changed().then_some(time)
 }

@@ -27,7 +27,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     let Commands { settings, list, .. } = commands;
     let shaders = &*context.shaders;
     if context.state.is_animated() {
-        let asked = clock::buttons(ui, &context.state.playback);
+        let asked = clock::buttons(ui, &context.state.playback, &clock::time_text(&context.state.playback));
         list.extend(asked.map(|asked| PLAYBACK.with(asked)));
     }
     let words = search::above_kept(ui, "passes", own(shaders).count() + switches(shaders).count());

@@ -56,9 +56,9 @@ impl PanelUi for ShadersState {
 
 /// Shows the panel.
 fn show(ui: &mut Ui, state: &State, own: &mut ShadersState, commands: &mut Vec<Command>) {
-    let generation = state.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+    let version = state.session.shaders.is_some().then(|| state.shown_version());
     let diagnostics = &state.session.diagnostics;
-    head(ui, &state.shader, generation, diagnostics, state.is_cut_short(), commands);
+    head(ui, &state.shader, version, diagnostics, state.is_cut_short(), commands);
     tree(ui, &state.shader, commands);
     ui.horizontal(|ui| {
         let checked = state.checks.diagnostics();
@@ -92,7 +92,7 @@ fn show(ui: &mut Ui, state: &State, own: &mut ShadersState, commands: &mut Vec<C
 fn head(
     ui: &mut Ui,
     status: &ShaderStatus,
-    generation: u64,
+    version: Option<u64>,
     diagnostics: &[Diagnostic],
     cut_short: bool,
     commands: &mut Vec<Command>,
@@ -104,7 +104,7 @@ fn head(
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
-            let (text, hover) = words(status, generation, errors, cut_short);
+            let (text, hover) = words(status, version, errors, cut_short);
             let text = if errors > 0 && !status.compiling { text.color(ERROR) } else { text };
             ui.add(elided(text)).on_hover_text(hover);
         });
@@ -112,13 +112,17 @@ fn head(
     ui.horizontal(|ui| ui.with_layout(Layout::right_to_left(Align::Center), bar));
 }
 
-/// The state of the shaders in a few words, and in a sentence.
-fn words(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool) -> (RichText, &'static str) {
+/// The state of the shaders in a few words, and in a sentence. `version`: the one on screen, once there are shaders.
+fn words(status: &ShaderStatus, version: Option<u64>, errors: usize, cut_short: bool) -> (RichText, &'static str) {
     // No spinner: on a software device its frames would slow the compilation down.
     match (status.compiling, errors) {
         (true, _) => ("Compiling…".into(), "The picture stays until the new shaders are ready"),
-        (_, 0) if generation == 0 => ("No shaders yet".into(), "The first shaders have not compiled yet"),
-        (_, 0) => (format!("Generation {generation}").into(), "Counts the successful reloads: 1 is the first build"),
+        (_, 0) => match version {
+            None => ("No shaders yet".into(), "The first shaders have not compiled yet"),
+            Some(version) => {
+                (format!("Version {version}").into(), "The version on screen, as the panel Timeline counts")
+            }
+        },
         (_, errors) if cut_short => {
             (plural(errors, "error").into(), "A loop did not end, so the picture is incomplete")
         }

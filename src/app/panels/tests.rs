@@ -237,7 +237,7 @@ const LABELS: [(Panel, [&str; 2]); 18] = [
     (Panel("Model"), ["Statistics", "Statistics"]),
     (Panel::TEXTURE, ["", "shell base color"]),
     (Panel::LEARN, ["Square the roughness", "Square the roughness"]),
-    (Panel::SHADERS, ["Reload", "Generation 3"]),
+    (Panel::SHADERS, ["Reload", "Version 1"]),
     (Panel::SOURCE, ["Compiling shaders…", "Click a pixel of the picture"]),
     (Panel::TIMELINE, ["Keep this picture", "Keep this picture"]),
     (Panel::TIMING, ["Pipelines", "Pipelines"]),

@@ -5,7 +5,9 @@ mod times;
 
 use std::sync::Arc;
 
-use egui::{Label, Rect, Response, RichText, Sense, Stroke, StrokeKind, TextureHandle, Ui, Vec2, vec2};
+use egui::{
+    Label, Rect, RectAlign, Response, RichText, Sense, Stroke, StrokeKind, TextureHandle, Tooltip, Ui, Vec2, vec2,
+};
 
 use crate::app::command::compare::{COMPARE, CompareFields};
 use crate::app::command::shaders::{VERSIONS, VersionsRequest};
@@ -17,9 +19,10 @@ use crate::app::state::State;
 use crate::app::state::shaders::difference::{Kind, Line};
 use crate::app::state::shaders::versions::{Thumbnail, Version, Versions};
 use crate::app::state::workspace::PanelRequest;
+use crate::app::widgets::elide::middle;
 use crate::app::widgets::rows::elided;
 use crate::app::widgets::search::{self, Words};
-use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
+use crate::app::widgets::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING, small_font};
 use comparison::{ENTRIES, monospace};
 
 /// How the rest of the window finds the panel.
@@ -92,7 +95,7 @@ impl PanelUi for TimelineState {
 fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<Command>) {
     let area = ui.available_size();
     // A wide tile runs from left to right, with the newest version first as in a tall one.
-    let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
+    let is_strip = area.x > 3.0 * area.y && area.y > 40.0;
     let count = state.versions.iter().count();
     // A strip has no height to spare, so the search stands beside the buttons there.
     let beside = (is_strip && count > search::FEW).then_some(&mut own.search);
@@ -126,7 +129,7 @@ fn show(ui: &mut Ui, state: &State, own: &mut TimelineState, commands: &mut Vec<
                 let thumbnail = version.thumbnail.as_ref().and_then(|thumbnail| own.thumbnails.of(thumbnail));
                 let entry = Entry { state, version, thumbnail };
                 let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
-                entry.respond(response, &mut own.asked, commands);
+                entry.respond(&response, is_strip, &mut own.asked, commands);
             }
             if count == 0 {
                 ui.label(RichText::new("Your edits appear here once they are shown").color(QUIET));
@@ -164,10 +167,15 @@ impl Entry<'_> {
         self.state.shows_version(self.version) && (self.state.compare.is_on() || self.state.edits.restored.is_some())
     }
 
+    /// Its number, and whether it is on screen.
+    fn number(&self) -> String {
+        let now = if self.state.shows_version(self.version) { " (now)" } else { "" };
+        format!("{}{now}", self.version.number)
+    }
+
     /// Number and files.
     fn title(&self) -> String {
-        let now = if self.state.shows_version(self.version) { " (now)" } else { "" };
-        format!("{}{now}  {}", self.version.number, self.version.title())
+        format!("{}  {}", self.number(), self.version.title())
     }
 
     /// The times of the reload in words.
@@ -222,7 +230,7 @@ impl Entry<'_> {
         }
     }
 
-    /// Number and files, the times of the reload, and when it was.
+    /// Number and time, the files, and how long the reload and a frame took.
     fn texts(&self, ui: &mut Ui, rect: Rect) {
         let Version { reload, since, device_ms, .. } = self.version;
         // A child of its own, which does not move the next entry.
@@ -230,17 +238,21 @@ impl Entry<'_> {
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         ui.set_clip_rect(rect.intersect(ui.clip_rect()));
         ui.spacing_mut().item_spacing.y = 2.0;
-        ui.add(elided(RichText::new(self.title()).strong()).selectable(false));
-        let times = format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
-        let gpu = device_ms.map_or_else(String::new, |ms| format!(" {ms:.0} ms GPU"));
-        for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
-            ui.add(elided(monospace(line).color(QUIET)).selectable(false));
-        }
+        let number = RichText::new(self.number()).strong();
+        ui.horizontal(|ui| {
+            ui.add(elided(number).selectable(false));
+            ui.add(elided(monospace(since.format("%H:%M:%S").to_string()).color(QUIET)).selectable(false));
+        });
+        let files = middle(ui.painter(), &self.version.title(), &small_font(), ui.available_width());
+        ui.add(elided(RichText::new(files).small()).selectable(false));
+        let whole_ms = reload.compile_ms + reload.pipeline_ms + reload.first_frame_ms;
+        let gpu = device_ms.map_or_else(String::new, |ms| format!(", GPU {ms:.*}", usize::from(ms < 10.0)));
+        ui.add(elided(RichText::new(format!("{whole_ms:.0} ms{gpu}")).small().color(QUIET)).selectable(false));
     }
 
     /// A click compares the picture with the version, or ends what [`Self::ends_something`]; a double click shows it alone; the menu copies what it changed, or writes it to the
     /// files.
-    fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
+    fn respond(&self, response: &Response, is_strip: bool, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
         let Self { state, version, .. } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
         if response.double_clicked() && can_show {
@@ -284,7 +296,14 @@ impl Entry<'_> {
             (false, false) => "A loop did not end in this version, so it is not shown again",
         };
         let about = [self.title(), self.times()];
-        response.on_hover_ui(|ui| hover(ui, &about, hint, state.versions.difference(version)));
+        // Beside the list, so that it covers no other version.
+        let sides = match is_strip {
+            true => [RectAlign::TOP_START, RectAlign::TOP_END, RectAlign::BOTTOM_START],
+            false => [RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::LEFT_END],
+        };
+        let mut tooltip = Tooltip::for_enabled(response);
+        tooltip.popup = tooltip.popup.align(sides[0]).align_alternatives(&sides);
+        tooltip.show(|ui| hover(ui, &about, hint, state.versions.difference(version)));
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     ui.add(elided(RichText::new(device).small().color(QUIET))).on_hover_text(device);
     let timing = &state.timing;
     let names = table::names(timing);
-    graph::passes(ui, timing, &names);
+    graph::passes(ui, state, &names);
     table::show(ui, timing, &names);
     cost(ui, state);
     cpu(ui, state);
@@ -54,10 +54,10 @@ fn cost(ui: &mut Ui, state: &State) {
         (_, Some((row, by))) => (format!("The last edit slows {} down by {by:.2} ms", row.name), WARNING),
         _ => ("The last edit costs no time".to_owned(), QUIET),
     };
-    let [before, after] = cost.generations;
+    let [before, after] = cost.generations.map(|generation| state.version_name(generation));
     let [frames_before, frames_after] = cost.frames;
     ui.add(Label::new(RichText::new(text).small().color(color)).wrap()).on_hover_text(format!(
-        "Medians of {frames_before} frames of generation {before} and {frames_after} of generation {after}, of the same mode, \
+        "Medians of {frames_before} frames of {before} and {frames_after} of {after}, of the same mode, \
          size and model. Less than 5 % or 0.02 ms counts as noise"
     ));
 }

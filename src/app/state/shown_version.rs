@@ -4,10 +4,22 @@ use super::State;
 use super::shaders::versions::Version;
 
 impl State {
-    /// The number of the version on screen, or its generation if it is none.
+    /// The number of the version on screen, or of the newest one if what is on screen is none. 1 before the first.
     pub(in crate::app) fn shown_version(&self) -> u64 {
-        let generation = self.shown_generation();
-        self.versions.of_generation(generation).map_or(generation, |version| version.number)
+        self.version_number(self.shown_generation())
+            .or(self.versions.iter().next_back().map(|of| of.number))
+            .unwrap_or(1)
+    }
+
+    /// The number of the version that a generation of the shaders is, if it is kept.
+    fn version_number(&self, generation: u64) -> Option<u64> {
+        self.versions.of_generation(generation).map(|version| version.number)
+    }
+
+    /// The version that a generation of the shaders is, in words.
+    pub(in crate::app) fn version_name(&self, generation: u64) -> String {
+        let number = self.version_number(generation);
+        number.map_or_else(|| "an older version".to_owned(), |number| format!("version {number}"))
     }
 
     /// Whether a version is on screen.

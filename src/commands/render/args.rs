@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use specula::capture::{Page, Sweep, Turn};
 
+use crate::commands::Failure;
 use crate::commands::common::frames::Frames;
 use crate::commands::common::parse::size;
 use crate::commands::common::{Common, Models};
@@ -25,21 +26,21 @@ pub struct Args {
     /// Write a sheet of the values of a setting or parameter: PATH=a,b (lists in lists with ;), PATH=0..1 or PATH=0..1/9 (9 values), or PATH for all. Repeated: rows and columns; with --sheet, each mode in a row
     #[arg(long, value_name = "PATH=VALUES", conflicts_with = "turntable", value_parser = Sweep::parse)]
     pub(super) sweep: Vec<Sweep>,
-    /// Page of a sheet
-    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "dark")]
-    pub(super) page: Page,
+    /// Page of a sheet [default: dark]
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
+    pub(super) page: Option<Page>,
     /// Write a page of HTML with the pictures of a sheet, too: to enlarge, and to compare two of them
     #[arg(long, value_name = "FILE.html", conflicts_with = "turntable")]
     pub(super) report: Option<PathBuf>,
-    /// Size of each picture on a sheet in pixels
-    #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
-    pub(super) tile: (u32, u32),
+    /// Size of each picture on a sheet in pixels, in place of --size [default: 320x180]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
+    pub(super) tile: Option<(u32, u32)>,
     /// Write a full turn of N frames: a video (.mp4), an animation (.webp, .gif) or numbered .png files. 25 frames per second without --fps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(super) turntable: Option<u32>,
-    /// Whether a turntable turns the camera, the light or the model
-    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
-    pub(super) turn: Turn,
+    /// Whether a turntable turns the camera, the light or the model [default: camera]
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", requires = "turntable")]
+    pub(super) turn: Option<Turn>,
     /// Draw each model by itself, a folder as the models in it. The files are named by --out with {name}, which is '{name}.png' without it
     #[arg(long, conflicts_with = "watch")]
     pub(super) each: bool,
@@ -50,4 +51,27 @@ pub struct Args {
     pub(super) frames: Frames,
     #[command(flatten)]
     pub(super) common: Common,
+}
+
+impl Args {
+    /// Whether a sheet is requested.
+    pub(super) fn is_sheet(&self) -> bool {
+        self.sheet.is_some() || !self.sweep.is_empty()
+    }
+
+    /// Fails for an option that would change nothing.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let of_sheets = [
+            ("--report shows the pictures of --sheet or --sweep; `specula diff` has one, too", self.report.is_some()),
+            (
+                "--tile is the size of a picture of --sheet or --sweep; --size is that of a single one",
+                self.tile.is_some(),
+            ),
+            ("--page is for the page of --sheet or --sweep", self.page.is_some()),
+        ];
+        let misplaced = of_sheets.iter().find(|(_, is_given)| *is_given && !self.is_sheet());
+        let sized = ("--size is not for --sheet and --sweep; --tile is the size of each picture there", true);
+        let sized = (self.is_sheet() && self.common.size.is_some()).then_some(&sized);
+        misplaced.or(sized).map_or(Ok(()), |(message, _)| Err(Failure::Usage((*message).to_owned())))
+    }
 }

@@ -13,19 +13,21 @@ use crate::commands::common::report::check_report;
 
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;
+/// Size of a picture of a sheet, pixels.
+const TILE: (u32, u32) = (320, 180);
 /// Most pictures in the single row of a sweep.
 const MOST_COLUMNS: usize = 8;
 
 /// Whether one of them is requested.
 pub fn is_asked(args: &Args) -> bool {
-    args.sheet.is_some() || args.turntable.is_some() || !args.sweep.is_empty() || is_movie(args)
+    args.is_sheet() || args.turntable.is_some() || is_movie(args)
 }
 
 /// Whether all frames of the sequence go into one file.
 fn is_movie(args: &Args) -> bool {
     let holds_frames =
         |ending: &std::ffi::OsStr| ["mp4", "webp", "gif"].iter().any(|of| ending.eq_ignore_ascii_case(of));
-    let is_one_picture = args.sheet.is_none() && args.turntable.is_none() && args.sweep.is_empty();
+    let is_one_picture = !args.is_sheet() && args.turntable.is_none();
     is_one_picture && args.frames.frames.is_some() && args.out.extension().is_some_and(holds_frames)
 }
 
@@ -81,7 +83,7 @@ fn draw(
 ) -> Result<(), CaptureError> {
     let out = args.out.as_path();
     if let Some(frames) = args.turntable {
-        let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size(), args.turn);
+        let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size(), args.turn.unwrap_or_default());
         return Turntable { frames, fps, size, turn }.write(headless, out, tell);
     }
     if is_movie(args) {
@@ -106,7 +108,8 @@ fn draw(
     fit?;
     let is_grid = args.sweep.len() + usize::from(args.sheet.is_some()) > 1;
     let columns = (is_grid || (!args.sweep.is_empty() && columns <= MOST_COLUMNS)).then_some(columns as u32);
-    let plan = SheetPlan { cells, size: args.tile, columns, page: args.page };
+    let (size, page) = (args.tile.unwrap_or(TILE), args.page.unwrap_or_default());
+    let plan = SheetPlan { cells, size, columns, page };
     match &args.report {
         Some(page) => plan.write_with_page(headless, (out, page), tell),
         None => plan.write(headless, out, tell),

@@ -53,11 +53,7 @@ fn draw(args: &mut Args, start: Instant, device: &mut Option<Arc<Gpu>>) -> Resul
         true => many::check(args)?,
         false => check_out(&args.out)?,
     }
-    if args.report.is_some() && args.sheet.is_none() && args.sweep.is_empty() {
-        return Err(Failure::Usage(
-            "--report shows the pictures of --sheet or --sweep; `specula diff` has one, too".into(),
-        ));
-    }
+    args.check()?;
     let sequence = args.frames.sequence()?;
     if args.paths && !all {
         return Err(Failure::Usage("--paths adds modes to `--mode all`; a mode that is named needs no --paths".into()));

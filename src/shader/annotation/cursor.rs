@@ -24,6 +24,11 @@ impl<'a> Cursor<'a> {
         self.place
     }
 
+    /// The text behind the cursor.
+    pub fn rest(&self) -> &'a str {
+        &self.raw[self.at..]
+    }
+
     /// Byte offset of the cursor in the line.
     pub fn position(&self) -> usize {
         self.at

@@ -28,6 +28,7 @@ mod mode;
 mod mode_list;
 mod name;
 pub mod options;
+mod order;
 mod parameter;
 mod parse;
 mod parse_pass;

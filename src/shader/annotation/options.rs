@@ -38,7 +38,7 @@ pub fn described(keyword: &str) -> Option<&'static Described> {
 pub const ANNOTATIONS: &[Described] = &[
     Described {
         keyword: "ui",
-        doc: "A slider, list, switch or color for the declaration on this line or the next: a member of Params, or a constant_id.",
+        doc: "A slider, list, switch or color for the declaration on this line or the next: a member of Params, or a constant_id. The label comes first, then range, choices and options, and the default last.",
         example: "\"Label\" 0..1 = 0.5",
         options: &[
             option("choice", &["A=0 B=1"], "Names of the values of an int or uint, each with its number and perhaps a sentence in quotes."),

@@ -103,6 +103,21 @@ fn named_numbers_have_colors() {
     }
 }
 
+/// The author sees the line that works, with her values.
+#[test]
+fn a_wrong_order_is_shown_in_order() {
+    for (note, message, sorted) in [
+        ("0..1 \"Rim\" = 0.2", "expected the label before all else, found `\"Rim\"` here", "\"Rim\" 0..1 = 0.2"),
+        ("\"Rim\" = 0.2 0..1", "expected a number, since the default comes last, found `0..1`", "\"Rim\" 0..1 = 0.2"),
+    ] {
+        let errors = read_text(&format!("{PARAMS}\nfloat a; //@ui {note}\n}};")).unwrap_err();
+        assert!(errors[0].message.ends_with(message), "{errors:?}");
+        let help = format!("the label comes first and the default last: `//@ui {sorted}`");
+        assert_eq!(errors[0].help.as_deref(), Some(help.as_str()));
+        read_text(&format!("{PARAMS}\nfloat a; //@ui {sorted}\n}};")).unwrap();
+    }
+}
+
 #[test]
 fn constants_and_parameters() {
     let found = read_text(&format!(
@@ -211,7 +226,10 @@ fn what_does_not_parse_says_what_was_expected() {
         &format!("{PARAMS}\nvec3 a; //@ui = 1 2\n}};"),
         "m.frag:4:16: error: expected 3 number(s) after `=`, found 2",
     );
-    refused(&format!("{PARAMS}\nfloat a; //@ui = x\n}};"), "m.frag:4:18: error: expected a number, found `x`");
+    refused(
+        &format!("{PARAMS}\nfloat a; //@ui = x\n}};"),
+        "m.frag:4:18: error: expected a number, since the default comes last, found `x`",
+    );
     refused(
         &format!("{PARAMS}\nmat4 a; //@ui\n}};"),
         "m.frag:4:1: error: expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `mat4`",

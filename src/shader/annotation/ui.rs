@@ -2,6 +2,7 @@
 
 use super::ParameterType;
 use super::cursor::Cursor;
+use super::order::in_order;
 use super::place::AnnotationPlace;
 use super::value::{choices, claim, claimed, default, range, text_key};
 use crate::shader::diagnostic::Diagnostic;
@@ -52,8 +53,18 @@ pub struct Ui {
     pub place: AnnotationPlace,
 }
 
-/// Parses the rest of a `//@ui` that belongs to `declaration`.
+/// Parses the rest of a `//@ui` that belongs to `declaration`. If its parts are in another order, the error shows them in order.
 pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box<Diagnostic>> {
+    let text = cursor.rest();
+    parts(cursor, declaration).map_err(|error| match in_order(text) {
+        Some(sorted) => {
+            Box::new(error.with_help(format!("the label comes first and the default last: `//@ui {sorted}`")))
+        }
+        None => error,
+    })
+}
+
+fn parts(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box<Diagnostic>> {
     let (declared, name) = ui_declaration(cursor, declaration)?;
     let label = cursor.string()?;
     let label = label.unwrap_or_else(|| label_of(&name));
@@ -123,9 +134,12 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             }
             word if word.contains("..") => ui.range = Some(range(cursor, bytes, word, scalar)?),
             word => {
-                let message = format!(
-                    "expected \"Label\", lo..hi, choice A=0 B=1, color, group=, doc=, unit= or = default, found `{word}`"
-                );
+                let message = match word.starts_with('"') {
+                    true => format!("expected the label before all else, found `{word}` here"),
+                    false => format!(
+                        "expected lo..hi, choice A=0 B=1, color, group=, doc=, unit= or = default, found `{word}`"
+                    ),
+                };
                 return Err(cursor.error(bytes, message));
             }
         }

@@ -43,7 +43,7 @@ pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<us
             word => number(word),
         };
         let Some(value) = value else {
-            return Err(cursor.error(bytes, format!("expected a number, found `{word}`")));
+            return Err(cursor.error(bytes, format!("expected a number, since the default comes last, found `{word}`")));
         };
         check(cursor, &bytes, kind.scalar(), value)?;
         out.push(value);

@@ -92,7 +92,7 @@ pub fn within<'a, 'b>(tokens: &'a [Token<'b>], bytes: &Range<usize>) -> &'a [Tok
 }
 
 /// The index of the bracket that closes the one at `open`.
-fn closing(tokens: &[Token<'_>], open: usize) -> Option<usize> {
+pub fn closing(tokens: &[Token<'_>], open: usize) -> Option<usize> {
     let mut depth = 0_usize;
     for (at, token) in tokens.iter().enumerate().skip(open) {
         match token.text {

@@ -25,6 +25,25 @@ const IMAGE: &str = "struct Light { vec3 c; };\nstruct Material { Light l; };\nc
     void mainImage( out vec4 fragColor, in vec2 fragCoord )\n{\n    \
     material.l = Light(color(fragCoord / iResolution.xy));\n    fragColor = vec4(material.l.c, 0.0);\n}\n";
 
+/// A slider is declared elsewhere, but its mistake is the author's.
+#[test]
+fn a_mistake_in_a_slider_is_told_at_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "// A toy.\nuniform float a; uniform float speed;   //@ui 0..4 \"Speed\" = 1\n\
+                void mainImage(out vec4 c, in vec2 p) { c = vec4(speed * a); }\n";
+    render(folder.path(), &[("toy.glsl", text)], &[]).expect(
+        1,
+        &[
+            "toy.glsl:2:52: error: expected the label before all else, found `\"Speed\"` here",
+            "2 | uniform float a; uniform float speed;   //@ui 0..4 \"Speed\" = 1",
+            "help: the label comes first and the default last: `//@ui \"Speed\" 0..4 = 1`",
+        ],
+    );
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel4, p); }\n";
+    render(folder.path(), &[("toy.glsl", text)], &[])
+        .expect(1, &["'iChannel4'", "help: there are iChannel0 to iChannel3"]);
+}
+
 #[test]
 fn a_shadertoy_runs_as_it_is() {
     let folder = tempfile::tempdir().unwrap();

@@ -68,6 +68,23 @@ fn names_and_macros_of_webgl_work() {
          MAIN {\n    float case = 0.5, layout = 0.5; Pass own = Pass(case);\n    toy = vec3(0.0, toy_begin(own.a) + layout, 0.0);\n    \
          gl_FragColor = texture(vec2(u_resolution.x / u_resolution.x, toy.y));\n}\n",
     )]);
+    // Functions of GLSL ES 1.00 are types in Vulkan. A file may define them, here or in the file that all share, or overload them.
+    is_green(&[
+        (
+            "toy.glsl",
+            "vec4 textureCube(in vec3 d) { return vec4(0.0, d.y, 0.0, 1.0); }\n#define READ texture2D\n\
+             void mainImage(out vec4 c, in vec2 p) { c = READ(iChannel0, p) + textureCube(vec3(0.5)); }\n",
+        ),
+        (
+            "common.glsl",
+            "vec4 texture2D(sampler2D s, vec2 p) { return vec4(0.0, 0.5, 0.0, 0.0) + 0.0 * texture(s, p); }\n",
+        ),
+    ]);
+    is_green(&[(
+        "toy.frag",
+        "uniform sampler2D u_tex0;\nvec4 texture2D(sampler2D s, vec2 p, vec2 size) { return texture2D(s, p / size) * 0.0; }\n\
+         void main() { gl_FragColor = vec4(0, 1, 0, 1) + texture2D(u_tex0, gl_FragCoord.xy, vec2(2.0)); }\n",
+    )]);
     // A channel without a file may be read as a cube map.
     is_green(&[(
         "toy.glsl",
@@ -180,6 +197,11 @@ fn a_sampler_without_an_image_is_black() {
     let texts = [("toy.frag", text)];
     render(folder.path(), &texts, &[])
         .expect(0, &["1:19: warning: nothing gives the image `texture`", "`sky`", "`fog`"]);
+    assert_eq!(pixel(folder.path(), 9, 9), GREEN);
+    let text = "uniform sampler2D photos[3], other;\nvoid main() {\n    gl_FragColor = vec4(0, 1, 0, 1);\n    for (int i = 0; i < 3; i++) \
+                gl_FragColor += texture2D(photos[i], vec2(0.0)) + texture2D(other, vec2(0.0));\n}\n";
+    let told = ["1:19: warning: nothing gives the image `photos`", "`other`"];
+    render(folder.path(), &[("toy.frag", text)], &[]).expect(0, &told);
     assert_eq!(pixel(folder.path(), 9, 9), GREEN);
 }
 

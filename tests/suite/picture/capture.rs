@@ -195,5 +195,13 @@ fn what_cannot_be_written_is_told_before_any_work() {
     render(path, &["--turntable", "0", "--out", "a.gif"]).expect(2, &["0"]);
     render(path, &["--sheet", "all", "--out", "a.exr"]).expect(2, &["must end in .png"]);
     render(path, &["--sheet", "metalic", "--out", "a.png"]).expect(2, &["Did you mean `metallic`?"]);
+    // Options that would change nothing.
+    for of_sheet in [["--sheet", "d"], ["--sweep", "NDF"]] {
+        render(path, &[&of_sheet[..], &["--size", "64x48", "--out", "a.png"]].concat())
+            .expect(2, &["--tile is the size of each picture"]);
+    }
+    render(path, &["--tile", "64x48", "--out", "a.png"]).expect(2, &["--size is that of a single one"]);
+    render(path, &["--page", "light", "--out", "a.png"]).expect(2, &["--page is for the page of --sheet"]);
+    render(path, &["--turn", "light", "--out", "a.gif"]).expect(2, &["--turntable <N>"]);
     assert_eq!(std::fs::read_dir(path).unwrap().count(), 0);
 }

@@ -51,19 +51,8 @@ fn the_border_between_two_pictures_moves_with_the_mouse() {
 fn two_pictures_of_a_sheet_are_compared_with_a_border() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let args = [
-        "sphere-grid",
-        "--size",
-        "64x48",
-        "--env",
-        "none",
-        "--sheet",
-        "base-color,roughness",
-        "--tile",
-        "96x64",
-        "--out",
-        "sheet.png",
-    ];
+    let args =
+        ["sphere-grid", "--env", "none", "--sheet", "base-color,roughness", "--tile", "96x64", "--out", "sheet.png"];
     run(here, &[&["render"], &args[..], &["--report", "sheet.html"]].concat()).expect(0, &[]);
     let browser = Browser::open(&here.join("sheet.html"), (1200, 900));
     assert_eq!(

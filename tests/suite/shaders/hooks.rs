@@ -121,13 +121,16 @@ fn the_normals_of_the_documented_wave_are_those_of_the_moved_surface() {
 fn the_light_hook_changes_one_light_at_one_point() {
     let mut session = sphere(64, &["lights.rect.enabled=true"]);
     let (first, rectangle) = (session.mode("light-1"), session.mode("area-light"));
-    let positions = covered(&session.mode("position"));
+    let (positions, ambient) = (covered(&session.mode("position")), session.mode("ambient"));
     // The three orbiting lights come first, then the rectangle.
     fill(&mut session, USER, LIGHT_HOOK, "if (index != 0u) light.intensity = vec3(0.0);");
     let only_first = session.mode("final");
-    for ((i, expected), (_, found)) in covered(&first).into_iter().zip(covered(&only_first)) {
+    for (((i, light), (_, ambient)), (_, found)) in
+        covered(&first).into_iter().zip(covered(&ambient)).zip(covered(&only_first))
+    {
+        let expected: [f32; 3] = std::array::from_fn(|c| light[c] + ambient[c]);
         let near = (0..3).all(|c| (expected[c] - found[c]).abs() <= 1e-5 * expected[c].abs().max(1.0));
-        assert!(near, "pixel {i}: {found:?}, light 1 alone is {expected:?}");
+        assert!(near, "pixel {i}: {found:?}, light 1 and the ambient light are {expected:?}");
     }
     assert!(covered(&rectangle).iter().any(|(_, v)| v[0] > 0.0), "the rectangle shone");
     assert!(covered(&session.mode("area-light")).iter().all(|(_, v)| *v == [0.0; 3]), "the rectangle is off");

@@ -127,6 +127,15 @@ impl Viewer {
         viewer
     }
 
+    /// [`Self::open`] where no editor is installed.
+    pub fn without_editor(tree: Tree, more: &[&str]) -> Self {
+        let none = ["SPECULA_EDITOR", "VISUAL", "EDITOR", "PATH"].map(|name| (name, ""));
+        let mut viewer = Self::start(tree, more, &none);
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// [`Self::open`] with a standard input for [`Running::ask`].
     pub fn driven(tree: Tree, more: &[&str]) -> Self {
         Self::driven_with_fault(tree, more, "")

@@ -291,6 +291,32 @@ fn clicks_grids_defaults_and_looks_are_commands() {
     viewer.quit();
 }
 
+/// Another change of the file ends the dragging, and the lost number is told. The versions count on without a gap.
+#[test]
+fn a_dragged_number_that_a_save_ends_is_told() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--env", "none"]);
+    viewer.running.event("ready");
+    let original = viewer.tree.read(NDF);
+    let text = original.replace("alpha * alpha;", "1.0 * alpha * alpha;");
+    viewer.tree.write(NDF, &text);
+    viewer.running.reload(true);
+    viewer.running.done(json!({"command": "reload"}));
+    let row = 1 + text.lines().position(|line| line.contains("1.0 * alpha * alpha;")).unwrap();
+    for value in [7.0, 9.0] {
+        viewer.running.done(json!({"command": "numbers", "at": format!("ndf.glsl:{row}"), "values": [value]}));
+    }
+    let dragged = viewer.screenshot();
+    viewer.tree.write(NDF, &format!("{text}// another change\n"));
+    viewer.running.until_stderr("ndf.glsl was saved with other changes; the dragged 9.0 was not in it");
+    viewer.until("the number of the file", |shot| *shot != dragged);
+    viewer.running.done(json!({"command": "reload"}));
+    let versions = viewer.running.done(json!({"command": "versions"}));
+    let numbers: Vec<u64> = versions.as_array().unwrap().iter().filter_map(|row| row["number"].as_u64()).collect();
+    assert_eq!(numbers, [1, 2, 3], "{versions}");
+    viewer.running.end_input();
+    viewer.quit();
+}
+
 #[test]
 fn numbers_of_a_line_are_commands() {
     let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--env", "none"]);

@@ -43,6 +43,26 @@ fn a_click_on_an_error_opens_the_editor() {
     viewer.quit();
 }
 
+/// Without an editor, the file is shown in the panel Source, and the reason is told.
+#[test]
+fn without_an_editor_a_click_on_an_error_shows_its_file() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::without_editor(tree, &["model.glb"]);
+    viewer.running.event("ready");
+    let left = viewer.screenshot().width();
+    let text = viewer.tree.read(NDF).replace("alpha * alpha;", "alpha * alfa;");
+    viewer.tree.write(NDF, &text);
+    viewer.running.reload(false);
+    let edge = |screen: &RgbaImage| TILES.into_iter().find(|y| count(screen, 0..left, *y..*y + 1, ERROR) > 100);
+    let screen = viewer.until_screen("the card with the error", |screen| edge(screen).is_some());
+    viewer.click((40, edge(&screen).unwrap() + 40));
+    viewer.running.until_stderr("The panel Source shows the file: found no editor with a window of its own");
+    let layout = viewer.tree.beside("state/specula/layout.json");
+    viewer.until("the panel", |_| std::fs::read_to_string(&layout).is_ok_and(|text| text.contains("\"Source\"")));
+    viewer.quit();
+}
+
 /// The stages that compile behind the picture do not take the message away.
 #[test]
 fn a_loop_that_does_not_end_stays_on_screen() {

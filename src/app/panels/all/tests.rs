@@ -103,7 +103,7 @@ fn an_error_moves_nothing_and_goes_with_its_repair() {
         let card = after.get("no alfa").unwrap_or_else(|| panic!("no message in {after:?}"));
         assert!(picture.contains_rect(*card), "the message at {card:?} is not over the picture {picture:?}");
         // The panel Shaders counts the problems in the names of its pages.
-        assert_eq!(moved(&before, &after), ["Generation 1", "Problems", "watching"]);
+        assert_eq!(moved(&before, &after), ["Problems", "Version 1", "watching"]);
         assert_eq!(harness.state().picture, picture);
     }
     harness.state_mut().state.session.diagnostics.clear();

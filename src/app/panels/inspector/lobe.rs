@@ -149,32 +149,13 @@ fn legend(ui: &mut Ui, has_before: bool, doc: &str) {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
-    use glam::Vec3;
-
     use super::*;
-    use crate::scene::{Bounds, CameraView};
     use crate::shader::PixelValue;
 
     fn reading(values: &[(&str, [f32; 3])]) -> Reading {
-        let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
         let value = |[r, g, b]: [f32; 3]| PixelValue { value: [r, g, b, 1.0], ..PixelValue::default() };
-        let values: BTreeMap<_, _> =
-            values.iter().map(|(slug, numbers)| ((*slug).to_owned(), (value(*numbers), 1))).collect();
-        let camera = CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds);
-        Reading {
-            at: [0, 0],
-            values,
-            picture: 1,
-            is_complete: true,
-            is_of_toy: false,
-            exposure: 1.0,
-            camera,
-            lights: Vec::new(),
-            texels: Vec::new(),
-            names: None,
-        }
+        let values = values.iter().map(|(slug, numbers)| ((*slug).to_owned(), (value(*numbers), 1)));
+        Reading::sample(values.collect())
     }
 
     #[test]

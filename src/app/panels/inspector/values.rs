@@ -18,6 +18,9 @@ const FINAL: &str = "final";
 pub(super) const HEIGHT: f32 = 18.0;
 /// Width and height of a swatch, points.
 pub(super) const SWATCH: f32 = 12.0;
+/// Points before a name, and between it and its numbers.
+const NAME: f32 = SWATCH + 7.0;
+const GAP: f32 = 6.0;
 /// Width of the column of units, points.
 const UNIT: f32 = 34.0;
 
@@ -98,17 +101,25 @@ fn has_data(value: &PixelValue) -> bool {
     value.not_finite || (!value.no_data && value.value[3] > 0.0)
 }
 
-/// A row: swatch, name, numbers and unit.
+/// A row: swatch, name, numbers and unit. The numbers stand below a name that has no room beside them.
 fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let value = reading.value(&mode.slug);
+    let text = value.as_ref().map(|value| text::numbers(mode, value)).unwrap_or_default();
+    let width = |text: &str, font| ui.painter().layout_no_wrap(text.to_owned(), font, QUIET.color()).size().x;
+    let beside = NAME + width(&mode.name, small_font()) + GAP + width(text.trim_start(), small_mono_font()) + UNIT;
+    let lines = if beside <= ui.available_width() { 1.0 } else { 2.0 };
+    let (whole, response) = ui.allocate_exact_size(vec2(ui.available_width(), lines * HEIGHT), Sense::click());
     spoken::button(&response, &mode.name);
-    let Some(value) = reading.value(&mode.slug).filter(|_| ui.is_rect_visible(rect)) else { return response };
+    let Some(value) = value.filter(|_| ui.is_rect_visible(whole)) else { return response };
     let painter = ui.painter();
     if response.hovered() {
-        painter.rect_filled(rect, 3.0, EDGE);
+        painter.rect_filled(whole, 3.0, EDGE);
     }
+    // The line of the numbers, and that of the name.
+    let (rect, named) = (whole.with_min_y(whole.max.y - HEIGHT), whole.with_max_y(whole.min.y + HEIGHT));
     let middle = rect.center().y;
-    let swatch = Rect::from_center_size(pos2(rect.min.x + 0.5 * SWATCH + 1.0, middle), vec2(SWATCH, SWATCH));
+    let swatch = pos2(rect.min.x + 0.5 * SWATCH + 1.0, named.center().y);
+    let swatch = Rect::from_center_size(swatch, vec2(SWATCH, SWATCH));
     paint_swatch(ui, swatch, mode, &value, reading.exposure);
     let is_old = reading.is_old(&mode.slug);
     let color = match () {
@@ -118,15 +129,14 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
     };
     let unit = ui.painter().layout_no_wrap(with_powers(&mode.unit), small_font(), QUIET.color());
     painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET.color());
-    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), small_mono_font(), color);
-    let left_of_numbers = rect.max.x - UNIT - numbers.size().x;
-    painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
+    let numbers = painter.layout_no_wrap(text, small_mono_font(), color);
+    painter.galley(pos2(rect.max.x - UNIT - numbers.size().x, middle - 0.5 * numbers.size().y), numbers, color);
     let name_color = if is_current { ACCENT.color() } else { ui.visuals().text_color() };
     let mut job = LayoutJob::simple_singleline(mode.name.clone(), small_font(), name_color);
-    let left = rect.min.x + SWATCH + 7.0;
-    job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));
+    let left = named.min.x + NAME;
+    job.wrap = TextWrapping::truncate_at_width(named.max.x - left);
     let name = painter.layout_job(job);
-    painter.galley(pos2(left, middle - 0.5 * name.size().y), name, name_color);
+    painter.galley(pos2(left, named.center().y - 0.5 * name.size().y), name, name_color);
     response.on_hover_ui(|ui| about(ui, mode, &value))
 }
 
@@ -172,7 +182,61 @@ fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: 
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
     use super::*;
+
+    /// Where nothing of the model is, the list has the picture's color; other modes of light would tell that of the background.
+    #[test]
+    fn the_list_of_a_background_pixel_has_the_picture_alone() {
+        let mode = |slug: &str, name: &str| Mode {
+            slug: slug.to_owned(),
+            name: name.to_owned(),
+            group: "Light".to_owned(),
+            ..Mode::default()
+        };
+        let modes = [mode(FINAL, "Final"), mode("ambient", "Ambient"), mode("depth", "Depth")];
+        let seen = PixelValue { value: [0.5, 0.5, 0.5, 1.0], ..PixelValue::default() };
+        let listed = |depth: PixelValue| {
+            let values = [(FINAL, seen), ("ambient", seen), ("depth", depth)];
+            let reading = Reading::sample(values.map(|(slug, value)| (slug.to_owned(), (value, 1))).into());
+            let mut current = String::new();
+            let harness = Harness::builder().with_size(vec2(320.0, 300.0)).build_ui(|ui| {
+                show(ui, &reading, &Words::default(), &modes, None, &mut current, |_| {});
+            });
+            let folded = |count: usize| harness.query_by_label(&format!("{count} without data")).is_some();
+            let names = ["Final", "Ambient", "Depth"];
+            (names.map(|name| harness.query_by_label(name).is_some()), [1, 2].map(folded))
+        };
+        assert_eq!(listed(PixelValue::default()), ([true, false, false], [false, true]));
+        assert_eq!(listed(seen), ([true; 3], [false; 2]), "a pixel of the model");
+    }
+
+    /// A long name is never cut: its numbers stand below it.
+    #[test]
+    fn a_name_without_room_beside_its_numbers_has_a_line_of_its_own() {
+        let mode =
+            |slug: &str, name: &str| Mode { slug: slug.into(), name: name.into(), components: 3, ..Mode::default() };
+        let modes = [mode("a", "Short"), mode("b", "A name of many letters, and more")];
+        let value = PixelValue { value: [0.5, 0.5, 0.5, 1.0], ..PixelValue::default() };
+        let reading = Reading::sample(["a", "b"].map(|slug| (slug.to_owned(), (value, 1))).into());
+        let mut current = String::new();
+        let harness = Harness::builder().with_size(vec2(318.0, 300.0)).build_ui(|ui| {
+            crate::app::widgets::theme::apply(ui.ctx());
+            show(
+                ui,
+                &Reading { is_of_toy: true, ..reading.clone() },
+                &Words::default(),
+                &modes,
+                None,
+                &mut current,
+                |_| {},
+            );
+        });
+        let height = |name: &str| harness.get_by_label(name).rect().height();
+        assert_eq!((height("Short"), height(&modes[1].name)), (HEIGHT, 2.0 * HEIGHT));
+    }
 
     #[test]
     fn a_pixel_that_nothing_covers_has_no_data() {

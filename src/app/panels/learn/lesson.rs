@@ -1,6 +1,6 @@
 //! An exercise: its text, its goals with what was measured, hints and the solution.
 
-use egui::{Align, Frame, Id, Label, Margin, RichText, ScrollArea, Ui};
+use egui::{Align, Frame, Id, Label, Margin, Rect, RichText, ScrollArea, Ui, UiBuilder, pos2, vec2};
 
 use super::mark::mark;
 use crate::app::command::program::LEARN;
@@ -26,7 +26,7 @@ const LOW: f32 = 260.0;
 /// Largest part of the panel's height that the goals take.
 const PART: f32 = 0.55;
 
-/// Shows the exercise: its text above, and its goals below, where they stay in sight.
+/// Shows the exercise: its text above, its goals below, and its buttons at the bottom, where they stay in sight.
 pub(super) fn show(
     ui: &mut Ui,
     learning: &Learning,
@@ -34,6 +34,20 @@ pub(super) fn show(
     results: Results,
     commands: &mut Vec<Command>,
 ) {
+    // Goals and buttons take the height that they had in the last frame.
+    let buttons_id = Id::new("height of the buttons of an exercise");
+    let spacing = ui.spacing().item_spacing.y;
+    let foot = height_of(ui, buttons_id).unwrap_or(2.0 * ui.spacing().interact_size.y);
+    let rest = Rect::from_min_max(ui.cursor().min, ui.max_rect().max - vec2(0.0, foot + spacing));
+    lesson(&mut ui.new_child(UiBuilder::new().max_rect(rest)), learning, exercise, results, commands);
+    let below = Rect::from_min_max(pos2(rest.left(), rest.bottom() + spacing), ui.max_rect().max);
+    let ui = &mut ui.new_child(UiBuilder::new().max_rect(below));
+    buttons(ui, learning, exercise, commands);
+    set_height(ui, buttons_id, ui.min_rect().height());
+}
+
+/// The text and the goals.
+fn lesson(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results, commands: &mut Vec<Command>) {
     // Each exercise scrolls by itself.
     let scroll = |id: &str| ScrollArea::vertical().id_salt((id, &exercise.name)).auto_shrink(false);
     if ui.available_height() < LOW {
@@ -44,17 +58,26 @@ pub(super) fn show(
         });
         return;
     }
-    // The goals take the height that they had in the last frame.
     let id = Id::new(("height of the goals", &exercise.name));
     let whole = ui.available_height();
-    let known = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(0.4 * whole);
+    let known = height_of(ui, id).unwrap_or(0.4 * whole);
     let below = known.min(PART * whole);
     let above = whole - below - 3.0 * ui.spacing().item_spacing.y;
     scroll("text").max_height(above).show(ui, |ui| about(ui, learning, exercise, commands));
     ui.separator();
     let shown = scroll("goals").show(ui, |ui| goals(ui, learning, exercise, results, commands));
-    if shown.content_size.y != known {
-        ui.data_mut(|data| data.insert_temp(id, shown.content_size.y));
+    set_height(ui, id, shown.content_size.y);
+}
+
+/// The height that a part of the panel had in the last frame.
+fn height_of(ui: &Ui, id: Id) -> Option<f32> {
+    ui.data(|data| data.get_temp(id))
+}
+
+/// Keeps the height of a part for the next frame, which follows at once if it has changed.
+fn set_height(ui: &Ui, id: Id, height: f32) {
+    if height_of(ui, id) != Some(height) {
+        ui.data_mut(|data| data.insert_temp(id, height));
         ui.ctx().request_repaint();
     }
 }
@@ -206,7 +229,6 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results
             }
         });
     }
-    buttons(ui, learning, exercise, commands);
 }
 
 /// The difference between the files and the solution. Returns whether the user wants it written.
@@ -247,6 +269,26 @@ mod tests {
 
     /// The panel at 720p.
     const SIZE: egui::Vec2 = egui::vec2(400.0, 480.0);
+
+    /// The panel at 720p with larger letters, where all texts scroll.
+    #[test]
+    fn the_buttons_are_whole_in_a_low_and_narrow_panel() {
+        for size in [SIZE, egui::vec2(400.0, 230.0), egui::vec2(230.0, 300.0)] {
+            for exercise in exercises() {
+                let mut learning = Learning::default();
+                learning.open(Path::new("folder"), Some(exercise.clone()));
+                let mut harness = Harness::builder()
+                    .with_size(size)
+                    .build_ui(|ui| show(ui, &learning, exercise, Results::New, &mut Vec::new()));
+                harness.run();
+                for text in ["Show the solution", "Start over"] {
+                    let rect = harness.get_by_label(text).rect();
+                    let room = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+                    assert!(room.contains_rect(rect), "`{text}` of {} is at {rect:?} in {size:?}", exercise.name);
+                }
+            }
+        }
+    }
 
     #[test]
     fn goals_stay_in_sight_and_results_of_an_older_edit_say_so() {

@@ -1,7 +1,6 @@
 //! The list of all exercises.
 
-use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Response, RichText, Sense, Ui, pos2, vec2};
+use egui::{Color32, Response, RichText, Sense, Ui, pos2, vec2};
 
 use super::mark::paint_mark;
 use crate::app::command::program::LEARN;
@@ -40,13 +39,18 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
 
 /// Shows an exercise as one button: its mark, number and title, and its difficulty at the right.
 fn row(ui: &mut Ui, exercise: &Exercise, is_solved: bool, is_next: bool) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let level = match exercise.level {
         Level::Easy => "easy",
         Level::Medium => "medium",
         Level::Hard => "hard",
     };
     let title = format!("{}  {}", exercise.number, exercise.title);
+    // A title that has no room beside the level takes more lines.
+    let level_text = ui.painter().layout_no_wrap(level.to_owned(), small_font(), QUIET.color());
+    let room = ui.available_width() - MARK - level_text.size().x - 12.0;
+    let lines = ui.painter().layout(title.clone(), body_font(), Color32::PLACEHOLDER, room);
+    let height = HEIGHT.max(lines.size().y + 4.0);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     let state = if is_solved { ", solved" } else { "" };
     spoken::button(&response, &format!("{title}, {level}{state}"));
     if ui.is_rect_visible(rect) {
@@ -57,14 +61,10 @@ fn row(ui: &mut Ui, exercise: &Exercise, is_solved: bool, is_next: bool) -> Resp
         }
         let middle = rect.center().y;
         paint_mark(&painter, pos2(rect.min.x + 0.5 * MARK, middle), is_solved.then_some(true));
-        let right = pos2(rect.max.x - 6.0, middle);
-        let level = painter.text(right, Align2::RIGHT_CENTER, level, small_font(), QUIET.color());
+        let size = level_text.size();
+        painter.galley(pos2(rect.max.x - 6.0 - size.x, middle - 0.5 * size.y), level_text, QUIET.color());
         let color = if is_next { ACCENT.color() } else { visuals.text_color() };
-        let left = rect.min.x + MARK;
-        let mut job = LayoutJob::simple_singleline(title, body_font(), color);
-        job.wrap = TextWrapping::truncate_at_width((level.min.x - 6.0 - left).max(0.0));
-        let title = painter.layout_job(job);
-        painter.galley(pos2(left, middle - 0.5 * title.size().y), title, color);
+        painter.galley(pos2(rect.min.x + MARK, middle - 0.5 * lines.size().y), lines, color);
     }
     let hover = format!("{}\nOpen the exercise: {}\nDifficulty: {level}", exercise.title, exercise.idea);
     response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hover)

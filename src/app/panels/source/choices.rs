@@ -16,8 +16,11 @@ use crate::shader::trace::{Act, Event, Trace, TracedLight, last_call};
 const INDENT: f32 = 12.0;
 /// Height of the list of files, points.
 pub(super) const MENU: f32 = 380.0;
+/// Width of the list of calls, points.
+const CALLS: f32 = 170.0;
 /// Width of the list of rounds, points.
-const ROUNDS: f32 = 110.0;
+const ROUNDS: f32 = 120.0;
+const ALL_ROUNDS: &str = "All rounds, in order";
 
 /// The choices that a fragment offers. A log may have thousands of events, so they are looked for once for each trace and choice.
 #[derive(Default)]
@@ -91,10 +94,10 @@ fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: us
 
 /// `count`: calls with statements of the file.
 fn choose_call(ui: &mut Ui, choice: &mut Choice, count: usize, (trace, fragment): (&Trace, usize)) {
-    let all = format!("All {}", plural(count, "call"));
+    let all = format!("All {}, in order", plural(count, "call"));
     let now = choice.call.clone();
-    let shown = now.as_deref().map_or(all.as_str(), |call| last_call(call).0);
-    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(150.0).height(MENU);
+    let shown = now.as_deref().map_or_else(|| all.clone(), |call| format!("Only {}", last_call(call).0));
+    let list = ComboBox::from_id_salt("call").selected_text(RichText::new(shown).small()).width(CALLS).height(MENU);
     let list = list.truncate().show_ui(ui, |ui| {
         ui.set_min_width(MENU);
         ui.selectable_value(&mut choice.call, None, &all);
@@ -105,8 +108,15 @@ fn choose_call(ui: &mut Ui, choice: &mut Choice, count: usize, (trace, fragment)
             }
         }
     });
-    let hint = "One call: the values of what led to it, of itself, and of what it calls";
-    named(list.response, "Call").on_hover_text(now.map_or(hint.to_owned(), |call| format!("{call}\n{hint}")));
+    let hint = match now {
+        None => {
+            "Each line shows its values of all these calls, one behind the other: `1, 5 ×2` is 1 in the first call and 5 in the second. \
+             Choose a call to see its values alone"
+                .to_owned()
+        }
+        Some(call) => format!("{call}\nThe values of this call alone, of the calls that led to it, and of those that it makes"),
+    };
+    named(list.response, "Call").on_hover_text(hint);
 }
 
 /// A call in the list, indented below its caller, with the light that it is about. Returns whether it was clicked.
@@ -136,12 +146,12 @@ fn choose_round(ui: &mut Ui, choice: &mut Choice, loops: &[TracedLoop]) {
     let all = || loops.iter().flat_map(|of| of.rounds.iter().map(|round| (of.line, round)));
     let is_chosen = |line: u32, number: u32| choice.round == Some(Round { line, number });
     let chosen = all().find(|(line, (number, _))| is_chosen(*line, *number));
-    let text = chosen.map_or("All rounds", |(_, (_, label))| label.as_str());
+    let text = chosen.map_or(ALL_ROUNDS, |(_, (_, label))| label.as_str());
     let list = ComboBox::from_id_salt("round").selected_text(small_mono(text)).width(ROUNDS).height(MENU);
     let mut round = choice.round;
     let list = list.truncate().show_ui(ui, |ui| {
         ui.set_min_width(ROUNDS);
-        ui.selectable_value(&mut round, None, "All rounds");
+        ui.selectable_value(&mut round, None, ALL_ROUNDS);
         for of in loops {
             ui.label(RichText::new(format!("{}: {}", of.line, of.code)).small().color(QUIET));
             for (number, label) in &of.rounds {
@@ -161,13 +171,16 @@ fn choose_round(ui: &mut Ui, choice: &mut Choice, loops: &[TracedLoop]) {
 
 fn choose_time(ui: &mut Ui, choice: &mut Choice, times: usize) {
     let mut time = choice.time.unwrap_or(0);
-    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
-        0.0 => "all".to_owned(),
-        number => format!("{number:.0}"),
-    };
-    let parse = |text: &str| if text.trim() == "all" { Some(0.0) } else { text.trim().parse().ok() };
     let most = times.max(time);
-    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1).prefix("Time ");
+    let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
+        0.0 => format!("All {most} times"),
+        number => format!("Time {number:.0} of {most}"),
+    };
+    let parse = |text: &str| match text.trim().to_lowercase().starts_with("all") {
+        true => Some(0.0),
+        false => text.split_whitespace().find_map(|word| word.parse().ok()),
+    };
+    let drag = egui::DragValue::new(&mut time).range(0..=most).speed(0.1);
     let drag = ui.add(drag.custom_formatter(text).custom_parser(parse));
     named(drag, "Time").on_hover_text(
         "Of a statement that ran more than once in the chosen call, as in a loop: which time. Drag, or type a number",
@@ -181,7 +194,21 @@ mod tests {
 
     use super::super::tests::window;
     use super::*;
-    use crate::shader::trace::sample::event;
+    use crate::shader::trace::sample::{called, event};
+
+    #[test]
+    fn the_choice_of_calls_says_which_values_are_shown() {
+        let text = "float f(float x) {\n    return x + 1.0;\n}\n";
+        let of_call =
+            |number: u32| called(&format!("f [call {number} of main]"), 2, Act::Return, "", &[number as f32 + 1.0]);
+        let mut harness = window(text, vec![of_call(1), of_call(2)], &[2]);
+        harness.get_by_label_contains("2, 3 ×2");
+        harness.get_by_value("All 2 calls, in order");
+        harness.state_mut().state.traces.choice.call = Some("f [call 2 of main]".to_owned());
+        harness.run_steps(2);
+        harness.get_by_value("Only f [call 2 of main]");
+        harness.get_by_label_contains("return 3");
+    }
 
     #[test]
     fn a_round_of_a_loop_is_chosen_by_its_variable() {

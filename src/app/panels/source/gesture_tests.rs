@@ -171,6 +171,16 @@ fn a_click_on_a_value_shows_it_over_the_model() {
     harness.get_by_label("not taken").click();
     harness.run_steps(2);
     assert!(harness.state().set.is_none());
+    // Beside a line that is typed, too, where the text lies below.
+    let state = &mut harness.state_mut().state;
+    (state.source, state.shader.in_use) = (Source::disk("tree"), Some("tree".into()));
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Edit").click();
+    harness.run_steps(3);
+    harness.get_by_label("a = 2").click();
+    harness.run_steps(2);
+    let set = harness.state_mut().set.take().expect("nothing was set beside the typed text");
+    assert_eq!(set.expression.at, "a.glsl:3:a");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The panel Source: a file of the shader tree with the values that its statements have at the pinned pixel, now and before the last edit.
 
 mod bar;
+#[cfg(test)]
+mod choice_tests;
 mod choices;
 mod code;
 mod colors;
@@ -8,6 +10,8 @@ mod cost;
 mod declared;
 mod definition;
 mod edit;
+#[cfg(test)]
+mod edit_tests;
 mod find;
 mod fold;
 mod functions;

@@ -67,13 +67,18 @@ fn in_sight(ui: &Ui, rect: Rect) -> Rect {
     Rect::from_x_y_ranges(ui.clip_rect().x_range(), rect.y_range())
 }
 
+/// The id of the message in a row.
+fn message_id(ui: &Ui, row: Rect) -> egui::Id {
+    ui.id().with(("message", row.top() as i32))
+}
+
 fn message(ui: &mut Ui, rect: Rect, severity: Severity, text: &str, look: &Look) {
     let color = if severity == Severity::Error { ERROR } else { WARNING }.color();
     let sight = in_sight(ui, rect);
     ui.painter().rect_filled(sight, 0.0, color.gamma_multiply(0.12));
     let at = pos2(sight.left() + look.gutter, rect.center().y);
     ui.painter().text(at, Align2::LEFT_CENTER, text, small_font(), color);
-    let response = ui.interact(sight, ui.id().with(("message", rect.top() as i32)), Sense::hover());
+    let response = ui.interact(sight, message_id(ui, rect), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
     response.on_hover_text(text);
 }
@@ -177,6 +182,9 @@ pub(super) fn beside(
             if at.x < end + GAP {
                 cover(ui, sight.with_min_x(at.x - GAP), background);
             }
+            let response = ui.interact(galley.rect.translate(at.to_vec2()), message_id(ui, sight), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
+            response.on_hover_text(text);
             ui.painter().galley(at, galley, color);
         }
         // A line that is being typed is never cut.

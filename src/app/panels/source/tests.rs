@@ -1,7 +1,6 @@
 //! The panel over a trace, without a device.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,7 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::SourceState;
-use crate::app::command::source::{CHOOSE_TRACE, SAVE_FILE, SHOW_FILE, Typed};
+use crate::app::command::source::SHOW_FILE;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -19,23 +18,20 @@ use crate::app::gallery::Thumbnails;
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::readings::Readings;
 use crate::app::state::State;
-use crate::app::state::trace::choice::Choice;
 use crate::app::state::trace::sample;
-use crate::app::state::trace::saved::WrittenText;
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
 use crate::settings::Settings;
 use crate::shader::trace::sample::{called, event, trace};
-use crate::shader::trace::{Act, Event, Trace, TracedLight};
+use crate::shader::trace::{Act, Event, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
-use crate::write_back::TreeFile;
 
 pub(super) const TEXT: &str = "#include \"b.glsl\"\nfloat f(float x) {\n    float a = x * 2.0;\n    if (a > 3.0)\n        a = 3.0;\n    return a;\n}\n";
 
 /// The panel under test, and the commands that it has sent.
 pub(super) struct Window {
     pub(super) state: State,
-    panel: SourceState,
+    pub(super) panel: SourceState,
     pub(super) asked: Vec<Command>,
     /// The settings that it has asked for last.
     pub(super) set: Option<Settings>,
@@ -70,7 +66,7 @@ pub(super) fn window(text: &str, events: Vec<Event>, statements: &[u32]) -> Harn
     window_of(text, trace(events, statements))
 }
 
-fn window_of(text: &str, trace: Trace) -> Harness<'static, Window> {
+pub(super) fn window_of(text: &str, trace: Trace) -> Harness<'static, Window> {
     let mut state = State::new(Settings::of_window(), Source::embedded());
     add(&mut state, 1, text, trace);
     let window = Window { state, panel: SourceState::default(), asked: Vec::new(), set: None, took: Duration::ZERO };
@@ -215,201 +211,6 @@ fn a_frame_of_600_lines() {
         crate::message::tell(format_args!("{what}: median {:?}, most {:?}", frames[25], frames[49]));
     }
     assert_eq!(scrolled, 50);
-}
-
-#[test]
-fn a_call_is_chosen_where_there_are_more() {
-    let both = ["main > f", "main > f [2]"].map(|calls| called(calls, 3, Act::Store, "a", &[2.0]));
-    let mut harness = window(TEXT, both.to_vec(), &[3]);
-    harness.get_by_label("Call").click();
-    harness.run_steps(2);
-    harness.get_by_label("main > f [2]").click();
-    harness.run_steps(2);
-    let chosen = Choice { call: Some("main > f [2]".to_owned()), ..Choice::default() };
-    assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
-}
-
-#[test]
-fn calls_stand_below_their_callers_with_their_lights() {
-    let paths =
-        ["shade > add_light [light 1] > d_ggx", "shade > add_light [light 2] > d_ggx", "shade > d_ggx", "other"];
-    let light =
-        |name: &str, intensity: [f32; 3]| TracedLight { name: name.into(), kind: "point", intensity, unit: "cd" };
-    let mut trace = trace(paths.map(|calls| called(calls, 3, Act::Store, "a", &[2.0])).to_vec(), &[3]);
-    trace.lights = vec![light("lamp", [12.0, 6.0, 0.0]), light("", [3.0; 3])];
-    let mut harness = window_of(TEXT, trace);
-    harness.get_by_label("Call").click();
-    harness.run_steps(2);
-    harness.get_by_label("lamp, point, 12 cd");
-    harness.get_by_label("point, 3 cd");
-    let rows = [
-        "shade",
-        "shade > add_light [light 1]",
-        "shade > add_light [light 1] > d_ggx",
-        "shade > add_light [light 2]",
-        "shade > add_light [light 2] > d_ggx",
-        "shade > d_ggx",
-        "other",
-    ];
-    let places = rows.map(|row| harness.get_by_label(row).rect().left_top());
-    assert!(places.is_sorted_by(|a, b| a.y < b.y), "{places:?}");
-    let columns = places.map(|place| place.x);
-    assert!(columns[0] < columns[1] && columns[1] < columns[2] && columns[1] == columns[5] && columns[0] == columns[6]);
-    // A call without statements of the file leads to some.
-    harness.get_by_label("shade > add_light [light 2]").click();
-    harness.run_steps(2);
-    let chosen = Choice { call: Some("shade > add_light [light 2]".to_owned()), ..Choice::default() };
-    assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen.clone())]);
-    harness.state_mut().state.traces.choice = chosen;
-    harness.run_steps(2);
-    harness.get_by_label("a = 2");
-}
-
-/// Opens a tree whose shaders are in use.
-fn open(harness: &mut Harness<'_, Window>, root: &Path) {
-    let state = &mut harness.state_mut().state;
-    (state.source, state.shader.in_use) = (Source::disk(root.to_owned()), Some(root.to_owned()));
-}
-
-#[test]
-fn a_file_is_typed_and_saved() {
-    let folder = tempfile::tempdir().unwrap();
-    crate::shader::embedded::write_to(&folder.path().join("tree"), None).unwrap();
-    let mut harness = window(TEXT, events(2.0), &[2, 3]);
-    let root = folder.path().join("tree");
-    open(&mut harness, &root);
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(3);
-    let field = harness.get_by_label("Text of the file");
-    assert_eq!(field.accesskit_node().value().unwrap(), TEXT);
-    field.type_text("// new");
-    harness.run_steps(1);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
-    harness.get_by_label("not saved");
-    // The values go with their lines.
-    harness.get_by_label("a = 2");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    harness.run_steps(2);
-    let (file, base) = (TreeFile { root, path: "a.glsl".into() }, Arc::<str>::from(TEXT));
-    let text: Arc<str> = format!("// new\n{TEXT}").into();
-    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file: file.clone(), base, text: text.clone() })]);
-    // Another program has added a line, which the merged text has.
-    let merged: Arc<str> = format!("{text}// theirs\n").into();
-    let written = WrittenText { file, typed: text, text: Some(merged.clone()) };
-    harness.state_mut().state.traces.written = Some(written);
-    harness.run_steps(2);
-    assert!(harness.query_by_label("not saved").is_none());
-    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), *merged);
-    harness.get_by_role_and_label(Role::Button, "Done").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Text of the file").is_none());
-}
-
-/// A file of another playground is compiled with some words changed. It is shown and typed as its author wrote it.
-#[test]
-fn a_single_file_is_typed_as_its_author_wrote_it() {
-    const OWN: &str = "void main() {\n    float a;\n}\n";
-    let mut harness = window(TEXT, events(2.0), &[2, 3]);
-    let file = Path::new("toys/wave.frag");
-    let opened = TreePath::from("opened/wave.frag");
-    let state = &mut harness.state_mut().state;
-    (state.source, state.shader.in_use) = (Source::open(file.to_owned()), Some(file.to_owned()));
-    state.traces.file = Some(opened.clone());
-    let texts = BTreeMap::from([(opened.clone(), "void Main() {\n    float a = 0.0;\n}\n".into())]);
-    let author_texts = BTreeMap::from([(opened, OWN.into())]);
-    state.session.shaders = Some(Arc::new(ShaderSet { generation: 2, texts, author_texts, ..ShaderSet::default() }));
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(3);
-    let field = harness.get_by_label("Text of the file");
-    assert_eq!(field.accesskit_node().value().unwrap(), OWN);
-    field.type_text("// new ");
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    harness.run_steps(2);
-    let file = TreeFile { root: "toys".into(), path: "wave.frag".into() };
-    let text = format!("// new {OWN}").into();
-    assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file, base: OWN.into(), text })]);
-}
-
-#[test]
-fn what_was_typed_is_taken_back() {
-    let mut harness = window(TEXT, events(2.0), &[2, 3]);
-    open(&mut harness, Path::new("tree"));
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(3);
-    let typed = |harness: &Harness<'_, Window>| {
-        harness.get_by_label("Text of the file").accesskit_node().value().unwrap().clone()
-    };
-    harness.get_by_label("Text of the file").type_text("// new");
-    harness.run_steps(2);
-    let with_it = format!("// new{TEXT}");
-    assert_eq!(typed(&harness), with_it);
-    for (modifiers, key, text) in [
-        (Modifiers::COMMAND, Key::Z, TEXT),
-        (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, &with_it),
-        (Modifiers::COMMAND, Key::Z, TEXT),
-    ] {
-        harness.key_press_modifiers(modifiers, key);
-        harness.run_steps(2);
-        assert_eq!(typed(&harness), text);
-        assert_eq!(harness.query_by_label("not saved").is_some(), text != TEXT);
-    }
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    harness.run_steps(2);
-    assert!(harness.state().asked.is_empty(), "there is nothing to save");
-}
-
-#[test]
-fn typed_text_stays_in_its_tree() {
-    let mut harness = window(TEXT, events(2.0), &[2, 3]);
-    let [a, b] = ["trees/a", "trees/b"].map(Path::new);
-    open(&mut harness, a);
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(3);
-    harness.get_by_label("Text of the file").type_text("// of a");
-    harness.run_steps(2);
-    harness.get_by_label("not saved");
-    let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
-    let unsaved = [(file, format!("// of a{TEXT}"))].into();
-    assert_eq!(harness.state().panel.unsaved(), unsaved);
-    // Another tree is opened. Until its shaders are in use, the file in sight is of neither.
-    harness.state_mut().state.source = Source::disk(b.to_owned());
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Text of the file").is_none(), "text of another tree");
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Text of the file").is_none(), "a file that cannot be written yet");
-    open(&mut harness, b);
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Edit").click();
-    harness.run_steps(3);
-    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), TEXT);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    harness.run_steps(2);
-    assert!(harness.state().asked.is_empty(), "nothing was typed in this tree");
-    assert_eq!(harness.state().panel.unsaved(), unsaved, "closing would still lose it");
-    // The first tree has its text still, and saves it there. After a failure, it can be saved again.
-    open(&mut harness, a);
-    harness.run_steps(2);
-    let text: Arc<str> = format!("// of a{TEXT}").into();
-    assert_eq!(harness.get_by_label("Text of the file").accesskit_node().value().unwrap(), *text);
-    let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
-    for saves in 1..=2 {
-        harness.state_mut().state.traces.written = None;
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-        harness.run_steps(2);
-        let save = SAVE_FILE.with(Typed { file: file.clone(), base: TEXT.into(), text: text.clone() });
-        assert_eq!(harness.state().asked, vec![save; saves]);
-        let written = WrittenText { file: file.clone(), typed: text.clone(), text: None };
-        harness.state_mut().state.traces.written = Some(written);
-        harness.run_steps(2);
-    }
-    harness.get_by_label("not saved");
 }
 
 /// A trace may lie in memory where the one before it was.

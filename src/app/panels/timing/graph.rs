@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
+use crate::app::state::State;
 use crate::app::state::timing::{FRAMES, Timing};
 use crate::app::widgets::theme::{EDGE, LINE, QUIET, TEXT, Tone, WARNING, small_font};
 
@@ -82,7 +83,8 @@ fn hovered(response: &Response, rect: Rect, count: usize) -> Option<usize> {
 }
 
 /// Device time of the passes, one above the other.
-pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
+pub(super) fn passes(ui: &mut Ui, state: &State, names: &[String]) {
+    let timing = &state.timing;
     let pictures = timing.pictures();
     let top = top_of(pictures.iter().map(|sample| sample.device_ms));
     let (rect, response, painter) = area(ui, PASSES, top);
@@ -109,9 +111,9 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
         let line = |name: &String| sample.pass_ms(name).map(|ms| format!("{ms:7.2} ms  {name}"));
         let lines: Vec<String> = names.iter().filter_map(line).collect();
         format!(
-            "{:7.2} ms  whole frame, generation {}\n{}",
+            "{:7.2} ms  whole frame, {}\n{}",
             sample.device_ms,
-            sample.shown.generation,
+            state.version_name(sample.shown.generation),
             lines.join("\n")
         )
     });

@@ -143,6 +143,28 @@ pub(in crate::app) struct Reading {
     pub(in crate::app) texels: Vec<Texel>,
 }
 
+#[cfg(test)]
+impl Reading {
+    /// A complete reading of a picture with the number 1.
+    pub(in crate::app) fn sample(values: BTreeMap<String, (PixelValue, u64)>) -> Self {
+        use glam::Vec3;
+
+        let bounds = crate::scene::Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+        Self {
+            at: [0, 0],
+            values,
+            picture: 1,
+            is_complete: true,
+            is_of_toy: false,
+            exposure: 1.0,
+            camera: CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds),
+            lights: Vec::new(),
+            names: None,
+            texels: Vec::new(),
+        }
+    }
+}
+
 impl Reading {
     /// The value of a mode, if it was read.
     pub(in crate::app) fn value(&self, slug: &str) -> Option<PixelValue> {

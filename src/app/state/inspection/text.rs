@@ -93,12 +93,7 @@ pub(in crate::app) fn table(reading: &Reading, modes: &[Mode], not_finite: Optio
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
-    use glam::Vec3;
-
     use super::*;
-    use crate::scene::{Bounds, CameraView};
 
     fn mode(slug: &str, group: &str, components: u8, unit: &str) -> Mode {
         let [slug, group, unit] = [slug, group, unit].map(str::to_owned);
@@ -111,25 +106,15 @@ mod tests {
     }
 
     fn reading() -> Reading {
-        let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
         let values = [
             ("depth", value([2.5; 3])),
             ("position", value([1.0, -2.0, 0.5])),
             ("d", PixelValue { not_finite: true, ..value([0.0; 3]) }),
             ("uv1", PixelValue { no_data: true, ..value([0.0; 3]) }),
         ];
-        Reading {
-            at: [12, 34],
-            values: values.into_iter().map(|(slug, value)| (slug.to_owned(), (value, 1))).collect::<BTreeMap<_, _>>(),
-            picture: 1,
-            is_complete: true,
-            is_of_toy: false,
-            exposure: 1.0,
-            camera: CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds),
-            lights: Vec::new(),
-            names: Some(["ball".into(), "gold".into()]),
-            texels: Vec::new(),
-        }
+        let values = values.into_iter().map(|(slug, value)| (slug.to_owned(), (value, 1)));
+        let names = Some(["ball".into(), "gold".into()]);
+        Reading { at: [12, 34], names, ..Reading::sample(values.collect()) }
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub(in crate::app) struct Thumbnail {
 
 /// One version of the shaders.
 pub(in crate::app) struct Version {
-    /// Its number, which stays: its first generation.
+    /// Its number among the versions of its tree, from 1. It stays.
     pub(in crate::app) number: u64,
     /// The newest generation with its texts: shaders get another when a version is shown again, or another expression is watched.
     pub(in crate::app) generation: u64,
@@ -137,7 +137,7 @@ impl Versions {
             return;
         }
         self.list.push_back(Version {
-            number: generation,
+            number: self.list.back().map_or(1, |last| last.number + 1),
             generation,
             since: Local::now(),
             reload,
@@ -293,7 +293,7 @@ mod tests {
         // The tree before is still on screen.
         assert!(!versions.is_new(&of(0, 2, "2")) && versions.is_new(&of(1, 3, "other")));
         versions.add(&of(1, 3, "other"), save(), false);
-        assert_eq!(numbers(&versions), [3]);
+        assert_eq!(numbers(&versions), [1]);
         assert!(versions.keeps(2) && versions.keeps(3) && !versions.keeps(4));
         assert_eq!(versions.change_tree(Some(b), Some(a)), 0);
         // Nothing was edited meanwhile, so the newest version is on screen again.
@@ -325,14 +325,14 @@ mod tests {
         versions.add(&shaders(1, "a"), save(), false);
         versions.add(&shaders(2, "b"), save(), true);
         versions.add(&shaders(3, "c"), save(), true);
-        assert_eq!(numbers(&versions), [1, 3]);
+        assert_eq!(numbers(&versions), [1, 2], "no number is left out");
         // The texts of the files are back, so it is the version before.
         versions.add(&shaders(4, "a"), save(), false);
         assert_eq!(numbers(&versions), [1]);
         versions.add(&shaders(5, "d"), save(), true);
         versions.keep_draft();
         versions.add(&shaders(6, "e"), save(), false);
-        assert_eq!(numbers(&versions), [1, 5, 6]);
+        assert_eq!(numbers(&versions), [1, 2, 3]);
     }
 
     #[test]

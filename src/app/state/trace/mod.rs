@@ -114,8 +114,16 @@ impl Traces {
         self.file.as_ref().or(self.newest.as_ref().map(|newest| &newest.file))
     }
 
+    /// Chooses fragment, call, round and time. The begin of another call comes into sight.
+    pub(in crate::app) fn choose(&mut self, choice: Choice) {
+        if choice.call != self.choice.call {
+            self.seeks = choice.call.as_deref().and_then(|call| self.begin_of(call));
+        }
+        self.choice = choice;
+    }
+
     /// The first line of a call in the traced file.
-    pub(in crate::app) fn begin_of(&self, call: &str) -> Option<(TreePath, u32)> {
+    fn begin_of(&self, call: &str) -> Option<(TreePath, u32)> {
         let newest = self.newest.as_ref()?;
         let lines = newest.trace.as_ref().ok()?.lines_where(self.fragment()?, |event| *event.calls == *call);
         let line = lines.iter().find(|line| line.file == newest.file.as_str())?.line;

@@ -4,12 +4,10 @@
 //! names that are words of GLSL 4.60, are replaced by names of the same length. Only initial values and arguments that an author may
 //! leave out in WebGL make a line longer.
 
-use std::ops::Range;
-
 use super::channel::{Channel, channel, channels, samplers};
 use super::declared::{Storage, declarations, has_texture, is_built_in};
-use super::initial::{Edit, apply, initial_values};
-use super::plain::{renamed, with_plain_names};
+use super::initial::{Edit, apply, blank, initial_values};
+use super::plain::{renamed, with_plain_names, with_word};
 use crate::shader::glsl::{Token, TokenKind, code, find_word, includes, lines, tokens};
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
@@ -27,8 +25,9 @@ const WEBGL: [(&str, &str); 5] = [
     ("__VERSION__", "toy_VERSION"),
 ];
 
-/// Words of GLSL 4.60 that are names in GLSL ES 1.00 or 3.00.
-const NAMES_OF_ES: [&str; 24] = [
+/// Words of Vulkan's GLSL 4.60 that are names in GLSL ES 1.00 or 3.00. Its types of images without a sampler have the names of functions of
+/// GLSL ES 1.00.
+pub(super) const NAMES_OF_ES: [&str; 31] = [
     "active",
     "buffer",
     "centroid",
@@ -51,7 +50,14 @@ const NAMES_OF_ES: [&str; 24] = [
     "smooth",
     "subpassInput",
     "subroutine",
+    "texture1D",
+    "texture2D",
+    "texture2DArray",
+    "texture2DRect",
+    "texture3D",
     "textureBuffer",
+    "textureCube",
+    "textureCubeArray",
     "writeonly",
 ];
 
@@ -131,13 +137,7 @@ pub(super) fn with_names(message: &str) -> String {
     let names = NAMES_OF_ES.iter().map(|name| (*name, renamed(name)));
     let webgl = WEBGL.iter().map(|(name, own)| (*name, (*own).to_owned()));
     let message = with_plain_names(message).replace("'Main'", "'main'");
-    names.chain(webgl).fold(message, |message, (name, own)| message.replace(&own, name))
-}
-
-/// Spaces in place of these bytes; line breaks stay.
-fn blank(text: &str, bytes: Range<usize>) -> Edit {
-    let spaces = text[bytes.clone()].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' });
-    (bytes, spaces.collect())
+    names.chain(webgl).fold(message, |message, (name, own)| with_word(&message, &own, name))
 }
 
 /// Lines that name channels and keys, versions, and extensions of WebGL.
@@ -194,7 +194,9 @@ fn never_compiled(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
 /// Names that toy.glsl or GLSL 4.60 uses otherwise.
 fn words(all: &[Token<'_>], has_main: bool) -> Vec<Edit> {
     let own = |(at, token): (usize, &Token<'_>)| {
-        let is_name = || all.get(at + 1).is_none_or(|next| next.kind != TokenKind::Word);
+        let is_macro = || at > 0 && ["define", "undef", "ifdef", "ifndef"].contains(&all[at - 1].text);
+        let ends = |next: &Token<'_>| next.kind != TokenKind::Word || token.in_directive && !next.in_directive;
+        let is_name = || is_macro() || all.get(at + 1).is_none_or(ends);
         match token.text {
             "main" => has_main.then(|| "Main".to_owned()),
             // A qualifier or a type comes before another word.
@@ -323,6 +325,9 @@ mod tests {
         for word in ["sample", "buffer", "filter", "sampler"] {
             assert!(find_word(&found, word).is_none(), "{word}: {found}");
         }
+        let macros = "#ifndef texture2D\n#define texture2D texture\n#endif\n#define T texture2D\nvec4 x = T(a, b);\n";
+        let found = adapted(macros, "image");
+        assert_eq!(found, macros.replace("texture2D", "texture2_"));
         assert_eq!(with_names("'sampl_' : no such field"), "'sample' : no such field");
         let qualifiers = "shared float x;\nprecise float y;\nbuffer B { float z; };\n";
         assert_eq!(adapted(qualifiers, "image"), qualifiers);

@@ -7,7 +7,7 @@ use super::adapt::{COMMON, has_key_functions, uses, with_names};
 use super::channel::{CHANNELS, Channel, Kind, Sampler, channel, channels, samplers};
 use super::declared::outputs;
 use super::problems::MAIN_IMAGE;
-use super::{STAGES, Toy, below, slashes};
+use super::{SLIDERS, STAGES, Toy, below, slashes};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::{code, find_word, lines};
 
@@ -42,6 +42,9 @@ impl Toy {
                 without_body(Diagnostic { file, line: None, column: None, excerpt: None, ..diagnostic }, &drawing.text)
             });
         }
+        if diagnostic.file.strip_prefix("embedded:") == Some(SLIDERS) {
+            return self.of_slider(&diagnostic).unwrap_or(diagnostic);
+        }
         let Some(file) = Path::new(&diagnostic.file).strip_prefix(self.folder()).ok().and_then(slashes) else {
             return diagnostic;
         };
@@ -49,6 +52,25 @@ impl Toy {
         let pass = self.drawings().into_iter().find(|drawing| drawing.file == file).map(|drawing| drawing.pass);
         let pass = pass.as_deref().unwrap_or(COMMON);
         self.with_help(without_body(with_words(quoted(diagnostic, &text, pass), &text), &text), &text)
+    }
+
+    /// A diagnostic about the `//@ui` of a slider at the line of the uniform that the author has written.
+    fn of_slider(&self, diagnostic: &Diagnostic) -> Option<Diagnostic> {
+        let written = diagnostic.excerpt.as_deref()?;
+        let note = written.find("//@ui")?;
+        let name = code(&written[..note]).get(1)?.text;
+        let column = (diagnostic.column? as usize).checked_sub(1)?;
+        let from = written.char_indices().nth(column).map_or(written.len(), |(at, _)| at);
+        let length: usize = written[from..].chars().take(diagnostic.length as usize).map(char::len_utf8).sum();
+        self.watched().into_iter().find_map(|path| {
+            let text = self.own_text(&slashes(path.strip_prefix(self.folder()).ok()?)?).ok()?;
+            let all = lines(&text);
+            let is_it = |raw: &str| raw.find(&written[note..]).filter(|at| find_word(&raw[..*at], name).is_some());
+            let (line, at) = all.iter().find_map(|line| Some((line, is_it(line.raw)?)))?;
+            let moved = Diagnostic { file: path.display().to_string(), ..diagnostic.clone() };
+            let begin = (at + from).checked_sub(note)?;
+            Some(moved.on_line(line.number, Some(line.raw)).under(begin..begin + length))
+        })
     }
 
     fn with_help(&self, diagnostic: Diagnostic, text: &str) -> Diagnostic {
@@ -62,6 +84,10 @@ impl Toy {
         if message.starts_with("'gl_Position'") {
             return diagnostic
                 .with_help("this is a vertex shader; Specula opens a fragment shader alone, without a tree");
+        }
+        let channel = message.strip_prefix("'iChannel").and_then(|rest| rest.split('\'').next()?.parse::<usize>().ok());
+        if channel.is_some_and(|number| number >= CHANNELS) {
+            return diagnostic.with_help("there are iChannel0 to iChannel3");
         }
         if let Some(help) = help_with_channel(&diagnostic, text) {
             return diagnostic.with_help(help);

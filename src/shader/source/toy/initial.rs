@@ -85,6 +85,12 @@ pub(super) fn apply(text: &str, mut edits: Vec<Edit>) -> String {
     out + &text[end..]
 }
 
+/// Spaces in place of these bytes; line breaks stay.
+pub(super) fn blank(text: &str, bytes: Range<usize>) -> Edit {
+    let spaces = text[bytes.clone()].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' });
+    (bytes, spaces.collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::adapt::adapted;

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::adapt::NAMES_OF_ES;
 use super::declared::declarations;
+use super::plain::renamed;
 use crate::shader::glsl::{Token, TokenKind, tokens};
 
 /// Macros of toy.glsl and of the stage for names that a file may define or declare itself.
@@ -42,7 +44,7 @@ impl OwnNames {
         let replaced: Vec<Range<usize>> =
             declarations(&code).into_iter().map(|declaration| declaration.bytes).collect();
         let mut depth = 0_usize;
-        for (before, token) in code.iter().zip(code.iter().skip(1)) {
+        for (at, (before, token)) in code.iter().zip(code.iter().skip(1)).enumerate() {
             match before.text {
                 "{" | "(" | "[" => depth += 1,
                 "}" | ")" | "]" => depth = depth.saturating_sub(1),
@@ -51,7 +53,7 @@ impl OwnNames {
             let may_follow = before.kind == TokenKind::Word || matches!(before.text, "," | "}" | "]");
             let is_name = token.kind == TokenKind::Word && !PRECISIONS.contains(&token.text);
             let is_replaced = || replaced.iter().any(|bytes| bytes.contains(&token.bytes.start));
-            if depth == 0 && may_follow && is_name && !is_replaced() {
+            if depth == 0 && may_follow && is_name && !is_replaced() && !is_overload(&code[at + 1..]) {
                 self.declared.insert(token.text.to_owned());
             }
         }
@@ -60,8 +62,27 @@ impl OwnNames {
     /// The lines that remove the macros of these names.
     pub(super) fn removed_macros(&self) -> String {
         let is_own = |name: &&&str| self.declared.contains(**name) || self.defined.contains(**name);
-        MACROS.iter().filter(is_own).map(|name| format!("#undef {name}\n")).collect()
+        let removed = |name: &&str| match NAMES_OF_ES.contains(name) {
+            true => format!("#undef {}\n", renamed(name)),
+            false => format!("#undef {name}\n"),
+        };
+        MACROS.iter().filter(is_own).map(removed).collect()
     }
+}
+
+/// Whether these tokens are the name and the parameters of a function that overloads one of GLSL ES 1.00, whose macro then stands for both.
+fn is_overload(code: &[Token<'_>]) -> bool {
+    let is_sampling = code[0].text == "texture2D" || code[0].text == "textureCube";
+    if !is_sampling || code.get(1).is_none_or(|open| open.text != "(") {
+        return false;
+    }
+    let is_end = |token: &&Token<'_>| token.text != ")";
+    let parameters: Vec<&str> = code[2..].iter().take_while(is_end).map(|token| token.text).collect();
+    let is_type = |word: &&&str| !matches!(**word, "in" | "const" | "lowp" | "mediump" | "highp");
+    let types: Vec<&str> =
+        parameters.split(|text| *text == ",").filter_map(|words| words.iter().find(is_type)).copied().collect();
+    let is_built_in = |flat: [&str; 2]| types.starts_with(&flat) && matches!(types[2..], [] | ["float"]);
+    !is_built_in(["sampler2D", "vec2"]) && !is_built_in(["samplerCube", "vec3"])
 }
 
 /// The tokens of a text outside of comments and of `#if`.
@@ -101,6 +122,20 @@ mod tests {
         for name in ["time", "a", "b", "c", "parameter", "local", "field", "maybe", "lowp"] {
             assert!(!declared.contains(&name), "{name}: {declared:?}");
         }
-        assert_eq!(own.removed_macros(), "#undef texture2D\n");
+        assert_eq!(own.removed_macros(), "#undef texture2_\n");
+    }
+
+    #[test]
+    fn a_function_replaces_a_macro_or_overloads_it() {
+        for (parameters, is_own) in [
+            ("sampler2D s, vec2 p", true),
+            ("in sampler2D s, const in highp vec2 p, float bias", true),
+            ("sampler2D s, vec2 p, vec2 size", false),
+            ("vec2 p", false),
+        ] {
+            let mut own = OwnNames::default();
+            own.add(&format!("vec4 texture2D({parameters}) {{ return vec4(0.0); }}\n"));
+            assert_eq!(own.declared.contains("texture2D"), is_own, "{parameters}");
+        }
     }
 }

@@ -1,8 +1,9 @@
-//! The text of an opened file with words that WebGL has as names, and macros that stand for `uniform`, replaced by what the rest of this
-//! module knows. Each line keeps its number, and all but those with such a macro their columns.
+//! The text of an opened file with words that WebGL has as names, macros that stand for `uniform`, and arrays of samplers replaced by what
+//! the rest of this module knows. Each line keeps its number, and all but those with such a macro their columns.
 
-use super::initial::{Edit, apply};
-use crate::shader::glsl::{Token, TokenKind, tokens};
+use super::initial::{Edit, apply, blank};
+use crate::shader::glsl::syntax::closing;
+use crate::shader::glsl::{Token, TokenKind, find_word, tokens};
 
 /// Names that toy.glsl declares for itself.
 const OURS: [&str; 9] =
@@ -14,6 +15,7 @@ const LATER: [&str; 7] = ["uint", "uvec2", "uvec3", "uvec4", "case", "layout", "
 pub(super) fn plain(text: &str) -> String {
     let all: Vec<Token<'_>> = tokens(text).filter(|token| token.kind != TokenKind::Comment).collect();
     let mut edits = with_uniforms(&all);
+    edits.extend(single_samplers(text, &all));
     let later: Vec<&str> = LATER.into_iter().filter(|name| is_declared(&all, name)).collect();
     let is_name = |token: &&Token<'_>| OURS.contains(&token.text) || later.contains(&token.text);
     edits.extend(all.iter().filter(is_name).map(|token| (token.bytes.clone(), renamed(token.text))));
@@ -22,7 +24,19 @@ pub(super) fn plain(text: &str) -> String {
 
 /// A message with the names that the author has written.
 pub(super) fn with_plain_names(message: &str) -> String {
-    OURS.iter().chain(&LATER).fold(message.to_owned(), |message, name| message.replace(&renamed(name), name))
+    let names = OURS.iter().chain(&LATER);
+    names.fold(message.to_owned(), |message, name| with_word(&message, &renamed(name), name))
+}
+
+/// A text with another word in place of one. A longer word that begins with it stays.
+pub(super) fn with_word(text: &str, word: &str, by: &str) -> String {
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some(bytes) = find_word(rest, word) {
+        out += &rest[..bytes.start];
+        out += by;
+        rest = &rest[bytes.end..];
+    }
+    out + rest
 }
 
 /// Another name of the same length.
@@ -36,6 +50,37 @@ fn is_declared(all: &[Token<'_>], name: &str) -> bool {
     let is_type = |text: &str| !matches!(text, "return" | "switch" | "else");
     let leads = |token: &Token<'_>| token.kind == TokenKind::Word && is_type(token.text) || token.text == ",";
     all.windows(3).any(|three| three[1].text == name && leads(&three[0]) && ends(&three[2]))
+}
+
+/// Blanks in place of the brackets of sampler arrays. Nothing gives their elements different images, so one sampler stands for all.
+fn single_samplers(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
+    let is = |at: usize, sign: &str| all.get(at).is_some_and(|token| token.text == sign);
+    let is_name = |at: usize| all.get(at).is_some_and(|token| token.kind == TokenKind::Word);
+    let brackets = |open: usize| Some(all[open].bytes.start..all[closing(all, open)?].bytes.end);
+    let (mut names, mut edits) = (Vec::new(), Vec::new());
+    for at in (0..all.len()).filter(|at| all[*at].text.contains("sampler") && all[*at].kind == TokenKind::Word) {
+        if is(at + 1, "[") {
+            let Some(close) = closing(all, at + 1).filter(|close| is_name(close + 1)) else { continue };
+            edits.extend(brackets(at + 1));
+            names.push(all[close + 1].text);
+            continue;
+        }
+        // Each name up to the end of the declaration may be an array.
+        let mut name = at + 1;
+        while is_name(name) {
+            let end = if is(name + 1, "[") { closing(all, name + 1).map(|close| close + 1) } else { Some(name + 1) };
+            if is(name + 1, "[") {
+                names.push(all[name].text);
+            }
+            match end.filter(|end| is(*end, ",")) {
+                Some(comma) => name = comma + 1,
+                None => break,
+            }
+        }
+    }
+    let uses = (1..all.len()).filter(|at| is(*at, "[") && names.contains(&all[at - 1].text));
+    edits.extend(uses.filter_map(brackets));
+    edits.into_iter().map(|bytes| blank(text, bytes)).collect()
 }
 
 /// `uniform` in place of the macros that stand for it alone.
@@ -68,6 +113,24 @@ mod tests {
         ] {
             assert_eq!(plain(text), text);
         }
+    }
+
+    #[test]
+    fn a_longer_name_stays_in_a_message() {
+        assert_eq!(with_plain_names("'to_light' and 'to_'"), "'to_light' and 'toy'");
+    }
+
+    #[test]
+    fn an_array_of_samplers_becomes_one_sampler() {
+        let text = "uniform sampler2D a[N + 1], b;\nuniform samplerCube[2] c;\nfloat x[2];\n\
+                    vec4 f(sampler2D d[2], float y) { return texture(d[0], p) + texture(a[x[0] > y ? 0 : 1], p) + c[\n1]; }\n";
+        let found = plain(text);
+        assert_eq!(found.len(), text.len());
+        let squeezed = found.split_whitespace().collect::<Vec<_>>().join(" ");
+        let expected = "uniform sampler2D a , b; uniform samplerCube c; float x[2]; \
+                        vec4 f(sampler2D d , float y) { return texture(d , p) + texture(a , p) + c ; }";
+        assert_eq!(squeezed, expected);
+        assert_eq!(found.lines().count(), text.lines().count());
     }
 
     #[test]

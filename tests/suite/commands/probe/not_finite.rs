@@ -132,7 +132,9 @@ fn render_warns_of_pixels_that_are_not_finite() {
     let modes = render(&["--shaders", "tree", "--mode", "final,base-color,depth"]);
     modes.expect(0, &["2 of 3 pictures have pixels that are NaN or infinite. The first, of the mode final, has"]);
     assert_eq!(modes.stderr.matches(warning).count(), 1, "{modes:#?}");
-    let sheet = render(&["--shaders", "tree", "--sheet", "depth,final", "--tile", "40x30"]);
+    let sheet =
+        ["render", "sphere-grid", "--out", "a.png", "--env", "none", "--shaders", "tree", "--sheet", "depth,final"];
+    let sheet = run(here, &[&sheet[..], &["--tile", "40x30"]].concat());
     sheet.expect(
         0,
         &["1 of 2 pictures have pixels that are NaN or infinite. The first, of the mode final", "--size 40x30`"],
