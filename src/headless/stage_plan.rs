@@ -37,6 +37,8 @@ pub(super) struct StagePlan {
     pub(super) extent: Extent,
     /// Whether all pixels are drawn, and not only the one.
     pub(super) is_whole: bool,
+    /// The samples of a pixel of that image.
+    pub(super) samples: u32,
 }
 
 impl StagePlan {
@@ -156,7 +158,10 @@ pub(super) fn plan(
     let request = &state.pipelines;
     let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
     let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
-    let make = |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole };
+    let is_with_model = pass.is_none_or(|pass| pass.desc.is_drawn_with_model());
+    let samples = if is_with_model { request.target.samples } else { 1 };
+    let make =
+        |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole, samples };
     if invocation.is_some() && kind != Some(StageKind::Compute) {
         return fails(format!("{stage} is no compute stage, so it has no invocation to choose"));
     }

@@ -77,7 +77,7 @@ impl Trace {
     /// The trace of a log that `stage` has written of these invocations. `picture` and `redrawn`: see the members.
     pub fn new(
         stage: &TracedStage,
-        (of, target): (Invocations, Target),
+        (of, target, samples): (Invocations, Target, u32),
         words: &[u32],
         picture: &PixelValue,
         redrawn: &PixelValue,
@@ -96,13 +96,15 @@ impl Trace {
                 Invocations::Triangle(_) => (0.0, Some(logged.number)),
                 Invocations::Compute(_) => (0.0, None),
             };
-            Fragment { depth, vertex, color, events, not_logged }
+            let LoggedFragment { samples, primitive, .. } = logged;
+            Fragment { depth, vertex, samples, primitive, color, events, not_logged }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
+        let order = |of: &Fragment| (of.color, of.primitive, of.samples);
         // A device may draw them in any order.
         match of {
             Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
-            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
+            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b)))),
         }
         let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
         let places = stage.places().filter(|place| is_shown(&place.purpose));
@@ -114,6 +116,7 @@ impl Trace {
             fragments,
             left_out,
             target,
+            samples,
             picture: bits(picture),
             redrawn: bits(redrawn),
             lights: Vec::new(),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::history::ulps;
+use super::samples::numbers;
 use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
 
 /// Values that are kept of each place from the begin, and from the end.
@@ -122,6 +123,8 @@ impl Trace {
             if let Some(state) = self.state(index) {
                 (json["state"], json["covered_by"]) = (json!(state.name()), json!(state.covered_by()));
             }
+            json["samples"] = json!(found.samples.map(|samples| numbers(samples).collect::<Vec<_>>()));
+            json["primitive"] = json!(found.primitive);
             if let Some(vertex) = found.vertex {
                 json = json!({ "vertex": vertex, "position": found.color.map(floats), "not_logged": not_logged });
             }
@@ -131,8 +134,8 @@ impl Trace {
         let traced = if self.has_color() { color } else { Some(self.redrawn) };
         let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
             "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
-            "redrawn": floats(self.redrawn), "blended_ulp": self.blended(fragment).map(|color| ulps(color, self.picture)) });
-        json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
+            "redrawn": floats(self.redrawn), "blended_ulp": self.together(fragment).map(|color| ulps(color, self.picture)) });
+        json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out, "samples": self.samples,
             "stage": self.stage, "fragment": fragment, "proof": proof,
             "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),

@@ -30,13 +30,15 @@ pub(crate) fn trace(mut events: Vec<Event>, statements: &[u32]) -> Trace {
         *last = event.time;
     }
     let code = statements.iter().map(|line| (("a.glsl".to_owned(), *line), format!("line {line};")));
-    let fragment = Fragment { depth: 0.5, vertex: None, color: Some([0; 4]), events, not_logged };
+    let fragment =
+        Fragment { depth: 0.5, vertex: None, samples: None, primitive: None, color: Some([0; 4]), events, not_logged };
     Trace {
         stage: "a.frag".into(),
         kind: StageKind::Fragment,
         fragments: vec![fragment],
         left_out: 0,
         target: Target::Picture,
+        samples: 1,
         picture: [0; 4],
         redrawn: [0; 4],
         lights: Vec::new(),

@@ -33,7 +33,21 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     assert!(found["files"].as_array().unwrap().contains(&NDF.into()), "{found}");
     // The same pixel of the same picture on the command line, bit by bit.
     let (at, size) = (format!("{x},{y}"), format!("{width}x{height}"));
-    let args = ["trace", "shader-ball", "--json", "--at", &at, "--size", &size, "--env", "none", "--file", NDF];
+    let args = [
+        "trace",
+        "shader-ball",
+        "--json",
+        "--at",
+        &at,
+        "--size",
+        &size,
+        "--env",
+        "none",
+        "--file",
+        NDF,
+        "--set",
+        "view.msaa=1",
+    ];
     let traced = run(&viewer.tree.beside(""), &[&args[..], &["--shaders", "shaders"]].concat()).expect(0, &[]).json();
     for part in ["lines", "not_reached", "fragments", "proof"] {
         assert_eq!(found[part], traced[part], "{part}");
