@@ -1,13 +1,14 @@
 //! The trace of a log: its events as what statements did.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
 use super::calls::Calls;
 use super::elements::Elements;
 use super::log::{LoggedEvent, LoggedFragment};
 use super::{Act, Doing, Event, Fragment, Invocations, Target, Trace, TracedStage, TracedValue};
 use crate::shader::PixelValue;
-use crate::shader::spirv::trace::Purpose;
+use crate::shader::spirv::trace::{INDEX, Purpose};
 
 /// The action of the statement of a log point. `None` for the begin of a function.
 fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
@@ -46,11 +47,25 @@ fn of_fragment(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u32
         _ => None,
     });
     let elements = Elements::new(stage, &logged.events);
-    let mut times: HashMap<Doing, Times> = HashMap::new();
-    let mut points: HashMap<u32, Option<Doing>> = HashMap::new();
+    let mut times: HashMap<Arc<Doing>, Times> = HashMap::new();
+    let mut points: HashMap<u32, Option<Arc<Doing>>> = HashMap::new();
+    let mut shared: HashSet<Arc<Doing>> = HashSet::new();
+    let mut share = |doing: Doing| {
+        let known = shared.get(&doing).cloned();
+        known.unwrap_or_else(|| {
+            let doing = Arc::new(doing);
+            shared.insert(doing.clone());
+            doing
+        })
+    };
     let event = |logged: &LoggedEvent| {
-        let mut doing = points.entry(logged.point).or_insert_with(|| doing(stage, logged.point)).clone()?;
-        elements.complete(&mut doing.name, logged);
+        let of_point = points.entry(logged.point).or_insert_with(|| Some(share(doing(stage, logged.point)?)));
+        let mut doing = of_point.clone()?;
+        if doing.name.contains(INDEX) {
+            let mut named = Doing::clone(&doing);
+            elements.complete(&mut named.name, logged);
+            doing = share(named);
+        }
         let of = times.entry(doing.clone()).or_default();
         of.kept += 1;
         if logged.lost > 0 {

@@ -18,6 +18,7 @@ mod history;
 mod invocations;
 mod lights;
 pub mod log;
+mod numbered;
 mod report;
 #[cfg(test)]
 pub(crate) mod sample;
@@ -41,6 +42,7 @@ use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use lights::TracedLight;
 pub use log::EXTENSIONS;
+pub use numbered::Numbered;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
 pub use statement::Site;
@@ -218,8 +220,8 @@ pub struct Doing {
 /// Something that a statement did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// The action of the statement.
-    pub doing: Doing,
+    /// The action of the statement. Events of the same one share it.
+    pub doing: Arc<Doing>,
     /// The value; none for a discard.
     pub value: Option<TracedValue>,
     /// The calls that led to it, outermost first: `shade > add_light [light 2]`.

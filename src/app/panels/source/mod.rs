@@ -24,6 +24,7 @@ mod scroll;
 mod tail;
 #[cfg(test)]
 mod tests;
+mod text_lines;
 mod values;
 
 use egui::{RichText, Ui};

@@ -1,5 +1,7 @@
 //! The rounds of a file's loops at a pixel: one can be chosen, so that its values stand beside the code.
 
+pub(super) mod do_loops;
+
 use std::ops::RangeInclusive;
 
 use crate::shader::glsl::syntax::{Statement, StatementKind, functions, within};
@@ -11,7 +13,7 @@ use crate::shader::trace::{Act, Event, Trace, is_related, paths_to};
 pub(in crate::app) struct Round {
     /// The first line of the loop in the traced text, from 1.
     pub(in crate::app) line: u32,
-    /// Which evaluation of the loop's condition begins the round, from 1.
+    /// Which evaluation of the loop's condition begins the round, from 1. See [`do_loops`] for loops that begin with their body.
     pub(in crate::app) number: u32,
 }
 
@@ -37,11 +39,12 @@ impl TracedLoop {
 }
 
 /// The loops of the traced file, whose text this is, in a fragment. `call`: only rounds of this call, of those that led to it, and of those
-/// that it makes. Loops that begin with their body are left out.
+/// that it makes.
 pub(in crate::app) fn traced_loops(trace: &Trace, fragment: usize, text: &str, call: Option<&str>) -> Vec<TracedLoop> {
     let (Some(fragment), Some(file)) = (trace.fragments.get(fragment), trace.files().next()) else { return Vec::new() };
     let events: Vec<Option<&Event>> = fragment.events.iter().map(|of| (of.doing.file == file).then_some(of)).collect();
-    let traced = loops(text).into_iter().map(|of| of.traced(&events, call));
+    let traced =
+        loops(text).into_iter().map(|of| if of.is_do { of.traced_do(&events, call) } else { of.traced(&events, call) });
     traced.filter(|traced| !traced.rounds.is_empty()).collect()
 }
 
@@ -53,6 +56,8 @@ struct Loop<'a> {
     code: String,
     /// The words of the header of a `for`.
     words: Vec<&'a str>,
+    /// Whether it begins with its body.
+    is_do: bool,
 }
 
 fn loops(text: &str) -> Vec<Loop<'_>> {
@@ -72,8 +77,11 @@ fn find<'a>(statement: &Statement, text: &'a str, code: &Code<'_>, found: &mut V
             let tokens = within(&code.tokens, &(statement.bytes.start..statement.header.end));
             let words = tokens.iter().map(|token| &text[token.bytes.clone()]);
             let words = words.filter(|_| tokens.first().is_some_and(|token| token.text == "for")).collect();
-            found.push(Loop { lines, header, code: spelled(tokens), words });
+            found.push(Loop { lines, header, code: spelled(tokens), words, is_do: false });
         }
+    }
+    if statement.kind == StatementKind::DoLoop {
+        found.extend(do_loops::find(statement, code));
     }
     statement.parts.iter().for_each(|part| find(part, text, code, found));
 }
