@@ -29,12 +29,13 @@ mod values;
 
 use egui::{RichText, Ui};
 
-use crate::app::closing::Unsaved;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::arrangement::Panel;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme::QUIET;
+use crate::recovery::TypedText;
 use code::Parts;
 use edit::Editor;
 use find::Find;
@@ -85,7 +86,13 @@ impl PanelUi for SourceState {
         }
     }
 
-    fn unsaved(&self) -> Unsaved {
+    fn on_request(&mut self, request: &PanelRequest) {
+        if let PanelRequest::RestoreTyped(typed) = request {
+            self.editor.restore(typed);
+        }
+    }
+
+    fn unsaved(&self) -> Vec<TypedText> {
         self.editor.unsaved()
     }
 }

@@ -44,6 +44,8 @@ pub(in crate::app) enum Progress {
     Unknown,
     /// The panel is out of sight.
     Unseen,
+    /// The process before has lost the device, and no new text has been drawn since.
+    AfterLoss,
     /// No pixel is pinned.
     NoPixel,
     /// The pinned pixel is outside of the picture, which has become smaller.
@@ -180,6 +182,9 @@ impl Traces {
             Progress::Done => Some(self.json()),
             Progress::NoPixel => Some(Err("no pixel is pinned; name one with `at`".to_owned())),
             Progress::Outside => Some(Err("the pinned pixel is outside of the picture".to_owned())),
+            Progress::AfterLoss => {
+                Some(Err("after a lost device, nothing is traced until an edit has been drawn".to_owned()))
+            }
             // It opens within a few frames.
             Progress::Unseen if self.unseen > MOST_UNSEEN => {
                 Some(Err("the panel Source is not in sight, so nothing is traced".to_owned()))
