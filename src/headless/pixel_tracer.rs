@@ -252,6 +252,8 @@ impl PixelTracer {
         let mut trace = trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))?;
         trace.lights = traced_lights(&plan.state, plan.pixel.settings);
         trace.endless_loop = self.endless_loop;
+        let lacks_frames = plan.pixel.earlier.len() < plan.pixel.clock.frame_index as usize;
+        trace.begins_anew = lacks_frames && stage_plan::reads_earlier_frames(&plan.state, plan.stage());
         Ok(trace)
     }
 

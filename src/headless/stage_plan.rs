@@ -5,7 +5,7 @@ use crate::frame::FrameState;
 use crate::frame::stages::{DEFORM, bake_stages};
 use crate::scene;
 use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
-use crate::shader::graph::RenderPhase;
+use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::trace::{Invocations, Target, TraceableStage};
 use crate::shader::{GraphPass, Stage, StageKind, TreePath};
 
@@ -143,6 +143,14 @@ fn is_untraced(state: &FrameState, file: &str) -> bool {
     };
     let mut with_file = state.shaders.stages.values().filter(|stage| has(stage)).peekable();
     with_file.peek().is_some() && with_file.all(|stage| !is_traced(stage))
+}
+
+/// Whether a stage reads what earlier frames have drawn, itself or through the images that it reads.
+pub(super) fn reads_earlier_frames(state: &FrameState, stage: &str) -> bool {
+    let graph = &state.shaders.graph;
+    let reads = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
+    let mut passes = state.pipelines.passes.iter().filter(|pass| pass.desc.stage == stage);
+    passes.any(|pass| graph.needed_by(pass.name()).into_iter().any(|of| graph.passes[of].inputs.values().any(reads)))
 }
 
 /// The plan to trace a stage of [`traceable`] at a pixel of the picture. `invocation` names one of a compute stage.

@@ -136,6 +136,7 @@ impl Trace {
             redrawn: bits(redrawn),
             lights: Vec::new(),
             endless_loop: None,
+            begins_anew: false,
             code: code.collect(),
         }
     }

@@ -88,6 +88,7 @@ impl Trace {
     /// whether its stage draws the same picture.
     pub fn is_proven(&self, fragment: usize) -> bool {
         match self.has_color() {
+            _ if self.begins_anew => false,
             true => {
                 self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment))
                     || self.together(fragment) == Some(self.picture)
@@ -98,6 +99,16 @@ impl Trace {
 
     /// How the color of a fragment compares with the picture's, in words.
     pub fn proof_text(&self, fragment: usize) -> String {
+        let compared = self.compared(fragment);
+        match self.begins_anew {
+            true => {
+                format!("{compared}, if both begin without earlier frames; the ones on screen cannot be drawn again")
+            }
+            false => compared,
+        }
+    }
+
+    fn compared(&self, fragment: usize) -> String {
         let with = self.target.name();
         if !self.has_color() {
             return match self.redrawn == self.picture {
@@ -165,6 +176,7 @@ impl Trace {
                 let is = match (self.state(fragment), of.color, self.visible() == Some(fragment)) {
                     (Some(FragmentState::Covered(by)), ..) => format!("covered by {by}"),
                     (Some(FragmentState::BlendedOver), ..) => "blended over".to_owned(),
+                    (Some(FragmentState::Shares), ..) => "shares the pixel".to_owned(),
                     (Some(state), ..) => state.name().to_owned(),
                     (None, None, _) => "discarded".to_owned(),
                     (None, Some(_), true) => "seen".to_owned(),
@@ -232,6 +244,9 @@ mod tests {
         assert_eq!(texts[3..5], ["blended over, together equal to the picture", "covered by fragment 3"]);
         assert!((1..4).all(|at| all.is_proven(at)) && !all.is_proven(4));
         assert_eq!(all.name_of(4), "Fragment 4: covered by 3, depth 0.4000");
+        // What is on screen has earlier frames, too, so nothing is proven of it.
+        let anew = Trace { begins_anew: true, ..all.clone() };
+        assert!(!anew.is_proven(1) && anew.proof_text(1).starts_with(&format!("{together}, if both begin")));
         // Another device rounds.
         let other = of(&[(0.8, half), (0.5, red)], [0.5 + f32::EPSILON, 0.5, 0.0, 1.0]);
         assert_eq!(

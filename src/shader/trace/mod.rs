@@ -181,6 +181,8 @@ pub struct Trace {
     pub lights: Vec<TracedLight>,
     /// The words of a loop that did not end in the picture: pixels where its rounds ran out are magenta there.
     pub endless_loop: Option<[u32; 2]>,
+    /// Whether the stage reads earlier frames which the picture on screen has, and both draws of the trace have not.
+    pub begins_anew: bool,
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }

@@ -148,7 +148,7 @@ impl Trace {
         let traced = if self.has_color() { color } else { Some(self.redrawn) };
         let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
             "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
-            "redrawn": floats(self.redrawn), "blended_ulp": self.together(fragment).map(|color| ulps(color, self.picture)) });
+            "redrawn": floats(self.redrawn), "begins_anew": self.begins_anew, "blended_ulp": self.together(fragment).map(|color| ulps(color, self.picture)) });
         json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out, "samples": self.samples,
             "stage": self.stage, "fragment": fragment, "proof": proof,
             "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),

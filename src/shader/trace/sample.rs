@@ -59,6 +59,7 @@ pub(crate) fn trace(mut events: Vec<Event>, statements: &[u32]) -> Trace {
         redrawn: [0; 4],
         lights: Vec::new(),
         endless_loop: None,
+        begins_anew: false,
         code: code.collect(),
     }
 }
