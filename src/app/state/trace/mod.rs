@@ -179,7 +179,8 @@ impl Traces {
     /// The result for a command that waits for the trace of the picture, once there is one.
     pub(in crate::app) fn answer(&self) -> Option<Result<Value, String>> {
         match self.progress {
-            Progress::Done => Some(self.json()),
+            // Without the version before, nothing would have changed.
+            Progress::Done => (!self.awaits_before).then(|| self.json()),
             Progress::NoPixel => Some(Err("no pixel is pinned; name one with `at`".to_owned())),
             Progress::Outside => Some(Err("the pinned pixel is outside of the picture".to_owned())),
             Progress::AfterLoss => {
@@ -217,6 +218,8 @@ impl Traces {
             return false;
         };
         self.is_awaited = false;
+        // The version before is traced where this one is.
+        self.awaits_before &= trace.is_ok();
         if self.progress == Progress::UnderWay(number) {
             self.progress = Progress::Done;
         }
