@@ -1,5 +1,6 @@
 //! `specula trace`: the values of statements at a pixel.
 
+mod formulas;
 mod fragments;
 mod long_loops;
 mod oracle;
