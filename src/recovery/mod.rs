@@ -41,6 +41,7 @@
 //! the session ends. A setting that loses the device before the picture has settled is blamed on the texts, and an edit
 //! on top of one that has not settled is set back with it.
 
+mod files;
 mod recorder;
 mod typed;
 
@@ -50,13 +51,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::settings::Settings;
 use crate::shader::{Source, TreePath, text_hash};
 
+use files::{read, unfinished, write};
 pub use recorder::Recorder;
 pub use typed::TypedText;
 
@@ -292,21 +293,6 @@ pub fn remove_folder(folder: &Path) {
         let _ = fs::remove_file(unfinished(&ended, name));
     }
     let _ = fs::remove_dir(ended);
-}
-
-fn unfinished(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.unfinished"))
-}
-
-fn read<T: DeserializeOwned>(folder: &Path, name: &str) -> Option<T> {
-    serde_json::from_slice(&fs::read(folder.join(name)).ok()?).ok()
-}
-
-/// Writes a file whole or not at all: the process may crash at any moment.
-fn write(folder: &Path, name: &str, value: &impl Serialize) -> io::Result<()> {
-    let unfinished = unfinished(folder, name);
-    fs::write(&unfinished, serde_json::to_vec(value)?)?;
-    fs::rename(unfinished, folder.join(name))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::files;
 use crate::shader::TreePath;
 
 /// The record of these texts in the session's folder.
@@ -26,10 +27,10 @@ pub struct TypedText {
 
 /// The texts that were recorded in a session's folder.
 pub(super) fn read(folder: &Path) -> Vec<TypedText> {
-    super::read(folder, TYPED).unwrap_or_default()
+    files::read(folder, TYPED).unwrap_or_default()
 }
 
 /// Records them.
 pub(super) fn write(folder: &Path, typed: &[TypedText]) -> std::io::Result<()> {
-    super::write(folder, TYPED, &typed)
+    files::write(folder, TYPED, &typed)
 }

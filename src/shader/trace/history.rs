@@ -1,6 +1,6 @@
 //! The fragments of a pixel: which is seen, and how its color compares with the picture's.
 
-use super::samples::coverage;
+use super::samples::{coverage, ulps};
 use super::{Target, Trace};
 use crate::shader::StageKind;
 
@@ -188,15 +188,6 @@ impl Trace {
             }
         }
     }
-}
-
-/// The largest distance of two numbers in steps of floats.
-pub(super) fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
-    let place = |bits: u32| {
-        let magnitude = i64::from(bits & 0x7fff_ffff);
-        if bits >> 31 == 0 { magnitude } else { -magnitude }
-    };
-    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::history::ulps;
-use super::samples::numbers;
+use super::samples::{numbers, ulps};
 use super::{Act, Doing, Event, Fragment, Numbered, Trace, TracedValue};
 
 /// Values that are kept of each place from the begin, and from the end.

@@ -67,7 +67,7 @@ impl Trace {
             sum.map(|channel| (channel / self.samples as f32).to_bits())
         };
         let all = [(0, false), (0, true), (1, false), (1, true)].map(mean);
-        all.into_iter().min_by_key(|color| super::history::ulps(*color, self.picture))
+        all.into_iter().min_by_key(|color| ulps(*color, self.picture))
     }
 
     /// The samples of a fragment, as `samples 0, 2 of 4`, and its primitive; empty if nothing is known of them.
@@ -84,6 +84,15 @@ impl Trace {
         let primitive = of.primitive.map(|number| format!("primitive {}", grouped(f64::from(number))));
         samples.into_iter().chain(primitive).collect::<Vec<_>>().join(" · ")
     }
+}
+
+/// The largest distance of two numbers in steps of floats.
+pub(super) fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
+    let place = |bits: u32| {
+        let magnitude = i64::from(bits & 0x7fff_ffff);
+        if bits >> 31 == 0 { magnitude } else { -magnitude }
+    };
+    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
 }
 
 /// The numbers of samples that are given as bits.

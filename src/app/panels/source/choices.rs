@@ -2,7 +2,6 @@
 
 use egui::{Color32, ComboBox, RichText, Sense, Stroke, Ui, vec2};
 
-use super::model::CodeLine;
 use crate::app::command::source::CHOOSE_TRACE;
 use crate::app::commands::Commands;
 use crate::app::state::trace::Traces;
@@ -31,8 +30,8 @@ pub(super) struct Offers {
 }
 
 impl Offers {
-    /// Those of the newest trace. `lines`: the lines with its values.
-    pub(super) fn new(traces: &Traces, lines: &[CodeLine]) -> Self {
+    /// Those of the newest trace. `most`: how often the statement ran that ran most often in the choice.
+    pub(super) fn new(traces: &Traces, most: usize) -> Self {
         let (Some(newest), Some(fragment)) = (traces.newest(), traces.fragment()) else { return Self::default() };
         let (Ok(trace), text, now) = (&newest.trace, newest.text(), &traces.choice) else { return Self::default() };
         let runs_again = |event: &Event| event.time > 1 && event.doing.act == Act::Condition;
@@ -40,8 +39,7 @@ impl Offers {
             true => traced_loops(trace, fragment, &text, now.call_of(trace, fragment)),
             false => Vec::new(),
         };
-        let shown = || lines.iter().flat_map(|line| &line.row.notes).map(|note| note.done.count).max().unwrap_or(0);
-        let times = if now.time.is_some() { most_times(now, trace, &text) } else { shown() };
+        let times = if now.time.is_some() { most_times(now, trace, &text) } else { most };
         Self { calls: calls(trace, fragment).len(), times, loops }
     }
 }

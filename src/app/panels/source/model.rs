@@ -117,7 +117,8 @@ impl CodeModel {
         }
         self.texts.update(&inputs.text);
         self.lines = lines(state, shaders, &inputs, &self.texts);
-        self.offers = Offers::new(&state.traces, &self.lines);
+        let notes = self.lines.iter().flat_map(|line| &line.row.notes);
+        self.offers = Offers::new(&state.traces, notes.map(|note| note.done.count).max().unwrap_or(0));
         let about = |line: &CodeLine| inputs.diagnostics.iter().any(|found| found.line == Some(line.row.line));
         for function in &self.texts.functions {
             // Wrong lines are never hidden.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::choice::Choice;
-use super::rounds::{Round, do_loops};
+use super::rounds::{Round, ends_of_do};
 use crate::shader::expression::lines_before;
 use crate::shader::trace::{Act, Done, LineOfTrace, Trace, is_related};
 
@@ -100,7 +100,7 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let file = file.or_else(|| now.trace.files().next().map(str::to_owned)).unwrap_or_default();
     let statements: BTreeSet<u32> = now.trace.statement_lines(&file).collect();
     let traced = lines_before(&now.text, text);
-    let ends = do_loops::ends(&now.text);
+    let ends = ends_of_do(&now.text);
     let mut changed = Vec::new();
     for (at, row) in rows.iter_mut().enumerate() {
         let Some(line) = traced.get(at).copied().flatten() else { continue };

@@ -1,37 +1,7 @@
 //! The rounds of `do ... while`. A round begins with the body, which no condition announces, and ends with the condition, or by `break`.
 
-use super::{Loop, TracedLoop, label};
-use crate::shader::glsl::syntax::{Statement, StatementKind, within};
-use crate::shader::glsl::{Code, spelled};
+use super::loops::{Loop, TracedLoop, label};
 use crate::shader::trace::{Doing, Event, is_related, paths_to};
-
-/// The loop of a statement. `None` if a condition in its body stands on the lines of its own, which cannot be told from it.
-pub(super) fn find<'a>(statement: &Statement, code: &Code<'_>) -> Option<Loop<'a>> {
-    let line = |byte: usize| code.number_at(byte);
-    let header = line(statement.header.start)..=line(statement.header.end.saturating_sub(1));
-    if statement.parts.iter().any(|part| decides_behind(part, code, *header.start())) {
-        return None;
-    }
-    let lines = line(statement.bytes.start)..=*header.end();
-    let end = spelled(within(&code.tokens, &statement.header));
-    Some(Loop { lines, header, code: format!("do … {}", end.trim_end_matches(';')), words: Vec::new(), is_do: true })
-}
-
-/// Whether the condition of a statement ends on a line, or behind it.
-fn decides_behind(statement: &Statement, code: &Code<'_>, line: u32) -> bool {
-    let decides = matches!(statement.kind, StatementKind::Branch | StatementKind::Loop | StatementKind::DoLoop);
-    (decides && code.number_at(statement.header.end.saturating_sub(1)) >= line)
-        || statement.parts.iter().any(|part| decides_behind(part, code, line))
-}
-
-/// The first lines of the ends of all such loops, which have their conditions.
-pub(in crate::app::state::trace) fn ends(text: &str) -> Vec<u32> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    if !text.split(|c| !is_word(c)).any(|word| word == "do") {
-        return Vec::new();
-    }
-    super::loops(text).into_iter().filter(|of| of.is_do).map(|of| *of.header.start()).collect()
-}
 
 /// A round that is under way.
 struct UnderWay<'a> {
@@ -103,10 +73,10 @@ fn called_before(events: &[Option<&Event>], at: usize, calls: &str) -> Vec<usize
 
 #[cfg(test)]
 mod tests {
-    use super::super::traced_loops;
+    use super::super::loops::{ends_of_do, loops};
     use super::*;
+    use crate::shader::trace::Act;
     use crate::shader::trace::sample::{called, trace};
-    use crate::shader::trace::{Act, Event};
 
     const TEXT: &str = "float f(float x) {\n    float s = g(x);\n    do {\n        s = g(s);\n        if (s > 5.0)\n            break;\n    \
         } while (s < 9.0);\n    return s;\n}\nfloat g(float x) {\n    return x + 1.0;\n}\n";
@@ -119,6 +89,14 @@ mod tests {
 
     fn condition(calls: &str, goes_on: bool) -> Event {
         called(calls, 7, Act::Condition, "", &[f32::from(goes_on)])
+    }
+
+    /// The rounds of the only loop of a text. The events follow each other, with times.
+    fn traced(text: &str, events: Vec<Event>, call: Option<&str>) -> TracedLoop {
+        let trace = trace(events, &[]);
+        let events: Vec<Option<&Event>> = trace.fragments[0].events.iter().map(Some).collect();
+        let [of] = loops(text).try_into().unwrap_or_else(|_| panic!("{text} has another number of loops"));
+        of.traced_do(&events, call)
     }
 
     #[test]
@@ -134,23 +112,22 @@ mod tests {
             }
             events.push(called(calls, 8, Act::Return, "", &[2.0]));
         }
-        let trace = trace(events, &[2, 4, 5, 7, 8, 11]);
-        let found = traced_loops(&trace, 0, TEXT, None);
-        assert_eq!((found.len(), found[0].line, found[0].code.as_str()), (1, 3, "do … while (s < 9.0)"));
-        let numbers: Vec<u32> = found[0].rounds.iter().map(|(number, _)| *number).collect();
+        let found = traced(TEXT, events.clone(), None);
+        assert_eq!((found.line, found.code.as_str()), (3, "do … while (s < 9.0)"));
+        let numbers: Vec<u32> = found.rounds.iter().map(|(number, _)| *number).collect();
         assert_eq!(numbers, [1, u32::MAX - 1, 2, 3]);
         assert_eq!(
-            found[0].rounds.iter().map(|(_, label)| label.as_str()).collect::<Vec<_>>(),
+            found.rounds.iter().map(|(_, label)| label.as_str()).collect::<Vec<_>>(),
             ["round 1", "round 2", "round 3", "round 4"]
         );
         let broken = Some(u32::MAX - 1);
         let first = [None, Some(1), Some(1), Some(1), Some(1), broken, broken, broken, None];
-        assert_eq!(found[0].owners[..9], first);
+        assert_eq!(found.owners[..9], first);
         let second = [None, Some(2), Some(2), Some(2), Some(2), Some(3), Some(3), Some(3), Some(3), None];
-        assert_eq!(found[0].owners[9..], second);
-        let of_call = traced_loops(&trace, 0, TEXT, Some("f [2]"));
-        assert_eq!(of_call[0].rounds.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [2, 3]);
-        assert_eq!(ends(TEXT), [7]);
+        assert_eq!(found.owners[9..], second);
+        let of_call = traced(TEXT, events, Some("f [2]"));
+        assert_eq!(of_call.rounds.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [2, 3]);
+        assert_eq!(ends_of_do(TEXT), [7]);
     }
 
     /// Rounds 3 to 7 were not logged, but a statement that ran in round 5 alone was.
@@ -162,20 +139,16 @@ mod tests {
         let mut events = [round(1), round(2)].concat();
         events.push(of(4, Act::Store, "rare", 1));
         events.extend([round(8), round(9)].concat());
-        let found = traced_loops(&trace(events, &[3, 4, 5, 6]), 0, text, None);
-        assert_eq!(found[0].rounds.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, 2, 8, 9]);
+        let found = traced(text, events, None);
+        assert_eq!(found.rounds.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, 2, 8, 9]);
         let owners = [1, 1, 2, 2, 0, 8, 8, 9, 9].map(Some);
-        assert_eq!(found[0].owners, owners);
+        assert_eq!(found.owners, owners);
     }
 
     #[test]
     fn a_condition_on_the_line_of_the_loops_own_hides_its_rounds() {
         for text in ["void f() { do { if (a) b(); } while (c); }", "void f() {\n do\n  for (;;) a();\n while (c); }"] {
-            assert_eq!(
-                super::super::loops(text).iter().filter(|of| of.is_do).count(),
-                usize::from(text.contains('\n')),
-                "{text}"
-            );
+            assert_eq!(loops(text).iter().filter(|of| of.is_do).count(), usize::from(text.contains('\n')), "{text}");
         }
     }
 }
