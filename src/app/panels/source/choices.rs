@@ -79,15 +79,20 @@ pub(super) fn show(
 
 fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: usize) {
     let name = |at: usize| trace.name_of(at);
-    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(name(fragment)).small());
+    // Its depth, samples and primitive would leave no room for the other lists.
+    let whole = name(fragment);
+    let short = whole.split(", depth").next().unwrap_or_default();
+    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(short).small());
     let list = list.show_ui(ui, |ui| {
+        ui.set_min_width(MENU);
         for at in 0..trace.fragments.len() {
             if ui.selectable_label(at == fragment, name(at)).clicked() {
                 choice.fragment = Some(at);
             }
         }
     });
-    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there");
+    let hint = "The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there";
+    named(list.response, "Fragment").on_hover_text(format!("{whole}\n{hint}"));
 }
 
 /// `count`: calls with statements of the file.

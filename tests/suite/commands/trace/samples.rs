@@ -103,8 +103,8 @@ fn fragments_of_an_edge_have_their_samples_and_together_the_picture() {
     let mean = |channel: usize| weighted.iter().map(|(weight, color)| weight * color[channel]).sum::<f64>() / weights;
     let display = value(&mut headless);
     assert_ne!(display.map(f32::to_bits), trace.picture, "the weights make no difference here");
-    for channel in 0..3 {
-        let (found, expected) = (f64::from(display[channel]), mean(channel));
+    for (channel, found) in display[..3].iter().enumerate() {
+        let (found, expected) = (f64::from(*found), mean(channel));
         assert!((found - expected).abs() <= 1e-5 * expected, "{found} {expected}");
     }
 
