@@ -66,6 +66,7 @@ use messages::on_message;
 use options::Early;
 use screen::Screen;
 use start::start;
+use state::workspace::PanelRequest;
 use state::{State, window_size};
 
 pub use command::registry::{Described, described};
@@ -161,6 +162,8 @@ impl App {
         interface.init_accessibility(event_loop, self.proxy.clone());
         window.set_visible(true);
         let (state, engine) = start(&gpu, &layouts, options, early, (&self.sender, true))?;
+        // Before the first frame, which records what is typed.
+        interface.carry_out(&[PanelRequest::RestoreTyped(engine.recorder.typed())]);
         let (drawing, title, drops) = (Drawing::new(screen), String::new(), Drops::default());
         let closing = Closing::default();
         Ok(Open { state, engine, drawing, interface, gpu, window, title, drops, closing })
@@ -269,9 +272,10 @@ impl ApplicationHandler<Message> for App {
 impl App {
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
+        let is_frame = event == WindowEvent::RedrawRequested;
         let response = open.interface.on_window_event(&event);
         // egui requests a repaint in response to every redraw, so the window would never be idle.
-        if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
+        if response.repaint && !is_frame {
             open.window.request_redraw();
         }
         match event {
@@ -312,6 +316,9 @@ impl App {
                     open.window.request_redraw();
                 }
             }
+        }
+        if is_frame {
+            open.engine.recorder.record_typed(open.interface.panels.unsaved());
         }
         if std::mem::take(&mut open.state.quits_by_hand) {
             let unsaved = open.interface.panels.unsaved();

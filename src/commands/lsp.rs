@@ -94,7 +94,6 @@ fn opening(args: Args, compiler: Arc<Compiler>) -> OpenTree {
     let mut device: Option<Arc<Gpu>> = None;
     Box::new(move |source| {
         let mut settings = args.common.settings().map_err(text)?;
-        settings.view.msaa = 1;
         let gpu = match &device {
             Some(gpu) => gpu.clone(),
             None => {

@@ -23,7 +23,8 @@ const CODE: usize = 60;
 #[command(
     after_help = "Each line that the pixel reaches is printed with what its statements do there: `a = 0.25` stores a value or gets an argument, \
     `return 2`, `? true` decides about a branch or a loop, `discard`. \u{d7}3: three times, with the different values.\n\
-    The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit. --stage traces any other \
+    The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit: where fragments share the \
+    samples of a pixel or are blended, that of all of them. --stage traces any other \
     stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
     compute stage, for the invocation of the pixel or --invocation. Vertex stages of passes, stages of tessellation, geometry and meshes, \
     and those that bake light are not traced. A file of another stage than the picture's finds its stage by itself. \
@@ -76,8 +77,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let (x, y) = args.at;
     inside(args.at, args.common.size())?;
     let sequence = args.frames.sequence()?;
-    let mut settings = args.common.settings()?;
-    settings.view.msaa = 1;
+    let settings = args.common.settings()?;
     warn_unmeasured(&settings.mode, &settings);
     let slug = settings.mode.clone();
     let Opened { gpu, mut headless, progress } = Opened::new(&args.common, &args.models, settings, sequence)?;
@@ -181,7 +181,13 @@ fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
     let count = trace.fragments.len() + trace.left_out as usize;
     let (stage, proof) = (&trace.stage, trace.proof_text(fragment));
     match trace.kind {
-        StageKind::Fragment => out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}"),
+        StageKind::Fragment => {
+            out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}");
+            let coverage = trace.coverage_text(fragment);
+            if !coverage.is_empty() {
+                out!("covers {coverage}");
+            }
+        }
         _ => out!("pixel {x} {y}, {stage}, {}, {fragment} of {count}: {proof}", trace.name_of(fragment).to_lowercase()),
     }
     let lines = trace.lines(fragment);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::stage_plan::Extent;
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene};
+use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat};
 use crate::scene;
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet};
@@ -16,6 +16,8 @@ pub(super) struct NearPixel {
     part: Scene,
     settings: Settings,
     revisions: Revisions,
+    /// The format of the picture.
+    pub(super) target: TargetFormat,
 }
 
 impl NearPixel {
@@ -31,7 +33,8 @@ impl NearPixel {
         let part = all.only(near);
         let shows_more = part.materials().iter().any(|material| whole.pipelines.is_transmissive(*material));
         let part = if shows_more { all.clone() } else { part };
-        Some(Self { whole: whole.clone(), all, part, settings: settings.clone(), revisions })
+        let target = whole.pipelines.target;
+        Some(Self { whole: whole.clone(), all, part, settings: settings.clone(), revisions, target })
     }
 
     /// The frame in a mode with these shaders. Only the instances near the pixel are drawn, unless a pass may need the others.
@@ -62,7 +65,7 @@ impl NearPixel {
         let settings = Settings { mode: mode.slug.clone(), ..self.settings.clone() };
         let scene = &scene.at(&settings.animation, clock.time_s);
         let (scene, revisions) = (Some(scene), self.revisions);
-        let (size, target) = (self.whole.size, self.whole.pipelines.target);
+        let (size, target) = (self.whole.size, self.target);
         let inputs = FrameInputs { settings: &settings, shaders, scene, revisions, clock, size, target };
         FrameState::new(&inputs).with_numbers()
     }

@@ -24,7 +24,7 @@ const MOST_FILES: usize = 4;
 /// Lists of constants for which the files of a stage are kept.
 const MOST_CONSTANTS: usize = 16;
 
-/// A pixel of a frame, which is drawn with one sample.
+/// A pixel of a frame.
 #[derive(Clone, Copy)]
 pub struct TracedPixel<'a> {
     /// The frame.
@@ -123,10 +123,12 @@ impl<'a> TracePlan<'a> {
             return Err(HeadlessError::Settings(format!("the pixel {x},{y} is outside of the picture")));
         }
         let near = NearPixel::new(pixel.whole, pixel.settings, pixel.revisions, pixel.at);
-        let near = near.ok_or_else(|| HeadlessError::Settings("there is no picture to trace".to_owned()))?;
+        let mut near = near.ok_or_else(|| HeadlessError::Settings("there is no picture to trace".to_owned()))?;
         let all = near.state_of(stage_plan::Extent::All, pixel.mode, pixel.clock, &pixel.whole.shaders);
         let stage = stage_plan::choose(&all, pixel.stage, files)?;
         let stage = stage_plan::plan(&all, &stage, pixel.at, pixel.invocation)?;
+        // Where a pixel has several samples, their plain mean is compared, which keeps the bits of equal ones.
+        near.target.weighs &= stage.samples == 1;
         let state = near.state_of(stage.extent, pixel.mode, pixel.clock, &pixel.whole.shaders);
         Ok(Self { pixel, near, stage, state })
     }
@@ -237,7 +239,7 @@ impl PixelTracer {
             }
             let (words, redrawn) = self.draw(plan, tools, &group)?;
             let Some(traced) = self.kept.front().and_then(|kept| kept.groups.front()) else { break };
-            let of = (plan.stage.of, plan.stage.target.clone());
+            let of = (plan.stage.of, plan.stage.target.clone(), plan.stage.samples);
             let of_group = Trace::new(&traced.stage, of, &words, shown, &redrawn);
             if of_group.fragments.is_empty() {
                 break;
@@ -250,6 +252,8 @@ impl PixelTracer {
         let mut trace = trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))?;
         trace.lights = traced_lights(&plan.state, plan.pixel.settings);
         trace.endless_loop = self.endless_loop;
+        let lacks_frames = plan.pixel.earlier.len() < plan.pixel.clock.frame_index as usize;
+        trace.begins_anew = lacks_frames && stage_plan::reads_earlier_frames(&plan.state, plan.stage());
         Ok(trace)
     }
 

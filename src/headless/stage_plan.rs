@@ -5,7 +5,7 @@ use crate::frame::FrameState;
 use crate::frame::stages::{DEFORM, bake_stages};
 use crate::scene;
 use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
-use crate::shader::graph::RenderPhase;
+use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::trace::{Invocations, Target, TraceableStage};
 use crate::shader::{GraphPass, Stage, StageKind, TreePath};
 
@@ -37,6 +37,8 @@ pub(super) struct StagePlan {
     pub(super) extent: Extent,
     /// Whether all pixels are drawn, and not only the one.
     pub(super) is_whole: bool,
+    /// The samples of a pixel of that image.
+    pub(super) samples: u32,
 }
 
 impl StagePlan {
@@ -143,6 +145,14 @@ fn is_untraced(state: &FrameState, file: &str) -> bool {
     with_file.peek().is_some() && with_file.all(|stage| !is_traced(stage))
 }
 
+/// Whether a stage reads what earlier frames have drawn, itself or through the images that it reads.
+pub(super) fn reads_earlier_frames(state: &FrameState, stage: &str) -> bool {
+    let graph = &state.shaders.graph;
+    let reads = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
+    let mut passes = state.pipelines.passes.iter().filter(|pass| pass.desc.stage == stage);
+    passes.any(|pass| graph.needed_by(pass.name()).into_iter().any(|of| graph.passes[of].inputs.values().any(reads)))
+}
+
 /// The plan to trace a stage of [`traceable`] at a pixel of the picture. `invocation` names one of a compute stage.
 ///
 /// # Errors
@@ -156,7 +166,10 @@ pub(super) fn plan(
     let request = &state.pipelines;
     let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
     let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
-    let make = |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole };
+    let is_with_model = pass.is_none_or(|pass| pass.desc.is_drawn_with_model());
+    let samples = if is_with_model { request.target.samples } else { 1 };
+    let make =
+        |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole, samples };
     if invocation.is_some() && kind != Some(StageKind::Compute) {
         return fails(format!("{stage} is no compute stage, so it has no invocation to choose"));
     }

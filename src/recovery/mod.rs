@@ -1,7 +1,8 @@
 //! Records of a window's session, for the process that takes its place when the device is lost or the driver crashes.
 //!
-//! `specula view` runs the window as a child process. The child's [`Recorder`] keeps two files in a folder of the session: the
-//! [`RecoveryState`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
+//! `specula view` runs the window as a child process. The child's [`Recorder`] keeps three files in a folder of the session: the
+//! [`RecoveryState`], written before anything new reaches the device, the [`GoodTexts`], written after the device has drawn them, and each
+//! [`TypedText`].
 //! After a loss, [`RecoveryState::after_loss`] compares the two and decides what the next process leaves out: the texts under
 //! suspicion, or else the settings.
 //!
@@ -20,6 +21,8 @@
 //!   recorded every 250 ms, when it comes to rest, and at each edit.
 //! - **After** the device has drawn it, the window records the settings of a frame that has finished (`good`), and the
 //!   texts once the picture has settled, with all of its stages and light (`good.json`).
+//! - **After each key**, the window records the texts that were typed in the panel Source and not saved (`typed.json`). The next window has them
+//!   as they were, unsaved, whatever the cause of the loss: they have never reached the device.
 //!
 //! After a loss, the suspect texts that differ from the good ones are **quarantined**, all together, since only
 //! together they are known to be bad. The next window reads a `Source::Quarantined`, in which every file that differs
@@ -38,7 +41,9 @@
 //! the session ends. A setting that loses the device before the picture has settled is blamed on the texts, and an edit
 //! on top of one that has not settled is set back with it.
 
+mod files;
 mod recorder;
+mod typed;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -46,14 +51,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::settings::Settings;
 use crate::shader::{Source, TreePath, text_hash};
 
+use files::{read, unfinished, write};
 pub use recorder::Recorder;
+pub use typed::TypedText;
 
 /// The environment variable with the folder of the session, by which a process knows that it is the child.
 pub const VARIABLE: &str = "SPECULA_SESSION";
@@ -282,26 +288,11 @@ pub fn remove_folder(folder: &Path) {
     if fs::rename(folder, &ended).is_err() {
         return;
     }
-    for name in [STATE, GOOD] {
+    for name in [STATE, GOOD, typed::TYPED] {
         let _ = fs::remove_file(ended.join(name));
         let _ = fs::remove_file(unfinished(&ended, name));
     }
     let _ = fs::remove_dir(ended);
-}
-
-fn unfinished(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.unfinished"))
-}
-
-fn read<T: DeserializeOwned>(folder: &Path, name: &str) -> Option<T> {
-    serde_json::from_slice(&fs::read(folder.join(name)).ok()?).ok()
-}
-
-/// Writes a file whole or not at all: the process may crash at any moment.
-fn write(folder: &Path, name: &str, value: &impl Serialize) -> io::Result<()> {
-    let unfinished = unfinished(folder, name);
-    fs::write(&unfinished, serde_json::to_vec(value)?)?;
-    fs::rename(unfinished, folder.join(name))
 }
 
 #[cfg(test)]

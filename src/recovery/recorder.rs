@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use super::typed::{self, TypedText};
 use super::{Geometry, GoodTexts, RecoveryState, SessionState};
 use crate::message;
 use crate::shader::{TreePath, text_hash};
@@ -28,6 +29,8 @@ struct Inner {
     /// The texts in `good.json`, and the generation of their set in this process.
     good: GoodTexts,
     generation: u64,
+    /// The texts in `typed.json`.
+    typed: Vec<TypedText>,
     /// The thread that writes the texts.
     writing: Option<JoinHandle<()>>,
     start: Instant,
@@ -41,12 +44,14 @@ impl Recorder {
     /// A recorder in a session's folder, or one that records nothing. `state` and `good` are what the folder has.
     pub fn new(folder: Option<PathBuf>, state: RecoveryState, good: GoodTexts) -> Self {
         let (start, checked) = (Instant::now(), Instant::now());
+        let typed = folder.as_deref().map(typed::read).unwrap_or_default();
         Self(Arc::new(Mutex::new(Inner {
             folder,
             state,
             attempt: 0,
             good,
             generation: 0,
+            typed,
             writing: None,
             start,
             checked,
@@ -168,6 +173,23 @@ impl Recorder {
             |path: &String, hash: u64| good.texts.get(path).is_none_or(|text| text_hash(&Ok(text.clone())) == hash);
         state.suspects.retain(|path, hash| !is_drawn(path, *hash));
         inner.write();
+    }
+
+    /// The texts that were typed and not saved.
+    pub fn typed(&self) -> Vec<TypedText> {
+        self.lock().typed.clone()
+    }
+
+    /// Records the texts that were typed and not saved.
+    pub fn record_typed(&self, now: Vec<TypedText>) {
+        let mut inner = self.lock();
+        if inner.typed == now {
+            return;
+        }
+        if let Some(Err(error)) = inner.folder.as_ref().map(|folder| typed::write(folder, &now)) {
+            inner.fail(&error);
+        }
+        inner.typed = now;
     }
 
     /// Records that the user has closed the window.

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::message::{Message, MessageSender, TaskKind};
 use super::newest::{Newest, Turn};
 use super::results::Traced;
-use crate::frame::Clock;
+use crate::frame::{Clock, TargetFormat};
 use crate::gpu::Gpu;
 use crate::headless::{HeadlessError, PixelTracer, TracePlan, TraceTools, TracedPixel};
 use crate::pipeline::PipelineSet;
@@ -180,8 +180,8 @@ fn with_pixel<T>(
     run: impl FnOnce(&TracedPixel<'_>, &mut PixelTracer, &mut TraceTools<'_>) -> Result<T, HeadlessError>,
 ) -> Result<T, HeadlessError> {
     let lacks = |what: &str| HeadlessError::Settings(what.to_owned());
-    request.session.settings.view.msaa = 1;
-    let target = View::target_format(gpu, 1, true).map_err(HeadlessError::Settings)?;
+    let samples = request.session.settings.view.msaa;
+    let target = View::target_format(gpu, samples, true).unwrap_or(TargetFormat::full(1));
     let TraceRequest { session, resources, compiler, source, clock, size, at, stage, .. } = request;
     let newest = resources.pipelines().cloned().ok_or_else(|| lacks("there are no shaders yet"))?;
     let set = older.map_or(&newest, |older| &older.set);

@@ -26,6 +26,9 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     let sight = &state.workspace.sight;
     if !(sight.source || sight.evaluations.is_some()) || is_safe_mode {
         state.traces.unseen();
+        if is_safe_mode {
+            state.traces.progress = Progress::AfterLoss;
+        }
         engine.threads.tracer.release();
         return None;
     }

@@ -7,7 +7,6 @@ use egui::{Ui, Vec2};
 
 use super::panel_ui::PanelUi;
 use super::{PANELS, baking, keys, open_gallery, overlay, parameters, status_bar, top_bar};
-use crate::app::closing::Unsaved;
 use crate::app::command::spec::Command;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
@@ -16,6 +15,7 @@ use crate::app::palette::{self, Palette};
 use crate::app::state::arrangement::{Panel, Preset};
 use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme;
+use crate::recovery::TypedText;
 
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
@@ -56,7 +56,7 @@ impl Panels {
     }
 
     /// The texts that were typed and not saved, also of panels that are closed.
-    pub(in crate::app) fn unsaved(&self) -> Unsaved {
+    pub(in crate::app) fn unsaved(&self) -> Vec<TypedText> {
         self.docked.iter().flat_map(|(_, panel)| panel.unsaved()).collect()
     }
 

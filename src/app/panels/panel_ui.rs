@@ -2,11 +2,11 @@
 
 use egui::Ui;
 
-use crate::app::closing::Unsaved;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::workspace::PanelRequest;
+use crate::recovery::TypedText;
 
 /// A panel in a tile. It owns what it needs between frames, and changes nothing else but by commands.
 pub(in crate::app) trait PanelUi {
@@ -16,8 +16,8 @@ pub(in crate::app) trait PanelUi {
     fn on_request(&mut self, _: &PanelRequest) {}
 
     /// The texts that were typed and not saved, which closing the window would lose.
-    fn unsaved(&self) -> Unsaved {
-        Unsaved::default()
+    fn unsaved(&self) -> Vec<TypedText> {
+        Vec::new()
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::arrangement::{Panel, Preset};
 use super::dialog::Dialog;
+use crate::recovery::TypedText;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::TextureSource;
 use crate::shader::TreePath;
@@ -49,6 +50,8 @@ pub(in crate::app) enum PanelRequest {
     FocusExpression,
     /// Scroll the list of the scene to the selection.
     FollowSelection,
+    /// Go on with texts that were typed and not saved in a window before this one.
+    RestoreTyped(Vec<TypedText>),
 }
 
 /// A picture of a texture that the panel Texture shows.

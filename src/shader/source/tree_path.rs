@@ -2,11 +2,20 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The path of a file in a shader tree: relative to the root, normalized, with forward slashes.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String")]
 pub struct TreePath(String);
+
+impl TryFrom<String> for TreePath {
+    type Error = String;
+
+    fn try_from(path: String) -> Result<Self, String> {
+        Self::parse(&path).ok_or_else(|| format!("{path} is no path in a tree"))
+    }
+}
 
 impl TreePath {
     /// Normalizes `.` and `..`. `None` if the path is absolute, leaves the root, or is the root itself.

@@ -106,7 +106,7 @@ impl Assertion {
         let values: Vec<TracedValue> = named().filter_map(value).collect();
         let fails = |value: &&TracedValue| !value.numbers().all(|number| self.comparison.holds(number, self.limit));
         let failed: Vec<&TracedValue> = values.iter().filter(fails).collect();
-        let last: HashMap<&Doing, u32> = named().map(|(event, _)| (&event.doing, event.time)).collect();
+        let last: HashMap<&Doing, u32> = named().map(|(event, _)| (&*event.doing, event.time)).collect();
         let not_logged = (last.values().sum::<u32>() as usize).saturating_sub(named().count());
         match (failed.first(), not_logged) {
             (Some(first), _) => Err(format!(

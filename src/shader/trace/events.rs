@@ -1,13 +1,14 @@
 //! The trace of a log: its events as what statements did.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
 use super::calls::Calls;
 use super::elements::Elements;
 use super::log::{LoggedEvent, LoggedFragment};
 use super::{Act, Doing, Event, Fragment, Invocations, Target, Trace, TracedStage, TracedValue};
 use crate::shader::PixelValue;
-use crate::shader::spirv::trace::Purpose;
+use crate::shader::spirv::trace::{INDEX, Purpose};
 
 /// The action of the statement of a log point. `None` for the begin of a function.
 fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
@@ -46,11 +47,25 @@ fn of_fragment(stage: &TracedStage, logged: &LoggedFragment) -> (Vec<Event>, u32
         _ => None,
     });
     let elements = Elements::new(stage, &logged.events);
-    let mut times: HashMap<Doing, Times> = HashMap::new();
-    let mut points: HashMap<u32, Option<Doing>> = HashMap::new();
+    let mut times: HashMap<Arc<Doing>, Times> = HashMap::new();
+    let mut points: HashMap<u32, Option<Arc<Doing>>> = HashMap::new();
+    let mut shared: HashSet<Arc<Doing>> = HashSet::new();
+    let mut share = |doing: Doing| {
+        let known = shared.get(&doing).cloned();
+        known.unwrap_or_else(|| {
+            let doing = Arc::new(doing);
+            shared.insert(doing.clone());
+            doing
+        })
+    };
     let event = |logged: &LoggedEvent| {
-        let mut doing = points.entry(logged.point).or_insert_with(|| doing(stage, logged.point)).clone()?;
-        elements.complete(&mut doing.name, logged);
+        let of_point = points.entry(logged.point).or_insert_with(|| Some(share(doing(stage, logged.point)?)));
+        let mut doing = of_point.clone()?;
+        if doing.name.contains(INDEX) {
+            let mut named = Doing::clone(&doing);
+            elements.complete(&mut named.name, logged);
+            doing = share(named);
+        }
         let of = times.entry(doing.clone()).or_default();
         of.kept += 1;
         if logged.lost > 0 {
@@ -77,7 +92,7 @@ impl Trace {
     /// The trace of a log that `stage` has written of these invocations. `picture` and `redrawn`: see the members.
     pub fn new(
         stage: &TracedStage,
-        (of, target): (Invocations, Target),
+        (of, target, samples): (Invocations, Target, u32),
         words: &[u32],
         picture: &PixelValue,
         redrawn: &PixelValue,
@@ -96,13 +111,15 @@ impl Trace {
                 Invocations::Triangle(_) => (0.0, Some(logged.number)),
                 Invocations::Compute(_) => (0.0, None),
             };
-            Fragment { depth, vertex, color, events, not_logged }
+            let LoggedFragment { samples, primitive, .. } = logged;
+            Fragment { depth, vertex, samples, primitive, color, events, not_logged }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
+        let order = |of: &Fragment| (of.color, of.primitive, of.samples);
         // A device may draw them in any order.
         match of {
             Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
-            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.color.cmp(&b.color))),
+            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b)))),
         }
         let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
         let places = stage.places().filter(|place| is_shown(&place.purpose));
@@ -114,10 +131,12 @@ impl Trace {
             fragments,
             left_out,
             target,
+            samples,
             picture: bits(picture),
             redrawn: bits(redrawn),
             lights: Vec::new(),
             endless_loop: None,
+            begins_anew: false,
             code: code.collect(),
         }
     }

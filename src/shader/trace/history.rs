@@ -1,6 +1,7 @@
 //! The fragments of a pixel: which is seen, and how its color compares with the picture's.
 
-use super::{Fragment, Target, Trace};
+use super::samples::{coverage, ulps};
+use super::{Target, Trace};
 use crate::shader::StageKind;
 
 /// Steps of floats by which blending may differ from the sum that is computed here.
@@ -13,11 +14,13 @@ pub enum FragmentState {
     Discarded,
     /// Nothing is in front of it, and it covers the pixel.
     Seen,
+    /// It is seen in some samples of the pixel. The others show other fragments or the background.
+    Shares,
     /// It is blended with what is behind it.
     Blended,
-    /// It covers the pixel, and those in front of it are blended with it.
+    /// It covers its samples, and those in front of it are blended with it.
     BlendedOver,
-    /// The fragment with this index is in front of it and covers the pixel.
+    /// The fragment with this index, or several, are in front of it in all of its samples.
     Covered(usize),
 }
 
@@ -27,6 +30,7 @@ impl FragmentState {
         match self {
             Self::Discarded => "discarded",
             Self::Seen => "seen",
+            Self::Shares => "shares",
             Self::Blended => "blended",
             Self::BlendedOver => "blended-over",
             Self::Covered(_) => "covered",
@@ -42,11 +46,6 @@ impl FragmentState {
     }
 }
 
-/// The share of the pixel that a fragment of the picture covers.
-fn coverage(fragment: &Fragment) -> f32 {
-    fragment.color.map_or(0.0, |[.., alpha]| f32::from_bits(alpha))
-}
-
 impl Trace {
     /// The part of a fragment in the picture; `None` in other images, whose alpha is not known to be a coverage.
     pub fn state(&self, index: usize) -> Option<FragmentState> {
@@ -58,51 +57,41 @@ impl Trace {
             return Some(FragmentState::Discarded);
         }
         let visible = self.visible();
-        let is_kept = |(_, other): &(usize, &Fragment)| other.color.is_some();
-        let is_before = |(at, other): &(usize, &Fragment)| {
-            // At the same depth, the one that is seen was drawn last.
-            other.depth > fragment.depth
-                || (other.depth.to_bits() == fragment.depth.to_bits() && *at != index && visible == Some(*at))
+        let before = || self.before(index, visible);
+        let seen = match self.seen_samples(index, visible) {
+            0 if visible == Some(index) => self.samples_of(fragment),
+            seen => seen,
         };
-        let before = || self.fragments.iter().enumerate().filter(is_kept).filter(is_before);
         let covering = before().find(|(_, other)| coverage(other) >= 1.0);
         Some(match covering {
-            Some((by, _)) if visible != Some(index) => FragmentState::Covered(by),
+            Some((by, _)) if seen == 0 => FragmentState::Covered(by),
             _ if coverage(fragment) < 1.0 => FragmentState::Blended,
-            None if before().next().is_some() => FragmentState::BlendedOver,
+            _ if seen != self.all_samples() => FragmentState::Shares,
+            _ if covering.is_none() && before().next().is_some() => FragmentState::BlendedOver,
             _ => FragmentState::Seen,
         })
     }
 
-    /// The color of all fragments that are blended in the pixel, if one is among them, and there are others.
-    pub(super) fn blended(&self, fragment: usize) -> Option<[u32; 4]> {
-        use FragmentState::{Blended, BlendedOver, Seen};
-        let is_part = |index: &usize| matches!(self.state(*index), Some(Seen | Blended | BlendedOver));
+    /// The color of all fragments that share the pixel or are blended there, if one is among them, unless it is alone in the whole pixel.
+    pub(super) fn together(&self, fragment: usize) -> Option<[u32; 4]> {
+        use FragmentState::{Blended, BlendedOver, Seen, Shares};
+        let is_part = |index: &usize| matches!(self.state(*index), Some(Seen | Shares | Blended | BlendedOver));
         let parts: Vec<usize> = (0..self.fragments.len()).filter(is_part).collect();
-        if parts.len() < 2 || !parts.contains(&fragment) {
+        let is_alone = parts.len() < 2 && self.samples_of(self.fragments.get(fragment)?) == self.all_samples();
+        if is_alone || !parts.contains(&fragment) {
             return None;
         }
-        // A device may round once or twice.
-        let over = |above: f32, below: f32, rest: f32| [below.mul_add(rest, above), above + below * rest];
-        let sum = |way: usize| {
-            let colors = parts.iter().rev().filter_map(|part| self.fragments[*part].color);
-            colors.fold([0; 4], |below: [u32; 4], above| {
-                let rest = 1.0 - f32::from_bits(above[3]);
-                std::array::from_fn(|at| {
-                    over(f32::from_bits(above[at]), f32::from_bits(below[at]), rest)[way].to_bits()
-                })
-            })
-        };
-        [0, 1].map(sum).into_iter().min_by_key(|color| ulps(*color, self.picture))
+        self.mean_of(&parts)
     }
 
-    /// Whether a fragment ends with the color of the picture, bit by bit, alone or blended with others. Of a vertex or a compute invocation,
+    /// Whether a fragment ends with the color of the picture, bit by bit, alone or together with others. Of a vertex or a compute invocation,
     /// whether its stage draws the same picture.
     pub fn is_proven(&self, fragment: usize) -> bool {
         match self.has_color() {
+            _ if self.begins_anew => false,
             true => {
                 self.fragments.get(fragment).is_some_and(|fragment| self.is_shown(fragment))
-                    || self.blended(fragment) == Some(self.picture)
+                    || self.together(fragment) == Some(self.picture)
             }
             false => self.redrawn == self.picture,
         }
@@ -110,6 +99,16 @@ impl Trace {
 
     /// How the color of a fragment compares with the picture's, in words.
     pub fn proof_text(&self, fragment: usize) -> String {
+        let compared = self.compared(fragment);
+        match self.begins_anew {
+            true => {
+                format!("{compared}, if both begin without earlier frames; the ones on screen cannot be drawn again")
+            }
+            false => compared,
+        }
+    }
+
+    fn compared(&self, fragment: usize) -> String {
         let with = self.target.name();
         if !self.has_color() {
             return match self.redrawn == self.picture {
@@ -134,12 +133,17 @@ impl Trace {
             Some(FragmentState::Covered(by)) => return format!("covered by fragment {by}"),
             Some(FragmentState::Blended) => "blended with what is behind it",
             Some(FragmentState::BlendedOver) => "blended over",
+            Some(FragmentState::Shares) => "shares the pixel",
             _ => "hidden, or blended over",
         };
-        match self.blended(fragment).map(|color| ulps(color, self.picture)) {
-            Some(0) => return format!("{is}, together equal to {with}"),
+        let all = match self.samples {
+            1 => "together".to_owned(),
+            samples => format!("whose {samples} samples together are"),
+        };
+        match self.together(fragment).map(|color| ulps(color, self.picture)) {
+            Some(0) => return format!("{is}, {all} equal to {with}"),
             Some(ulp) if ulp <= MOST_ULP => {
-                return format!("{is}, together {ulp} ulp from {with}: the device rounds where it blends");
+                return format!("{is}, {all} {ulp} ulp from {with}: the device rounds where it blends");
             }
             _ => {}
         }
@@ -149,7 +153,7 @@ impl Trace {
         let why = match self.redrawn == self.picture {
             // The log ends with the color before the mark.
             true if self.endless_loop.is_some() => return format!("a loop was cut short, so {with} is magenta there"),
-            true => "a later pass changes it, or other surfaces are blended with it",
+            true => "a later pass changes it, or surfaces or a background that were not traced are in the pixel, too",
             false => "the driver computes the traced stage in another order, or passes read earlier frames",
         };
         format!("{} ulp from {with}: {why}", ulps(color, self.picture))
@@ -172,28 +176,23 @@ impl Trace {
                 let is = match (self.state(fragment), of.color, self.visible() == Some(fragment)) {
                     (Some(FragmentState::Covered(by)), ..) => format!("covered by {by}"),
                     (Some(FragmentState::BlendedOver), ..) => "blended over".to_owned(),
+                    (Some(FragmentState::Shares), ..) => "shares the pixel".to_owned(),
                     (Some(state), ..) => state.name().to_owned(),
                     (None, None, _) => "discarded".to_owned(),
                     (None, Some(_), true) => "seen".to_owned(),
                     (None, Some(_), false) => "hidden or blended".to_owned(),
                 };
-                format!("Fragment {fragment}: {is}, depth {:.4}", of.depth)
+                let coverage = self.coverage_text(fragment);
+                let separator = if coverage.is_empty() { "" } else { " · " };
+                format!("Fragment {fragment}: {is}, depth {:.4}{separator}{coverage}", of.depth)
             }
         }
     }
 }
 
-/// The largest distance of two numbers in steps of floats.
-pub(super) fn ulps(a: [u32; 4], b: [u32; 4]) -> u64 {
-    let place = |bits: u32| {
-        let magnitude = i64::from(bits & 0x7fff_ffff);
-        if bits >> 31 == 0 { magnitude } else { -magnitude }
-    };
-    a.iter().zip(b).map(|(a, b)| place(*a).abs_diff(place(b))).max().unwrap_or(0)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Fragment;
     use super::super::sample::trace;
     use super::*;
 
@@ -236,6 +235,9 @@ mod tests {
         assert_eq!(texts[3..5], ["blended over, together equal to the picture", "covered by fragment 3"]);
         assert!((1..4).all(|at| all.is_proven(at)) && !all.is_proven(4));
         assert_eq!(all.name_of(4), "Fragment 4: covered by 3, depth 0.4000");
+        // What is on screen has earlier frames, too, so nothing is proven of it.
+        let anew = Trace { begins_anew: true, ..all.clone() };
+        assert!(!anew.is_proven(1) && anew.proof_text(1).starts_with(&format!("{together}, if both begin")));
         // Another device rounds.
         let other = of(&[(0.8, half), (0.5, red)], [0.5 + f32::EPSILON, 0.5, 0.0, 1.0]);
         assert_eq!(

@@ -75,6 +75,8 @@ void specula_trace_begin() {
     if (place >= SPECULA_FRAGMENTS) return;
     specula_trace_part = 4u + place * SPECULA_PART;
     log.words[specula_trace_part] = SPECULA_NUMBER;
+    log.words[specula_trace_part + 7u] = SPECULA_SAMPLES;
+    log.words[specula_trace_part + 8u] = SPECULA_PRIMITIVE;
 }
 
 void specula_trace_end(const in vec4 color) {

@@ -25,8 +25,9 @@ pub const LEAST_KEPT: u32 = 16;
 const MOST_CALLS: u32 = 1 << 12;
 /// Words before the first invocation: how many there are, and [`Invocations::words`].
 const START: u32 = 4;
-/// Words of an invocation before its counters: its number, whether it came to its end, its result, and how many calls it has made.
-const HEADER: u32 = 7;
+/// Words of an invocation before its counters: its number, whether it came to its end, its result, how many calls it has made, its samples, and
+/// its primitive.
+const HEADER: u32 = 9;
 /// Words of a call: the number of its caller, the number of its log point, and the number of its light.
 const CALL: u32 = 3;
 /// Words of an event: its number, that of its call, and the bits of up to four numbers.
@@ -58,7 +59,8 @@ pub const EXTENSIONS: &str = "#extension GL_EXT_buffer_reference : require\n#ext
     #extension GL_EXT_scalar_block_layout : require";
 
 /// The text that writes the log of a stage of this kind, and of its `color` if it has one. `None` for kinds that are not traced.
-pub(super) fn listener(kind: StageKind, color: Option<&str>) -> Option<Listener> {
+/// `has_primitives`: whether it gets the numbers of the model's primitives.
+pub(super) fn listener(kind: StageKind, color: Option<&str>, has_primitives: bool) -> Option<Listener> {
     // Which invocation is logged, its number, and its result.
     let [is_logged, own_number, result] = match kind {
         StageKind::Fragment => [
@@ -70,11 +72,16 @@ pub(super) fn listener(kind: StageKind, color: Option<&str>) -> Option<Listener>
         StageKind::Compute => ["gl_GlobalInvocationID == logged", "0u", "vec4(0.0)"],
         _ => return None,
     };
+    // The mask alone does not make a device run the stage for each sample, as the number of a sample would.
+    let samples = if kind == StageKind::Fragment { "uint(gl_SampleMaskIn[0])" } else { "0u" };
+    let primitive = if has_primitives { "uint(gl_PrimitiveID) + 1u" } else { "0u" };
     let mut text = include_str!("log.glsl")
         .replace("SPECULA_CALLS", &format!("{MOST_CALLS}u"))
         .replace("SPECULA_HEADER", &format!("{HEADER}u"))
         .replace("SPECULA_IS_LOGGED", is_logged)
         .replace("SPECULA_NUMBER", own_number)
+        .replace("SPECULA_SAMPLES", samples)
+        .replace("SPECULA_PRIMITIVE", primitive)
         .replace("SPECULA_RESULT", result);
     for (number, word) in (FIRST_LATER..).zip(LATER) {
         text = text.replace(word, &format!("{number}u"));
@@ -184,6 +191,8 @@ impl Layout {
         LoggedFragment {
             number: part[0],
             color: (part[1] != 0).then(|| [part[2], part[3], part[4], part[5]]),
+            samples: (part[7] != 0).then_some(part[7]),
+            primitive: part[8].checked_sub(1),
             calls,
             events: events.into_iter().map(|(_, event)| event).collect(),
         }
@@ -210,6 +219,10 @@ pub struct LoggedFragment {
     pub number: u32,
     /// The bits of its color, or of its position in clip space; `None` if it was discarded.
     pub color: Option<[u32; 4]>,
+    /// The samples that a fragment covers, as bits; `None` for other invocations.
+    pub samples: Option<u32>,
+    /// The number of a fragment's primitive in its draw, from 0, if the stage gets it.
+    pub primitive: Option<u32>,
     /// The first and the last calls of functions, in order.
     pub calls: Vec<LoggedCall>,
     /// The first and the last events of each log point, in the order of execution.
@@ -261,7 +274,7 @@ mod tests {
         let mut words = vec![0; WORDS as usize];
         words[..START as usize].copy_from_slice(&[MOST_FRAGMENTS + 2, 0, 1, 0]);
         let part = &mut words[(START + layout.part()) as usize..];
-        part[..HEADER as usize].copy_from_slice(&[0.5_f32.to_bits(), 1, 2, 3, 4, 5, 1]);
+        part[..HEADER as usize].copy_from_slice(&[0.5_f32.to_bits(), 1, 2, 3, 4, 5, 1, 0b101, 8]);
         part[layout.first_call() as usize..][..CALL as usize].copy_from_slice(&[0, 2, 7]);
         // The first point has been reached once, the last one twice, before and behind that. The function of the second has begun.
         part[HEADER as usize..][..4].copy_from_slice(&[0, 1, 4, 2]);
@@ -275,6 +288,8 @@ mod tests {
         let expected = LoggedFragment {
             number: 0.5_f32.to_bits(),
             color: Some([2, 3, 4, 5]),
+            samples: Some(0b101),
+            primitive: Some(7),
             calls: vec![LoggedCall { number: 1, caller: 0, point: 2, light: 7, lost: 3 }],
             events: vec![event(3, 0, [1, 2, 3, 4]), event(1, 1, [5, 0, 0, 0]), event(3, 0, [6, 0, 0, 0])],
         };

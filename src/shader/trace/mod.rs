@@ -18,9 +18,11 @@ mod history;
 mod invocations;
 mod lights;
 pub mod log;
+mod numbered;
 mod report;
 #[cfg(test)]
 pub(crate) mod sample;
+mod samples;
 mod stage;
 mod statement;
 mod value;
@@ -30,6 +32,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::graph::PreRasterization;
 use super::{Compiler, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
@@ -39,6 +42,7 @@ use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
 pub use lights::TracedLight;
 pub use log::EXTENSIONS;
+pub use numbered::Numbered;
 pub use report::{Done, LineOfTrace, Once};
 pub use stage::{Listener, ListeningStage, TracedStage, compile_listening};
 pub use statement::Site;
@@ -71,7 +75,7 @@ impl LoggingStage {
     ) -> Result<Self, String> {
         let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
         let color = shaders.stages.get(stage).and_then(|of| color_of(of));
-        let listener = log::listener(kind, color)
+        let listener = log::listener(kind, color, has_primitives(shaders, stage))
             .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, |words, _| Some(words))?;
@@ -143,6 +147,16 @@ impl LoggingStage {
     }
 }
 
+/// Whether a stage draws the model alone, and gets the numbers of its primitives. A geometry or mesh stage may not pass them on.
+fn has_primitives(shaders: &ShaderSet, stage: &str) -> bool {
+    let passes_on = |before: &PreRasterization| {
+        let last = before.mesh.as_ref().map(|mesh| &mesh.mesh).or(before.geometry.as_ref());
+        last.is_none_or(|last| shaders.stages.get(last).is_some_and(|stage| stage.reflection.writes_primitive_id))
+    };
+    let mut passes = shaders.graph.passes.iter().filter(|pass| pass.desc.stage == stage).peekable();
+    passes.peek().is_some() && passes.all(|pass| pass.desc.draws_model() && passes_on(&pass.pre_rasterization))
+}
+
 /// The invocations of a stage at a pixel, with all that they did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -157,6 +171,8 @@ pub struct Trace {
     pub left_out: u32,
     /// The image that holds the result of the fragments.
     pub target: Target,
+    /// The samples of a pixel of that image.
+    pub samples: u32,
     /// The color of the pixel there: its bits.
     pub picture: [u32; 4],
     /// The same where the traced stage draws.
@@ -165,6 +181,8 @@ pub struct Trace {
     pub lights: Vec<TracedLight>,
     /// The words of a loop that did not end in the picture: pixels where its rounds ran out are magenta there.
     pub endless_loop: Option<[u32; 2]>,
+    /// Whether the stage reads earlier frames which the picture on screen has, and both draws of the trace have not.
+    pub begins_anew: bool,
     /// The text of the lines with statements that log.
     code: BTreeMap<(String, u32), String>,
 }
@@ -176,6 +194,10 @@ pub struct Fragment {
     pub depth: f32,
     /// The index of a vertex.
     pub vertex: Option<u32>,
+    /// The samples of the pixel that a fragment covers, as bits; `None` if they are not known.
+    pub samples: Option<u32>,
+    /// The number of a fragment's primitive in its draw, from 0, as `gl_PrimitiveID`; `None` if it is not known.
+    pub primitive: Option<u32>,
     /// The bits of its color, or of a vertex's position in clip space; `None` if it was discarded.
     pub color: Option<[u32; 4]>,
     /// Its events, in the order of execution for each group of files: of each statement, the first and the last.
@@ -200,8 +222,8 @@ pub struct Doing {
 /// Something that a statement did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// The action of the statement.
-    pub doing: Doing,
+    /// The action of the statement. Events of the same one share it.
+    pub doing: Arc<Doing>,
     /// The value; none for a discard.
     pub value: Option<TracedValue>,
     /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
@@ -227,11 +249,12 @@ pub enum Act {
 }
 
 impl Trace {
-    /// The fragment that is seen: the nearest one with the color of the picture, or else the nearest one that was not discarded. `None`
-    /// where nothing was drawn.
+    /// The fragment that is seen: the nearest one with the color of the picture, or else the one that is seen in the most samples of the
+    /// pixel, the nearest of several. `None` where nothing was drawn.
     pub fn visible(&self) -> Option<usize> {
         let kept = || self.fragments.iter().enumerate().filter(|(_, fragment)| fragment.color.is_some());
-        let found = kept().find(|(_, fragment)| self.is_shown(fragment)).or_else(|| kept().next());
+        let most = || kept().rev().max_by_key(|(index, _)| self.seen_samples(*index, None).count_ones());
+        let found = kept().find(|(_, fragment)| self.is_shown(fragment)).or_else(most);
         found.map(|(index, _)| index)
     }
 
@@ -240,7 +263,8 @@ impl Trace {
     /// # Errors
     /// A message: that draw had other fragments.
     pub fn add(&mut self, other: Self) -> Result<(), String> {
-        let same = |(a, b): (&Fragment, &Fragment)| (a.depth.to_bits(), a.color) == (b.depth.to_bits(), b.color);
+        let key = |of: &Fragment| (of.depth.to_bits(), of.color, of.primitive, of.samples);
+        let same = |(a, b): (&Fragment, &Fragment)| key(a) == key(b);
         if self.fragments.len() != other.fragments.len() || !self.fragments.iter().zip(&other.fragments).all(same) {
             return Err(
                 "the pixel changes from one draw to the next, so only one file can be traced: name it with --file"

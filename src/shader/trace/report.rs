@@ -1,12 +1,12 @@
 //! A trace by lines of its sources, as text and JSON.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::history::ulps;
-use super::{Act, Doing, Event, Fragment, Trace, TracedValue};
+use super::samples::{numbers, ulps};
+use super::{Act, Doing, Event, Fragment, Numbered, Trace, TracedValue};
 
 /// Values that are kept of each place from the begin, and from the end.
 const MOST_KEPT: usize = 16;
@@ -61,31 +61,45 @@ impl Trace {
     /// The same of the events that `is_shown` accepts. Those that were not logged count between two of these.
     pub fn lines_where(&self, fragment: usize, mut is_shown: impl FnMut(&Event) -> bool) -> Vec<LineOfTrace> {
         let Some(fragment) = self.fragments.get(fragment) else { return Vec::new() };
-        let mut files: Vec<&str> = Vec::new();
-        let mut lines: BTreeMap<(&str, u32), Vec<Done>> = BTreeMap::new();
-        // The last event of each statement, if it was shown.
-        let mut last: HashMap<&Doing, Option<u32>> = HashMap::new();
+        let mut statements: Vec<Statement<'_>> = Vec::new();
+        let mut shown: Vec<usize> = Vec::new();
+        let mut numbered = Numbered::default();
         for event in &fragment.events {
-            let doing = &event.doing;
+            let (number, is_new) = numbered.of(&event.doing);
+            if is_new {
+                statements.push(Statement { doing: &event.doing, done: None, last: None });
+            }
             let is_shown = is_shown(event);
-            let last = last.insert(doing, is_shown.then_some(event.time)).flatten();
+            let statement = &mut statements[number];
+            let last = std::mem::replace(&mut statement.last, is_shown.then_some(event.time));
             if !is_shown {
                 continue;
             }
-            if !files.contains(&doing.file.as_str()) {
-                files.push(&doing.file);
-            }
-            let done = done_of(lines.entry((doing.file.as_str(), doing.line)).or_default(), doing);
             let not_logged = last.map_or(0, |last| event.time.saturating_sub(last + 1));
+            let done = statement.done.get_or_insert_with(|| {
+                shown.push(number);
+                Done::new(&event.doing)
+            });
             done.add(event, not_logged as usize);
         }
-        let line = |((file, line), done): ((&str, u32), Vec<Done>)| {
-            let code = self.code.get(&(file.to_owned(), line)).cloned().unwrap_or_default();
-            LineOfTrace { file: file.to_owned(), line, code, done }
-        };
-        let mut lines: Vec<LineOfTrace> = lines.into_iter().map(line).collect();
-        lines.sort_by_key(|line| (files.iter().position(|file| *file == line.file), line.line));
-        lines
+        let mut files: Vec<&str> = Vec::new();
+        let mut lines: BTreeMap<(usize, u32), LineOfTrace> = BTreeMap::new();
+        for number in shown {
+            let Statement { doing, done, .. } = &mut statements[number];
+            let (file, line) = (doing.file.as_str(), doing.line);
+            let place = files.iter().position(|known| *known == file).unwrap_or_else(|| {
+                files.push(file);
+                files.len() - 1
+            });
+            let of_line = lines.entry((place, line)).or_insert_with(|| LineOfTrace {
+                file: file.to_owned(),
+                line,
+                code: self.code.get(&(file.to_owned(), line)).cloned().unwrap_or_default(),
+                done: Vec::new(),
+            });
+            of_line.done.extend(done.take());
+        }
+        lines.into_values().collect()
     }
 
     /// The files with statements that log.
@@ -122,6 +136,8 @@ impl Trace {
             if let Some(state) = self.state(index) {
                 (json["state"], json["covered_by"]) = (json!(state.name()), json!(state.covered_by()));
             }
+            json["samples"] = json!(found.samples.map(|samples| numbers(samples).collect::<Vec<_>>()));
+            json["primitive"] = json!(found.primitive);
             if let Some(vertex) = found.vertex {
                 json = json!({ "vertex": vertex, "position": found.color.map(floats), "not_logged": not_logged });
             }
@@ -131,8 +147,8 @@ impl Trace {
         let traced = if self.has_color() { color } else { Some(self.redrawn) };
         let proof = json!({ "equal": self.is_proven(fragment), "ulp": traced.map(|color| ulps(color, self.picture)),
             "with": self.target.name(), "traced": traced.map(floats), "picture": floats(self.picture),
-            "redrawn": floats(self.redrawn), "blended_ulp": self.blended(fragment).map(|color| ulps(color, self.picture)) });
-        json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out,
+            "redrawn": floats(self.redrawn), "begins_anew": self.begins_anew, "blended_ulp": self.together(fragment).map(|color| ulps(color, self.picture)) });
+        json!({ "fragments": self.fragments.iter().enumerate().map(of).collect::<Vec<_>>(), "left_out": self.left_out, "samples": self.samples,
             "stage": self.stage, "fragment": fragment, "proof": proof,
             "lights": (1..).zip(&self.lights).map(|(number, light)| light.json(number)).collect::<Vec<_>>(),
             "lines": self.lines(fragment).iter().map(LineOfTrace::json).collect::<Vec<_>>(),
@@ -144,15 +160,13 @@ fn floats(bits: [u32; 4]) -> Value {
     Value::Array(bits.map(|bits| TracedValue::float(f32::from_bits(bits)).json()).to_vec())
 }
 
-/// The entry of what a statement does, among those of its line.
-fn done_of<'a>(all: &'a mut Vec<Done>, doing: &Doing) -> &'a mut Done {
-    let known = all.iter().position(|done| (done.act, &done.name) == (doing.act, &doing.name));
-    let at = known.unwrap_or_else(|| {
-        let (act, name) = (doing.act, doing.name.clone());
-        all.push(Done { act, name, count: 0, not_logged: 0, first: Vec::new(), last: Vec::new() });
-        all.len() - 1
-    });
-    &mut all[at]
+/// A statement of a fragment.
+struct Statement<'a> {
+    doing: &'a Doing,
+    /// The events that are shown.
+    done: Option<Done>,
+    /// The time of the last event, if it is shown.
+    last: Option<u32>,
 }
 
 impl LineOfTrace {
@@ -174,6 +188,11 @@ impl LineOfTrace {
 }
 
 impl Done {
+    fn new(doing: &Doing) -> Self {
+        let (act, name) = (doing.act, doing.name.clone());
+        Self { act, name, count: 0, not_logged: 0, first: Vec::new(), last: Vec::new() }
+    }
+
     /// `not_logged`: how many events were not, between the last one and this.
     fn add(&mut self, event: &Event, not_logged: usize) {
         let once = Once { value: event.value, calls: event.calls.clone(), time: event.time };

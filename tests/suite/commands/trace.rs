@@ -1,10 +1,12 @@
 //! `specula trace`: the values of statements at a pixel.
 
+mod formulas;
 mod fragments;
 mod long_loops;
 mod oracle;
 mod pitfalls;
 mod planted;
+mod samples;
 mod stages;
 mod statements;
 
@@ -15,7 +17,8 @@ use serde_json::{Value, json};
 use crate::support::process::{Finished, run};
 use crate::support::{glb, line_of};
 
-const VIEW: [&str; 5] = ["--size", "96x64", "--env", "none", "--validate"];
+/// One sample, so that triangles of a surface do not share pixels: see `samples.rs` for several.
+const VIEW: [&str; 7] = ["--size", "96x64", "--env", "none", "--validate", "--set", "view.msaa=1"];
 /// A pixel of the default model, and of a unit sphere seen from `EYE`.
 const AT: [&str; 2] = ["--at", "50,30"];
 const EYE: [&str; 4] = ["--eye", "0,0,4", "--target", "0,0,0"];

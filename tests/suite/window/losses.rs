@@ -2,11 +2,15 @@
 //! session: the picture, the camera, the mode and the place on the desktop.
 
 use std::os::unix::process::ExitStatusExt as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
 
 use super::NDF;
 use super::controls::{ERROR, count};
 use crate::support::Tree;
-use crate::support::process::finish;
+use crate::support::process::{finish, send_signal};
 use crate::support::window::{Display, Viewer};
 
 const USER: &str = "user.glsl";
@@ -126,6 +130,59 @@ fn a_tree_that_loses_the_device_at_once_can_be_opened() {
     viewer.running.event("ready");
     viewer.shows(&built_in, "the built-in text is not used instead");
     viewer.quit();
+}
+
+/// The text is in no file and has never reached the device, so no cause of a loss takes it away.
+#[test]
+fn text_that_was_typed_and_not_saved_survives_a_loss_and_a_crash() {
+    let mut viewer = Viewer::driven_with_fault(Tree::new(), &["--size", "900x700", "sphere-grid"], FAULT);
+    viewer.running.event("ready");
+    let original = viewer.tree.read(NDF);
+    let mut saved = original.clone();
+    // The second time, the panel shows the file as it is typed already.
+    for (typed, loses, clicks) in [("first", true, "2"), ("second", false, "1")] {
+        let open = json!({ "command": "source", "file": NDF, "at": [200, 150] });
+        viewer.running.ask(open.clone());
+        viewer.screenshot();
+        // A double click on a line of the panel, which is below the picture, begins to type there; a click puts the cursor there.
+        viewer.move_mouse((420, 640));
+        viewer.display.xdotool(&["click", "--repeat", clicks, "--delay", "60", "1"]);
+        let text = format!("/* {typed} */");
+        viewer.screenshot();
+        viewer.display.xdotool(&["type", &text]);
+        let deadline = Instant::now() + Duration::from_secs(120);
+        while !recorded(&viewer.tree).contains(&text) {
+            assert!(Instant::now() < deadline, "{text} is not recorded, but {:?}", recorded(&viewer.tree));
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(viewer.tree.read(NDF), saved, "it is not saved");
+        if loses {
+            viewer.tree.write(USER, &edited(&viewer.tree.read(USER), "lose_the_device", 0.25));
+        } else {
+            send_signal(viewer.running.worker(), "ABRT");
+        }
+        viewer.restarted();
+        viewer.running.event("ready");
+        assert_eq!(viewer.tree.read(NDF), saved, "{typed}: nothing is written by itself");
+        // The next frames could lose the device, too.
+        let refused = viewer.running.refused(open);
+        assert!(refused.contains("nothing is traced until an edit has been drawn"), "{refused}");
+        viewer.screenshot();
+        viewer.key("ctrl+s");
+        let saved_it = format!("Saved {NDF}");
+        viewer.running.until("the save", |event| event["message"] == *saved_it);
+        let now = viewer.tree.read(NDF);
+        assert!(now.contains(&text) && now.replacen(&text, "", 1) == saved, "{typed}: {now}");
+        saved = now;
+    }
+    viewer.quit();
+}
+
+/// What is recorded of typed texts.
+fn recorded(tree: &Tree) -> String {
+    let sessions = std::fs::read_dir(tree.beside("runtime")).unwrap().flatten();
+    let files = sessions.map(|session| session.path().join("typed.json"));
+    files.filter_map(|file: PathBuf| std::fs::read_to_string(file).ok()).collect()
 }
 
 #[test]

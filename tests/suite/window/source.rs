@@ -33,7 +33,21 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     assert!(found["files"].as_array().unwrap().contains(&NDF.into()), "{found}");
     // The same pixel of the same picture on the command line, bit by bit.
     let (at, size) = (format!("{x},{y}"), format!("{width}x{height}"));
-    let args = ["trace", "shader-ball", "--json", "--at", &at, "--size", &size, "--env", "none", "--file", NDF];
+    let args = [
+        "trace",
+        "shader-ball",
+        "--json",
+        "--at",
+        &at,
+        "--size",
+        &size,
+        "--env",
+        "none",
+        "--file",
+        NDF,
+        "--set",
+        "view.msaa=1",
+    ];
     let traced = run(&viewer.tree.beside(""), &[&args[..], &["--shaders", "shaders"]].concat()).expect(0, &[]).json();
     for part in ["lines", "not_reached", "fragments", "proof"] {
         assert_eq!(found[part], traced[part], "{part}");
@@ -112,6 +126,62 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
     viewer.quit();
 }
 
+/// The mistake of a saved file is found from a pixel that it makes too bright: one click there names the line, and the lights.
+#[test]
+fn a_click_on_a_wrong_pixel_names_the_line_of_the_mistake() {
+    const FILE: &str = "brdf/evaluate.glsl";
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "sphere-grid"]);
+    viewer.running.event("ready");
+    // The panel is open at the file. No pixel is pinned, so it has no values.
+    let ask = json!({ "command": "source", "file": FILE });
+    viewer.running.refused(ask.clone());
+    let before = viewer.screenshot();
+    let (width, height) = before.dimensions();
+    let place = place_of(&before, &viewer.screen());
+
+    let right = "brdf.n_dot_l = saturate(cos_l);";
+    let line = line_of(&viewer.tree.read(FILE), right);
+    viewer.tree.write(FILE, &viewer.tree.edited(FILE, right, "brdf.n_dot_l = saturate(dot(s.n, -l));"));
+    viewer.running.reload(true);
+    let after = viewer.screenshot();
+    let sum = |image: &image::RgbaImage, (x, y): (u32, u32)| {
+        image.get_pixel(x, y).0[..3].iter().map(|channel| i32::from(*channel)).sum::<i32>()
+    };
+    let pixels = (0..width).flat_map(|x| (0..height).map(move |y| (x, y)));
+    let at = pixels.max_by_key(|at| sum(&after, *at) - sum(&before, *at)).unwrap();
+    assert!(sum(&after, at) > sum(&before, at) + 30, "no pixel is too bright");
+
+    viewer.click((place.0 + at.0, place.1 + at.1));
+    let is_it = |event: &Value| event["event"] == "traced" && event["pixel"] == json!([at.0, at.1]);
+    let traced = viewer.running.until("the trace of the click", is_it);
+    assert_eq!((&traced["file"], &traced["equal"]), (&FILE.into(), &true.into()), "{traced}");
+    let found = viewer.running.done(ask);
+    assert_eq!(found["pixel"], json!([at.0, at.1]));
+    let changed = found["changed"].as_array().unwrap();
+    let first = changed.iter().find(|change| change["first"] == true).unwrap_or_else(|| panic!("{changed:?}"));
+    assert_eq!((&first["line"], &first["name"]), (&line.into(), &"brdf.n_dot_l".into()), "{changed:?}");
+    // Each of its values has the light that it is about.
+    let lines = found["lines"].as_array().unwrap();
+    let done = &lines.iter().find(|of| of["line"] == line).unwrap()["done"][0];
+    for once in done["first"].as_array().unwrap() {
+        let calls = once["calls"].as_str().unwrap();
+        assert!(calls.contains("add_light [light ") && calls.ends_with(" > evaluate_brdf"), "{calls}");
+    }
+    viewer.quit();
+}
+
+/// Where a picture is on the screen.
+fn place_of(picture: &image::RgbaImage, screen: &image::RgbaImage) -> (u32, u32) {
+    let (width, height) = picture.dimensions();
+    let places = || (0..64).map(|at| (width / 4 + at * 7 % (width / 2), height / 4 + at * 13 % (height / 2)));
+    let is_it = |(left, top): &(u32, u32)| {
+        places().all(|(x, y)| screen.get_pixel(left + x, top + y).0[..3] == picture.get_pixel(x, y).0[..3])
+    };
+    let corners =
+        (0..=screen.height() - height).flat_map(|top| (0..=screen.width() - width).map(move |left| (left, top)));
+    corners.into_iter().find(is_it).expect("the picture is on the screen")
+}
+
 /// The color of marks.
 const MARK: [u8; 3] = [255, 0, 255];
 
@@ -177,6 +247,33 @@ fn undefined_operations_are_marked_while_the_setting_says_so() {
     viewer.running.done(set("assertions"));
     assert_eq!(viewer.running.done(json!({ "command": "checks" })), json!([]), "the shaders assert nothing");
     assert_eq!(marks(&mut viewer), 0);
+    viewer.quit();
+}
+
+/// A buffer that counts frames is empty when the trace draws it, so nothing is claimed of the picture on screen.
+#[test]
+fn a_trace_of_passes_with_earlier_frames_says_that_it_begins_anew() {
+    let tree = Tree::new();
+    let image = "#iChannel0 \"buffer.glsl\"\nvoid mainImage(out vec4 color, in vec2 at) {\n    \
+        float count = texelFetch(iChannel0, ivec2(0), 0).x;\n    color = vec4(0.001 * count);\n}\n";
+    let buffer = "#iChannel0 \"self\"\nvoid mainImage(out vec4 color, in vec2 at) {\n    \
+        float before = texelFetch(iChannel0, ivec2(at), 0).x;\n    color = vec4(before + 1.0);\n}\n";
+    std::fs::write(tree.beside("toy.glsl"), image).unwrap();
+    std::fs::write(tree.beside("buffer.glsl"), buffer).unwrap();
+    let mut viewer = Viewer::driven(tree, &["--size", "700x600", "sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "open", "tree": viewer.tree.beside("toy.glsl") }));
+    let ask = |place: Value| {
+        let mut command = json!({ "command": "source", "at": [40, 40] });
+        place.as_object().unwrap().iter().for_each(|(field, value)| command[field] = value.clone());
+        command
+    };
+    // The panel opens, and frames go by.
+    viewer.running.done(ask(json!({})));
+    let found = viewer.running.done(ask(json!({ "at": [50, 40] })));
+    assert_eq!((&found["proof"]["begins_anew"], &found["proof"]["equal"]), (&true.into(), &false.into()), "{found}");
+    let line = found["lines"].as_array().unwrap().iter().find(|line| line["line"] == 3).cloned().unwrap();
+    assert_eq!(line["done"][0]["first"][0]["value"], 1.0, "{line}");
     viewer.quit();
 }
 

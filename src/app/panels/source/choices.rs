@@ -33,8 +33,8 @@ pub(super) struct Offers {
 }
 
 impl Offers {
-    /// Those of the newest trace.
-    pub(super) fn new(traces: &Traces) -> Self {
+    /// Those of the newest trace. `most`: how often the statement ran that ran most often in the choice.
+    pub(super) fn new(traces: &Traces, most: usize) -> Self {
         let (Some(newest), Some(fragment)) = (traces.newest(), traces.fragment()) else { return Self::default() };
         let (Ok(trace), text, now) = (&newest.trace, newest.text(), &traces.choice) else { return Self::default() };
         let runs_again = |event: &Event| event.time > 1 && event.doing.act == Act::Condition;
@@ -42,7 +42,8 @@ impl Offers {
             true => traced_loops(trace, fragment, &text, now.call_of(trace, fragment)),
             false => Vec::new(),
         };
-        Self { calls: calls(trace, fragment).len(), times: most_times(now, trace, &text), loops }
+        let times = if now.time.is_some() { most_times(now, trace, &text) } else { most };
+        Self { calls: calls(trace, fragment).len(), times, loops }
     }
 }
 
@@ -81,15 +82,20 @@ pub(super) fn show(
 
 fn choose_fragment(ui: &mut Ui, choice: &mut Choice, trace: &Trace, fragment: usize) {
     let name = |at: usize| trace.name_of(at);
-    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(name(fragment)).small());
+    // Its depth, samples and primitive would leave no room for the other lists.
+    let whole = name(fragment);
+    let short = whole.split(", depth").next().unwrap_or_default();
+    let list = ComboBox::from_id_salt("fragment").selected_text(RichText::new(short).small());
     let list = list.show_ui(ui, |ui| {
+        ui.set_min_width(MENU);
         for at in 0..trace.fragments.len() {
             if ui.selectable_label(at == fragment, name(at)).clicked() {
                 choice.fragment = Some(at);
             }
         }
     });
-    named(list.response, "Fragment").on_hover_text("The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there");
+    let hint = "The surfaces that were drawn at this pixel, the nearest first; of a vertex stage, the corners of the triangle there";
+    named(list.response, "Fragment").on_hover_text(format!("{whole}\n{hint}"));
 }
 
 /// `count`: calls with statements of the file.

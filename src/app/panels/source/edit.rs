@@ -15,12 +15,12 @@ use super::look::Look;
 use super::model::CodeModel;
 use super::row::beside;
 use super::scroll::Scroll;
-use crate::app::closing::Unsaved;
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::commands::Commands;
 use crate::app::state::State;
 use crate::app::widgets::spoken::named;
 use crate::app::widgets::theme::small_mono_font;
+use crate::recovery::TypedText;
 use crate::shader::{Source, TreePath, highlights};
 use crate::write_back::TreeFile;
 
@@ -117,9 +117,27 @@ impl Editor {
     }
 
     /// The texts that were not saved, those of other trees, too.
-    pub(super) fn unsaved(&self) -> Unsaved {
+    pub(super) fn unsaved(&self) -> Vec<TypedText> {
         let unsaved = self.files.iter().filter(|(_, typing)| *typing.base != *typing.text);
-        unsaved.map(|(file, typing)| (file.clone(), typing.text.clone())).collect()
+        let typed =
+            |(TreeFile { root, path: file }, Typing { path, base, text, .. }): (&TreeFile, &Typing)| TypedText {
+                root: root.clone(),
+                file: file.clone(),
+                path: path.clone(),
+                base: base.to_string(),
+                text: text.clone(),
+            };
+        unsaved.map(typed).collect()
+    }
+
+    /// Goes on with texts that were typed in a window before this one.
+    pub(super) fn restore(&mut self, typed: &[TypedText]) {
+        for TypedText { root, file, path, base, text } in typed {
+            let base: Arc<str> = base.as_str().into();
+            let (path, text, known) = (path.clone(), text.clone(), base.clone());
+            let file = TreeFile { root: root.clone(), path: file.clone() };
+            self.files.entry(file).or_insert(Typing { path, base, text, sent: None, known, older: Vec::new() });
+        }
     }
 
     /// The typed text of a file.

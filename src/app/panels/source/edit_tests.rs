@@ -14,6 +14,7 @@ use super::tests::{TEXT, Window, events, window};
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::state::trace::saved::WrittenText;
+use crate::recovery::TypedText;
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::write_back::TreeFile;
 
@@ -154,7 +155,8 @@ fn typed_text_stays_in_its_tree() {
     harness.run_steps(2);
     harness.get_by_label("not saved");
     let file = TreeFile { root: a.to_owned(), path: "a.glsl".into() };
-    let unsaved = [(file, format!("// of a{TEXT}"))].into();
+    let (root, file, path, base) = (file.root, file.path.clone(), file.path, TEXT.to_owned());
+    let unsaved = vec![TypedText { root, file, path, base, text: format!("// of a{TEXT}") }];
     assert_eq!(harness.state().panel.unsaved(), unsaved);
     // Another tree is opened. Until its shaders are in use, the file in sight is of neither.
     harness.state_mut().state.source = Source::disk(b.to_owned());

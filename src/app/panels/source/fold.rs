@@ -31,7 +31,7 @@ impl Folds {
     pub(super) fn open_at(&mut self, model: &CodeModel, line: usize) -> bool {
         let Some(path) = model.path() else { return false };
         let hides = |function: &&Function| function.lines.start < line && function.lines.contains(&line);
-        let hiding = model.functions.iter().filter(hides);
+        let hiding = model.functions().iter().filter(hides);
         let names: Vec<(TreePath, String)> = hiding.map(|function| (path.clone(), function.name.clone())).collect();
         let count = self.0.len();
         names.iter().for_each(|name| drop(self.0.take(name)));
@@ -46,19 +46,19 @@ impl Folds {
 
     /// Shows the menu that folds several functions.
     pub(super) fn menu(&mut self, ui: &mut Ui, model: &CodeModel) {
-        let Some(path) = model.path().filter(|_| !model.functions.is_empty()) else { return };
+        let Some(path) = model.path().filter(|_| !model.functions().is_empty()) else { return };
         let is_reached = |function: &&Function| {
             model.lines[function.lines.clone()].iter().any(|line| line.row.reach == Reach::Reached)
         };
-        let has_trace = model.functions.iter().any(|function| is_reached(&function));
+        let has_trace = model.functions().iter().any(|function| is_reached(&function));
         let hint = "Fold functions to their first line. A click on the triangle beside a function does the same";
         let menu = ui.menu_button(RichText::new("Fold").small(), |ui| {
             if ui.button("All functions").clicked() {
-                self.set(path, model.functions.iter());
+                self.set(path, model.functions().iter());
             }
             let button = ui.add_enabled(has_trace, egui::Button::new("Functions that the pixel does not reach"));
             if button.on_disabled_hover_text("No function of this file is reached, or no pixel is pinned").clicked() {
-                self.set(path, model.functions.iter().filter(|function| !is_reached(function)));
+                self.set(path, model.functions().iter().filter(|function| !is_reached(function)));
             }
             if ui.button("None").clicked() {
                 self.set(path, std::iter::empty());

@@ -180,6 +180,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
         // Nothing that moves: frames of a software device would hold the trace up.
         (Progress::UnderWay(_), _) => quiet(ui, "Tracing…"),
         (Progress::Outside, _) => quiet(ui, "outside of the picture"),
+        (Progress::AfterLoss, _) => quiet(ui, "After a lost device, nothing is traced until an edit has been drawn"),
         (Progress::Waits, _) if state.inspection.is_pinned() => quiet(ui, "Waiting for the final picture…"),
         (Progress::Done, Some(PixelTrace { trace: Err(message), .. })) => {
             ui.add(Label::new(RichText::new(message).small().color(WARNING)).truncate()).on_hover_text(message);
@@ -190,7 +191,7 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
             };
             let (text, moment) = (trace.proof_text(fragment), moment(state));
             let (mark, color) = if trace.is_proven(fragment) { ("✔ ", GOOD) } else { ("", WARNING) };
-            let hint = "The color with which the traced stage ends, compared with the pixel of the picture at one sample, bit by bit";
+            let hint = "The color with which the traced stage ends, compared with the pixel of the picture, bit by bit; where fragments share the pixel, the mean of its samples";
             let later = moment
                 .as_ref()
                 .map_or("", |_| ". The picture has moved on since: pause, or click another pixel, for values of now");

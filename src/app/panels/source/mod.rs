@@ -28,16 +28,18 @@ mod scroll;
 mod tail;
 #[cfg(test)]
 mod tests;
+mod text_lines;
 mod values;
 
 use egui::{RichText, Ui};
 
-use crate::app::closing::Unsaved;
 use crate::app::commands::Commands;
 use crate::app::context::Context;
 use crate::app::panels::panel_ui::{Group, PanelSpec, PanelUi};
 use crate::app::state::arrangement::Panel;
+use crate::app::state::workspace::PanelRequest;
 use crate::app::widgets::theme::QUIET;
+use crate::recovery::TypedText;
 use code::Parts;
 use edit::Editor;
 use find::Find;
@@ -88,7 +90,13 @@ impl PanelUi for SourceState {
         }
     }
 
-    fn unsaved(&self) -> Unsaved {
+    fn on_request(&mut self, request: &PanelRequest) {
+        if let PanelRequest::RestoreTyped(typed) = request {
+            self.editor.restore(typed);
+        }
+    }
+
+    fn unsaved(&self) -> Vec<TypedText> {
         self.editor.unsaved()
     }
 }

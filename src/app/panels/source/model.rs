@@ -5,16 +5,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::choices::Offers;
-use super::functions::{Fold, Function, functions};
+use super::functions::{Fold, Function};
+use super::text_lines::{TextLine, TextLines};
 use crate::app::state::State;
 use crate::app::state::trace::Progress;
 use crate::app::state::trace::choice::Choice;
 use crate::app::state::trace::rows::{Note, Reach, Row};
 use crate::identity::Identity;
 use crate::shader::expression::lines_before;
-use crate::shader::rewrite::literals_by_line;
 use crate::shader::trace::Act;
-use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath, highlights, includes};
+use crate::shader::{Diagnostic, Highlight, Severity, ShaderSet, TreePath};
 
 /// A line of the file.
 pub(super) struct CodeLine {
@@ -58,8 +58,9 @@ struct Inputs {
 #[derive(Default)]
 pub(super) struct CodeModel {
     inputs: Option<Inputs>,
+    /// The text of the file, which most traces do not change.
+    texts: TextLines,
     pub(super) lines: Vec<CodeLine>,
-    pub(super) functions: Vec<Function>,
     pub(super) shown: Vec<Shown>,
     /// Characters of the longest line.
     pub(super) longest: usize,
@@ -114,11 +115,12 @@ impl CodeModel {
         if self.inputs.as_ref() == Some(&inputs) {
             return;
         }
-        self.offers = Offers::new(&state.traces);
-        self.lines = lines(state, shaders, &inputs);
-        self.functions = functions(&inputs.text);
+        self.texts.update(&inputs.text);
+        self.lines = lines(state, shaders, &inputs, &self.texts);
+        let notes = self.lines.iter().flat_map(|line| &line.row.notes);
+        self.offers = Offers::new(&state.traces, notes.map(|note| note.done.count).max().unwrap_or(0));
         let about = |line: &CodeLine| inputs.diagnostics.iter().any(|found| found.line == Some(line.row.line));
-        for function in &self.functions {
+        for function in &self.texts.functions {
             // Wrong lines are never hidden.
             let is_wrong = self.lines[function.lines.clone()].iter().any(about);
             fold(&mut self.lines, function, !is_wrong && inputs.folded.contains(&function.name));
@@ -126,6 +128,11 @@ impl CodeModel {
         self.shown = rows(&mut self.lines, &inputs.diagnostics);
         self.longest = self.lines.iter().map(|line| line.text.chars().count()).max().unwrap_or(0);
         self.inputs = Some(inputs);
+    }
+
+    /// Its functions.
+    pub(super) fn functions(&self) -> &[Function] {
+        &self.texts.functions
     }
 
     /// The index of the first line whose values the last edit has changed.
@@ -170,33 +177,18 @@ fn shown_file(state: &State, shaders: &ShaderSet) -> Option<(TreePath, Arc<str>)
     found.or_else(|| of_stage().as_ref().and_then(known)).or_else(first)
 }
 
-fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs) -> Vec<CodeLine> {
+fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs, texts: &TextLines) -> Vec<CodeLine> {
     let Inputs { path, text, .. } = inputs;
-    let mut parts = highlights(text).into_iter().peekable();
-    let mut names = includes(text).peekable();
-    let mut numbers = literals_by_line(text).into_iter();
-    let mut start = 0;
-    let with_breaks = text.split_inclusive('\n').zip(text.lines());
-    let line = |((with_break, line), row): ((&str, &str), Row)| {
-        let bytes = start..start + line.len();
-        let in_line = |of: &Range<usize>| of.start - bytes.start..of.end.min(bytes.end) - bytes.start;
-        let mut own = Vec::new();
-        while let Some((of, highlight)) = parts.next_if(|(of, _)| of.start < bytes.end) {
-            own.push((in_line(&of), highlight));
-        }
-        let include = names.next_if(|include| include.bytes.start < bytes.end);
-        start += with_break.len();
-        CodeLine {
-            text: line.to_owned(),
-            parts: own,
-            include: include.and_then(|include| included(shaders, path, include.name)),
-            row,
-            message: None,
-            numbers: numbers.next().unwrap_or_default().into_iter().map(|literal| literal.bytes).collect(),
-            fold: None,
-        }
+    let line = |(line, row): (&TextLine, Row)| CodeLine {
+        text: line.text.clone(),
+        parts: line.parts.clone(),
+        include: line.include.as_ref().and_then(|name| included(shaders, path, name)),
+        row,
+        message: None,
+        numbers: line.numbers.clone(),
+        fold: None,
     };
-    with_breaks.zip(state.traces.rows(path, text)).map(line).collect()
+    texts.lines.iter().zip(state.traces.rows(path, text)).map(line).collect()
 }
 
 /// The file that a file includes by a name: beside it first, then from the root, as the compiler looks.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::rounds::{Round, TracedLoop, traced_loops};
 use crate::shader::trace::{
-    Act, Doing, Done, Event, LineOfTrace, Trace, Which, is_related, last_call, light_of, paths_to,
+    Act, Doing, Done, Event, LineOfTrace, Numbered, Trace, Which, is_related, last_call, light_of, paths_to,
 };
 
 /// The choice among what happened at a pixel.
@@ -46,7 +46,7 @@ impl Choice {
         let call = self.call_of(trace, fragment);
         let round = self.round_of(trace, fragment, text);
         // The time of the first event of each statement in the chosen call and round.
-        let mut first: HashMap<Doing, u32> = HashMap::new();
+        let mut first: HashMap<Arc<Doing>, u32> = HashMap::new();
         let mut events = 0..;
         trace.lines_where(fragment, |event| {
             let at = events.next().unwrap_or_default();
@@ -102,7 +102,7 @@ pub(in crate::app) fn evaluations<'a>(
     // A line may give a value to an argument and store to it.
     let (mut last, mut number): (HashMap<&Doing, u32>, u32) = (HashMap::new(), 0);
     let numbered = events_of(trace, fragment, place, is_it).map(|event| {
-        number += event.time - last.insert(&event.doing, event.time).unwrap_or(0);
+        number += event.time - last.insert(&*event.doing, event.time).unwrap_or(0);
         (number, event)
     });
     numbered.collect()
@@ -110,13 +110,10 @@ pub(in crate::app) fn evaluations<'a>(
 
 /// The paths of calls in a fragment, in their order.
 pub(in crate::app) fn calls(trace: &Trace, fragment: usize) -> Vec<Arc<str>> {
-    let mut found: Vec<Arc<str>> = Vec::new();
-    for event in trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events) {
-        if !event.calls.is_empty() && !found.contains(&event.calls) {
-            found.push(event.calls.clone());
-        }
-    }
-    found
+    let events = trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events);
+    let mut numbered = Numbered::default();
+    let first = events.filter(|event| !event.calls.is_empty() && numbered.of(&event.calls).1);
+    first.map(|event| event.calls.clone()).collect()
 }
 
 /// A call in the list of those of a fragment.

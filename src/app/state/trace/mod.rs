@@ -44,6 +44,8 @@ pub(in crate::app) enum Progress {
     Unknown,
     /// The panel is out of sight.
     Unseen,
+    /// The process before has lost the device, and no new text has been drawn since.
+    AfterLoss,
     /// No pixel is pinned.
     NoPixel,
     /// The pinned pixel is outside of the picture, which has become smaller.
@@ -185,9 +187,13 @@ impl Traces {
     /// The result for a command that waits for the trace of the picture, once there is one.
     pub(in crate::app) fn answer(&self) -> Option<Result<Value, String>> {
         match self.progress {
-            Progress::Done => Some(self.json()),
+            // Without the version before, nothing would have changed.
+            Progress::Done => (!self.awaits_before).then(|| self.json()),
             Progress::NoPixel => Some(Err("no pixel is pinned; name one with `at`".to_owned())),
             Progress::Outside => Some(Err("the pinned pixel is outside of the picture".to_owned())),
+            Progress::AfterLoss => {
+                Some(Err("after a lost device, nothing is traced until an edit has been drawn".to_owned()))
+            }
             // It opens within a few frames.
             Progress::Unseen if self.unseen > MOST_UNSEEN => {
                 Some(Err("the panel Source is not in sight, so nothing is traced".to_owned()))
@@ -220,6 +226,8 @@ impl Traces {
             return false;
         };
         self.is_awaited = false;
+        // The version before is traced where this one is.
+        self.awaits_before &= trace.is_ok();
         if self.progress == Progress::UnderWay(number) {
             self.progress = Progress::Done;
         }

@@ -1,88 +1,30 @@
 //! The rounds of a file's loops at a pixel: one can be chosen, so that its values stand beside the code.
 
-use std::ops::RangeInclusive;
+mod do_loops;
+mod loops;
 
-use crate::shader::glsl::syntax::{Statement, StatementKind, functions, within};
-use crate::shader::glsl::{Code, spelled};
-use crate::shader::trace::{Act, Event, Trace, is_related, paths_to};
+use crate::shader::trace::{Act, Event, Trace, is_related};
+pub(in crate::app) use loops::TracedLoop;
+pub(super) use loops::ends_of_do;
+use loops::{Loop, label, loops};
 
 /// A round of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct Round {
     /// The first line of the loop in the traced text, from 1.
     pub(in crate::app) line: u32,
-    /// Which evaluation of the loop's condition begins the round, from 1.
+    /// Which evaluation of the loop's condition begins the round, from 1. See [`do_loops`] for loops that begin with their body.
     pub(in crate::app) number: u32,
 }
 
-/// A loop whose rounds were logged.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::app) struct TracedLoop {
-    /// Its first line in the traced text, from 1.
-    pub(in crate::app) line: u32,
-    /// Its code up to the body, on one line.
-    pub(in crate::app) code: String,
-    /// The number of each round, and the values that the variables of the header have in it: `i = 2`.
-    pub(in crate::app) rounds: Vec<(u32, String)>,
-    /// The number of the round to which each event of the fragment belongs: `None` outside of the loop, 0 where the loop ends, or in rounds
-    /// that were not logged.
-    owners: Vec<Option<u32>>,
-}
-
-impl TracedLoop {
-    /// Whether an event belongs to a round, or to none.
-    pub(super) fn is_shown(&self, event: usize, number: u32) -> bool {
-        self.owners.get(event).copied().flatten().is_none_or(|of| of == number)
-    }
-}
-
 /// The loops of the traced file, whose text this is, in a fragment. `call`: only rounds of this call, of those that led to it, and of those
-/// that it makes. Loops that begin with their body are left out.
+/// that it makes.
 pub(in crate::app) fn traced_loops(trace: &Trace, fragment: usize, text: &str, call: Option<&str>) -> Vec<TracedLoop> {
     let (Some(fragment), Some(file)) = (trace.fragments.get(fragment), trace.files().next()) else { return Vec::new() };
     let events: Vec<Option<&Event>> = fragment.events.iter().map(|of| (of.doing.file == file).then_some(of)).collect();
-    let traced = loops(text).into_iter().map(|of| of.traced(&events, call));
+    let traced =
+        loops(text).into_iter().map(|of| if of.is_do { of.traced_do(&events, call) } else { of.traced(&events, call) });
     traced.filter(|traced| !traced.rounds.is_empty()).collect()
-}
-
-/// A loop in the text of a file.
-struct Loop<'a> {
-    lines: RangeInclusive<u32>,
-    /// The lines of its header.
-    header: RangeInclusive<u32>,
-    code: String,
-    /// The words of the header of a `for`.
-    words: Vec<&'a str>,
-}
-
-fn loops(text: &str) -> Vec<Loop<'_>> {
-    let code = Code::new(text);
-    let mut found = Vec::new();
-    functions(&code.tokens).iter().for_each(|function| find(&function.body, text, &code, &mut found));
-    found
-}
-
-fn find<'a>(statement: &Statement, text: &'a str, code: &Code<'_>, found: &mut Vec<Loop<'a>>) {
-    if statement.kind == StatementKind::Loop {
-        let first = code.number_at(statement.bytes.start);
-        let header = first..=code.number_at(statement.header.end.saturating_sub(1));
-        // A condition beside the loop's cannot be told from it.
-        if !statement.parts.iter().any(|part| decides_at(part, code, *header.end())) {
-            let lines = first..=code.number_at(statement.bytes.end.saturating_sub(1));
-            let tokens = within(&code.tokens, &(statement.bytes.start..statement.header.end));
-            let words = tokens.iter().map(|token| &text[token.bytes.clone()]);
-            let words = words.filter(|_| tokens.first().is_some_and(|token| token.text == "for")).collect();
-            found.push(Loop { lines, header, code: spelled(tokens), words });
-        }
-    }
-    statement.parts.iter().for_each(|part| find(part, text, code, found));
-}
-
-/// Whether a condition of a statement stands on a line.
-fn decides_at(statement: &Statement, code: &Code<'_>, line: u32) -> bool {
-    let decides = matches!(statement.kind, StatementKind::Branch | StatementKind::Loop | StatementKind::DoLoop);
-    (decides && code.number_at(statement.bytes.start) <= line)
-        || statement.parts.iter().any(|part| decides_at(part, code, line))
 }
 
 impl Loop<'_> {
@@ -127,39 +69,11 @@ impl Loop<'_> {
         TracedLoop { line: *self.lines.start(), code: self.code, rounds, owners }
     }
 
-    fn is_condition(&self, event: &Event) -> bool {
-        event.doing.act == Act::Condition && self.header.contains(&event.doing.line)
-    }
-
     /// Whether an event stores to a variable of the header.
     fn is_of_header(&self, event: &Event) -> bool {
         let doing = &event.doing;
         let variable = doing.name.split(['.', '[']).next().unwrap_or_default();
         doing.act == Act::Store && self.header.contains(&doing.line) && self.words.contains(&variable)
-    }
-
-    /// Whether an event is of the loop in this call, or of a function that it calls.
-    fn is_inside(&self, event: &Event, calls: &str) -> bool {
-        match *event.calls == *calls {
-            true => self.lines.contains(&event.doing.line),
-            false => calls.is_empty() || paths_to(&event.calls).any(|path| path == calls),
-        }
-    }
-}
-
-/// The values of what was stored, each variable once, or the place of the round in the list.
-fn label(stored: &[usize], events: &[Option<&Event>], place: usize) -> String {
-    let mut values: Vec<(&str, String)> = Vec::new();
-    for event in stored.iter().filter_map(|at| events[*at]) {
-        let (name, value) = (event.doing.name.as_str(), event.value.map(|value| value.text()).unwrap_or_default());
-        match values.iter_mut().find(|(known, _)| *known == name) {
-            Some(known) => known.1 = value,
-            None => values.push((name, value)),
-        }
-    }
-    match values.is_empty() {
-        true => format!("round {place}"),
-        false => values.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", "),
     }
 }
 

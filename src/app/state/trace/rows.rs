@@ -1,12 +1,12 @@
 //! The lines of a file with what their statements do at a pixel, now and in the version before.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
 use super::choice::Choice;
-use super::rounds::Round;
+use super::rounds::{Round, ends_of_do};
 use crate::shader::expression::lines_before;
 use crate::shader::trace::{Act, Done, LineOfTrace, Trace, is_related};
 
@@ -100,13 +100,18 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     let file = file.or_else(|| now.trace.files().next().map(str::to_owned)).unwrap_or_default();
     let statements: BTreeSet<u32> = now.trace.statement_lines(&file).collect();
     let traced = lines_before(&now.text, text);
+    let ends = ends_of_do(&now.text);
     let mut changed = Vec::new();
     for (at, row) in rows.iter_mut().enumerate() {
         let Some(line) = traced.get(at).copied().flatten() else { continue };
         row.traced = Some(line);
         let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
-        let is_loop = texts.get(at).is_some_and(|text| is_loop(text));
-        row.notes = lines.get(&line).map(|line| notes(line, earlier, is_loop)).unwrap_or_default();
+        let decides = match texts.get(at) {
+            _ if ends.contains(&line) => Decides::Again,
+            Some(text) if is_loop(text) => Decides::Round,
+            _ => Decides::Branch,
+        };
+        row.notes = lines.get(&line).map(|line| notes(line, earlier, decides)).unwrap_or_default();
         row.reach = match (statements.contains(&line), lines.contains_key(&line)) {
             (_, true) => Reach::Reached,
             (true, false) => Reach::Missed,
@@ -142,11 +147,11 @@ fn first_change(trace: &Trace, choice: &Choice, changed: &[Changed]) -> Option<u
     let call = choice.call_of(trace, fragment);
     let events = trace.fragments.get(fragment)?.events.iter();
     let mut of_choice = events.filter(|event| call.is_none_or(|call| is_related(&event.calls, call)));
-    let found = of_choice.find_map(|event| {
-        let doing = &event.doing;
-        changed.iter().find(|of| (of.line, of.act, &of.name) == (doing.line, doing.act, &doing.name))
-    });
-    found.or(changed.first()).map(|of| of.row)
+    let first = changed.first()?.row;
+    let rows: HashMap<(u32, Act, &str), usize> =
+        changed.iter().rev().map(|of| ((of.line, of.act, of.name.as_str()), of.row)).collect();
+    let found = of_choice.find_map(|event| rows.get(&(event.doing.line, event.doing.act, event.doing.name.as_str())));
+    Some(found.copied().unwrap_or(first))
 }
 
 /// Lines without statements between lines that are not reached belong to them.
@@ -172,12 +177,23 @@ fn is_loop(line: &str) -> bool {
     })
 }
 
-fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, is_loop: bool) -> Vec<Note> {
+/// The decision of the conditions of a line.
+#[derive(Clone, Copy)]
+enum Decides {
+    /// Whether a branch is taken.
+    Branch,
+    /// Whether a round of a loop follows.
+    Round,
+    /// The same, behind a round.
+    Again,
+}
+
+fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, decides: Decides) -> Vec<Note> {
     let note = |done: &Done| {
         let is_same = |of: &&Done| (of.act, &of.name) == (done.act, &done.name);
         let before = earlier.and_then(|line| line.done.iter().find(is_same));
-        let values = values(done, is_loop);
-        let before = before.map(|before| self::values(before, is_loop)).filter(|before| *before != values);
+        let values = values(done, decides);
+        let before = before.map(|before| self::values(before, decides)).filter(|before| *before != values);
         let label = match done.act {
             Act::Store | Act::Argument => format!("{} = ", done.name),
             Act::Return => format!("return{} ", done.name),
@@ -190,7 +206,7 @@ fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, is_loop: bool) -> Ve
 }
 
 /// The values in words. A condition says whether its branch was taken, or how many rounds its loop had.
-fn values(done: &Done, is_loop: bool) -> String {
+fn values(done: &Done, decides: Decides) -> String {
     let count = done.count;
     match done.act {
         Act::Discard => {
@@ -202,14 +218,19 @@ fn values(done: &Done, is_loop: bool) -> String {
         }
         Act::Condition if done.values().count() == count => {
             let taken = done.values().filter(|value| value.numbers().any(|number| number != 0.0)).count();
-            match (is_loop, taken) {
-                (true, 1) => "1 round".to_owned(),
-                (true, taken) => format!("{taken} rounds"),
-                (false, taken) if taken == count && count == 1 => "taken".to_owned(),
-                (false, taken) if taken == count => format!("taken ×{count}"),
-                (false, 0) if count == 1 => "not taken".to_owned(),
-                (false, 0) => format!("not taken ×{count}"),
-                (false, taken) => format!("taken {taken} of {count}"),
+            let rounds = match decides {
+                Decides::Branch => None,
+                Decides::Round => Some(taken),
+                Decides::Again => Some(count),
+            };
+            match (rounds, taken) {
+                (Some(1), _) => "1 round".to_owned(),
+                (Some(rounds), _) => format!("{rounds} rounds"),
+                (None, taken) if taken == count && count == 1 => "taken".to_owned(),
+                (None, taken) if taken == count => format!("taken ×{count}"),
+                (None, 0) if count == 1 => "not taken".to_owned(),
+                (None, 0) => format!("not taken ×{count}"),
+                (None, taken) => format!("taken {taken} of {count}"),
             }
         }
         _ => done.values_text(),

@@ -173,7 +173,10 @@ fn a_round_of_a_loop_is_chosen() {
     assert_eq!((done.first[0].time, traces.choice.evaluation(&done)), (2, 2));
     // The version before has the same round, where its loop stands one line higher.
     let moved = format!("// A comment.\n{}", text.replace("1.0;", "2.0;"));
-    let below = |event: Event| Event { doing: Doing { line: event.doing.line + 1, ..event.doing }, ..event };
+    let below = |event: Event| {
+        let doing = Doing { line: event.doing.line + 1, ..Doing::clone(&event.doing) };
+        Event { doing: doing.into(), ..event }
+    };
     add(&mut traces, &shaders(2, &moved), 2, events(2.0).into_iter().map(below).collect(), &[2, 3, 4, 5]);
     traces.choice.round = Some(Round { line: 3, number: 2 });
     let expected = ["", "x = 1", "i = 1; 1 round", "x = 3 → 5", "return 3 → 5"];

@@ -14,7 +14,7 @@ use crate::support::window::Viewer;
 
 const NDF: &str = "brdf/ndf.glsl";
 
-const OPTIONS: [&str; 5] = ["--env", "none", "--size", "96x64", "--validate"];
+const OPTIONS: [&str; 7] = ["--env", "none", "--size", "96x64", "--validate", "--set", "view.msaa=1"];
 const PIN: [u32; 2] = [50, 30];
 const REFRESH: &str = "workspace/inlayHint/refresh";
 

@@ -4,50 +4,10 @@ use specula::headless::{Headless, TraceRequest};
 use specula::shader::Mode;
 use specula::shader::trace::{Act, LineOfTrace, Trace};
 
+use super::formulas::*;
 use crate::support::{is_long, line_of, model, renderer, settings};
 
-const FILES: [&str; 3] = ["brdf/ndf.glsl", "brdf/visibility.glsl", "brdf/fresnel.glsl"];
 const SIZE: (u32, u32) = (96, 64);
-
-/// A function of the tree with its formula: the file, a part of its header, its parameters, a part of the line that returns, and the CPU's result.
-struct Formula {
-    file: &'static str,
-    header: &'static str,
-    parameters: &'static [&'static str],
-    returns: &'static str,
-    cpu: fn(&[f64]) -> f64,
-}
-
-/// Scalar functions, from the papers that the shaders name: Walter et al. 2007, Heitz 2014.
-const FORMULAS: [Formula; 3] = [
-    Formula {
-        file: FILES[0],
-        header: "float d_ggx(float n_dot_h",
-        parameters: &["n_dot_h", "sin2_h", "alpha"],
-        returns: "return a2 / (PI * spread * spread)",
-        cpu: |a| {
-            let a2 = a[2] * a[2];
-            a2 / (std::f64::consts::PI * (a[0] * a[0] * a2 + a[1]).powi(2))
-        },
-    },
-    Formula {
-        file: FILES[1],
-        header: "float smith_root_ggx(",
-        parameters: &["c", "a2"],
-        returns: "float smith_root_ggx(",
-        cpu: |a| (a[0] * a[0] * (1.0 - a[1]) + a[1]).sqrt(),
-    },
-    Formula {
-        file: FILES[1],
-        header: "float v_height_correlated(",
-        parameters: &["n_dot_l", "n_dot_v", "a2_l", "a2_v"],
-        returns: "return 0.5 / (n_dot_v * smith_root",
-        cpu: |a| {
-            let root = |c: f64, a2: f64| (c * c * (1.0 - a2) + a2).sqrt();
-            0.5 / (a[1] * root(a[0], a[2]) + a[0] * root(a[1], a[3]))
-        },
-    },
-];
 
 /// The values of the first times that a statement ran.
 fn values(lines: &[LineOfTrace], (file, line): (&str, u32), act: Act, name: &str) -> Vec<Vec<f64>> {
@@ -56,36 +16,37 @@ fn values(lines: &[LineOfTrace], (file, line): (&str, u32), act: Act, name: &str
     done.flat_map(|done| done.first.iter().filter_map(|once| Some(once.value?.numbers().collect()))).collect()
 }
 
-/// Compares all calls of the functions in a trace with the CPU. Returns how many there were of each.
-fn check(trace: &Trace, what: &str) -> [usize; 3] {
-    let fragment = trace.visible().unwrap_or_else(|| panic!("{what}: nothing is seen"));
-    assert!(trace.is_proven(fragment), "{what}: {}", trace.proof_text(fragment));
-    let lines = trace.lines(fragment);
-    FORMULAS.each_ref().map(|formula| {
-        let text = std::fs::read_to_string(format!("{}/shaders/{}", env!("CARGO_MANIFEST_DIR"), formula.file)).unwrap();
-        let (header, returns) = (line_of(&text, formula.header), line_of(&text, formula.returns));
-        let argument = |name: &&str| values(&lines, (formula.file, header), Act::Argument, name);
-        let arguments: Vec<Vec<Vec<f64>>> = formula.parameters.iter().map(argument).collect();
-        let results = values(&lines, (formula.file, returns), Act::Return, "");
-        assert!(
-            arguments.iter().all(|of| of.len() == results.len()),
-            "{what}: {}: {arguments:?} {results:?}",
-            formula.header
-        );
-        for (call, result) in results.iter().enumerate() {
-            let of_call: Vec<f64> = arguments.iter().map(|of| of[call][0]).collect();
-            let expected = (formula.cpu)(&of_call);
-            // A few steps of floats for each operation of the formula.
-            let error = (result[0] - expected).abs() / expected.abs().max(f64::from(f32::MIN_POSITIVE));
-            assert!(
-                error <= 16.0 * f64::from(f32::EPSILON),
-                "{what}: {}{of_call:?} = {}, not {expected}: {error:e}",
-                formula.header,
-                result[0]
-            );
+/// The values of a place of a formula.
+fn values_at(lines: &[LineOfTrace], formula: &Formula, text: &str, Place(part, name): &Place) -> Vec<Vec<f64>> {
+    let is_argument = part.is_empty();
+    let line = line_of(text, if is_argument { formula.header } else { part });
+    let act = match (is_argument, name.is_empty()) {
+        (true, _) => Act::Argument,
+        (false, true) => Act::Return,
+        (false, false) => Act::Store,
+    };
+    values(lines, (formula.file, line), act, name)
+}
+
+/// Compares all calls of a function in a trace with the CPU. Returns how many there were.
+fn check(lines: &[LineOfTrace], formula: &Formula, what: &str) -> usize {
+    let what = format!("{what}: {}", formula.header);
+    let text = std::fs::read_to_string(format!("{}/shaders/{}", env!("CARGO_MANIFEST_DIR"), formula.file)).unwrap();
+    let inputs: Vec<Vec<Vec<f64>>> =
+        formula.inputs.iter().map(|place| values_at(lines, formula, &text, place)).collect();
+    let results = values_at(lines, formula, &text, &formula.output);
+    assert!(inputs.iter().all(|of| of.len() == results.len()), "{what}: {inputs:?} {results:?}");
+    for (call, result) in results.iter().enumerate() {
+        let of_call: Vec<Vec<f64>> = inputs.iter().map(|of| of[call].clone()).collect();
+        let expected = (formula.cpu)(&of_call);
+        assert_eq!(result.len(), expected.len(), "{what}");
+        for (found, expected) in result.iter().zip(expected) {
+            let size = expected.abs().max(formula.floor).max(f64::from(f32::MIN_POSITIVE));
+            let steps = (found - expected).abs() / size / f64::from(f32::EPSILON);
+            assert!(steps <= formula.steps, "{what}{of_call:?} = {found}, not {expected}: {steps} steps");
         }
-        results.len()
-    })
+    }
+    results.len()
 }
 
 fn traced(headless: &mut Headless, mode: &Mode, at: (u32, u32), files: &[&str]) -> Trace {
@@ -111,27 +72,89 @@ fn covered(headless: &mut Headless, count: usize) -> Vec<(u32, u32)> {
     panic!("the model covers {} pixels of the {count}", found.len());
 }
 
-#[test]
-fn functions_of_the_brdf_are_those_of_the_cpu_at_24_pixels_of_four_models() {
-    let mut calls = [0; 3];
-    for name in ["shader-ball", "sphere-grid", "clearcoat", "many-lights"] {
-        let mut headless = renderer(model(name), settings(&["environment.name=none", "view.msaa=1"]), SIZE);
+/// Models, pixels of each, and settings with which these formulas are used.
+type Case<'a> = (&'a [&'a str], usize, &'a [&'a str], &'a [Formula]);
+
+/// Checks the formulas of a case in the stage that draws the pixels, or in another one. Each is called at every pixel at least once, on average.
+fn check_case((models, pixels, set, formulas): Case<'_>, stage: Option<&str>) {
+    let mut calls = vec![0; formulas.len()];
+    let mut files: Vec<&str> = formulas.iter().map(|formula| formula.file).collect();
+    files.dedup();
+    for name in models {
+        let assigned = [&["environment.name=none", "view.msaa=1"], set].concat();
+        let mut headless = renderer(model(name), settings(&assigned), SIZE);
         let mode = headless.shaders().modes.iter().find(|mode| mode.slug == "final").cloned().unwrap();
-        for at in covered(&mut headless, 6) {
-            let of_pixel = check(&traced(&mut headless, &mode, at, &FILES), &format!("{name} {at:?}"));
-            calls.iter_mut().zip(of_pixel).for_each(|(all, of)| *all += of);
+        let pixels = covered(&mut headless, pixels);
+        // A module with several files would take a software device long to compile.
+        for (file, at) in files.iter().flat_map(|file| pixels.iter().map(move |at| (*file, *at))) {
+            let what = format!("{name} {at:?} {set:?}");
+            let request = TraceRequest { at, mode: &mode, stage, invocation: None, files: &[file] };
+            let trace = headless.trace(&request).unwrap_or_else(|error| panic!("{what}: {error}"));
+            let fragment = trace.visible().unwrap_or_else(|| panic!("{what}: nothing is seen"));
+            assert!(trace.is_proven(fragment), "{what}: {}", trace.proof_text(fragment));
+            let lines = trace.lines(fragment);
+            let of_file = calls.iter_mut().zip(formulas).filter(|(_, formula)| formula.file == file);
+            of_file.for_each(|(all, formula)| *all += check(&lines, formula, &what));
         }
     }
-    assert!(calls.iter().all(|count| *count >= 24), "{calls:?}");
+    for (calls, formula) in calls.iter().zip(formulas) {
+        assert!(*calls >= pixels * models.len(), "{}: {calls} calls", formula.header);
+    }
+}
+
+const FOUR: [&str; 4] = ["shader-ball", "sphere-grid", "clearcoat", "many-lights"];
+
+#[test]
+fn functions_of_the_brdf_are_those_of_the_cpu_at_24_pixels_of_four_models() {
+    let formulas = [D_GGX, ROOT_GGX, V_HEIGHT_CORRELATED, F_SCHLICK, F_LAMBERT, F_KULLA_CONTY];
+    check_case((&FOUR, 6, &[], &formulas), None);
+}
+
+#[test]
+fn the_tone_map_is_that_of_the_cpu_at_24_pixels_of_four_models() {
+    check_case((&FOUR, 6, &["view.tonemap=aces"], &[TONEMAP]), Some("tonemap.frag"));
+    let curves = ["agx", "neutral", "aces-hill", "reinhard", "reinhard-luminance", "uncharted2", "none"];
+    for curve in curves.into_iter().take(if is_long() { 7 } else { 2 }) {
+        let curve = format!("view.tonemap={curve}");
+        check_case((&FOUR[..1], 2, &[&curve], &[TONEMAP]), Some("tonemap.frag"));
+    }
+}
+
+/// Lobes above the base, and the sum of a surface without a coat.
+#[test]
+fn layers_of_the_brdf_are_those_of_the_cpu() {
+    check_case((&["clearcoat"], 6, &[], &[CLEARCOAT]), None);
+    check_case((&["sphere-grid"], 6, &[], &[VALUE]), None);
+    check_case((&["sheen"], 6, &[], &[D_CHARLIE, V_CHARLIE]), None);
+    check_case((&["iridescence"], 6, &[], &[F_FILM]), None);
+    check_case((&["anisotropy"], 6, &[], &[D_GGX_ANISOTROPIC]), None);
+}
+
+/// The other models that the tree offers: one of each kind, and all with SPECULA_LONG.
+#[test]
+fn choices_of_the_brdf_are_those_of_the_cpu() {
+    let cases: [(&[&str], &[Formula]); 4] = [
+        (
+            &["NDF=Beckmann", "MASKING_SHADOWING=Separable", "DIFFUSE=Burley", "FRESNEL_DIELECTRIC=Exact"],
+            &[D_BECKMANN, V_SEPARABLE, F_BURLEY, F_DIELECTRIC],
+        ),
+        (
+            &["MASKING_SHADOWING=Schlick", "DIFFUSE=OrenNayar", "FRESNEL_METAL=Conductor"],
+            &[V_SCHLICK, F_OREN_NAYAR, F_CONDUCTOR],
+        ),
+        (&["DIFFUSE=RenormalizedBurley", "FRESNEL_METAL=F82"], &[F_RENORMALIZED_BURLEY, F_82]),
+        (&["DIFFUSE=CallOfDuty"], &[F_CALL_OF_DUTY]),
+    ];
+    for (set, formulas) in cases.into_iter().take(if is_long() { 4 } else { 1 }) {
+        check_case((&["sphere-grid"], 6, set, formulas), None);
+    }
 }
 
 /// The value of a trace is that of the inspector, bit by bit: in a few modes, and in all of them with SPECULA_LONG.
 #[test]
 fn a_trace_has_the_value_of_the_inspector_in_every_mode() {
     let few = ["final", "d", "f", "v", "roughness", "shading-normal", "direct-specular"];
-    for name in
-        ["shader-ball", "sphere-grid", "clearcoat", "many-lights"].into_iter().take(if is_long() { 4 } else { 1 })
-    {
+    for name in FOUR.into_iter().take(if is_long() { 4 } else { 1 }) {
         let mut headless = renderer(model(name), settings(&["environment.name=none", "view.msaa=1"]), SIZE);
         let at = covered(&mut headless, 1)[0];
         let modes: Vec<Mode> = headless.shaders().modes.clone();
