@@ -58,6 +58,7 @@ def joins():
     command = [os.environ["SPECULA"], "serve", "sphere-grid", "--env", "none", "--size", "64x36", "--socket", str(socket)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
         assert '"listening"' in server.stdout.readline()
+        files = open_files()
         for _ in range(2):
             with specula.Session(window=str(socket)) as session:
                 before = session.render()
@@ -66,6 +67,7 @@ def joins():
                 assert (session.render() != before).any()
                 folder = session._scratch._folder
             assert not folder.exists() and server.poll() is None
+            assert open_files() == files and threading.active_count() == 1, (files, open_files(), threading.enumerate())
         server.stdin.close()
         assert server.wait(PATIENCE_S) == 0
     try:
