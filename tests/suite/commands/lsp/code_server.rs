@@ -6,12 +6,13 @@ use std::io::{BufRead as _, BufReader};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
 use super::hints::{OPTIONS, PIN};
 use crate::support::browser::Browser;
-use crate::support::process::{run, send_signal};
+use crate::support::process::{PATIENCE, run, send_signal};
 use crate::support::{Tree, line_of};
 
 const CONTROL: &str = "\u{e009}";
@@ -181,6 +182,12 @@ fn vs_code_shows_errors_values_completion_and_a_program_that_does_not_start() {
     let server = Server::start(&installed, &tree);
     let editor = Editor::open(&server);
     editor.line("float d_ggx(", "true");
+    // The extension starts the server for the open file.
+    let deadline = Instant::now() + PATIENCE;
+    while servers(&tree).is_empty() {
+        assert!(Instant::now() < deadline, "no language server was started");
+        std::thread::sleep(Duration::from_millis(20));
+    }
 
     // Values at a pixel are those of `specula trace`.
     editor.command("Specula: Show Values at a Pixel");
