@@ -59,7 +59,7 @@ pub(super) fn plan(
     let is_same = |before: &BoundFrame| Arc::ptr_eq(&before.state, &frame.state) || before.state.is_same(&frame.state);
     let change = match before {
         _ if has_new => Change::New,
-        Some(before) if is_same(before) => Change::Nothing,
+        Some(before) if is_same(before) && before.is_drawn_alike(frame) => Change::Nothing,
         _ => Change::Moved,
     };
     let view = &screen.view;

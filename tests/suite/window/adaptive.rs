@@ -120,9 +120,10 @@ fn a_slider_that_bakes_light_has_previews() {
     viewer.shows(&first, "the parameter is 1");
 
     viewer.running.done(json!({"command": "set", "values": {"view.adaptive": "on"}}));
-    viewer.move_mouse(on_rail(slider, 0.5));
+    // A press is one step, once the slider knows of the mouse.
+    viewer.move_mouse(on_rail(slider, 0.7));
+    viewer.rests();
     viewer.display.xdotool(&["mousedown", "1"]);
-    viewer.move_mouse(on_rail(slider, 0.9));
     let mut shown = 0;
     viewer.running.until("two previews", |event| {
         shown += event["shown"].as_u64().filter(|_| event["event"] == "previews").unwrap_or(0);
