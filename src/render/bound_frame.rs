@@ -82,10 +82,15 @@ impl BoundFrame {
 
     /// Whether both have the same pipelines, light and tables: they differ in camera, lights, parameters, factors of materials, pose or time.
     pub fn is_drawn_alike(&self, other: &Self) -> bool {
-        self.pipelines.is_same(&other.pipelines)
+        self.has_same_pipelines(other)
             && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
+    }
+
+    /// Whether both have the same pipelines.
+    pub fn has_same_pipelines(&self, other: &Self) -> bool {
+        self.pipelines.is_same(&other.pipelines)
     }
 
     /// Whether a stage reads the clock, or a pass its previous output.

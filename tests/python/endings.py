@@ -5,10 +5,12 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import specula
+from specula._channel import _channels
 from specula._scratch import Scratch
 
 PATIENCE_S = 60
@@ -56,6 +58,7 @@ def joins():
     command = [os.environ["SPECULA"], "serve", "sphere-grid", "--env", "none", "--size", "64x36", "--socket", str(socket)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as server:
         assert '"listening"' in server.stdout.readline()
+        files = open_files()
         for _ in range(2):
             with specula.Session(window=str(socket)) as session:
                 before = session.render()
@@ -64,6 +67,7 @@ def joins():
                 assert (session.render() != before).any()
                 folder = session._scratch._folder
             assert not folder.exists() and server.poll() is None
+            assert open_files() == files and threading.active_count() == 1, (files, open_files(), threading.enumerate())
         server.stdin.close()
         assert server.wait(PATIENCE_S) == 0
     try:
@@ -74,8 +78,76 @@ def joins():
         raise AssertionError("a window that is closed was joined")
 
 
+def open_files():
+    return len(os.listdir("/proc/self/fd"))
+
+
+def gives_back_files_and_threads():
+    """Starts that fail, and sessions that end."""
+    Path("no-program").write_text("x")
+    os.chmod("no-program", 0o755)
+    for number in range(3):
+        if number == 1:
+            before = open_files()
+        for options, part in (({"program": "./no-program"}, "could not be started"), ({"options": ["--ev", "x"]}, "--ev")):
+            try:
+                specula.Session("sphere-grid", **options)
+            except specula.ProcessError as error:
+                assert part in str(error), error
+            else:
+                raise AssertionError(f"a session with {options}")
+        with specula.Session("sphere-grid", env="none", size=(32, 18)) as session:
+            assert session.render().shape == session.diff(session.render(), session.render()).map.shape
+    assert open_files() == before, f"{before} open files became {open_files()}"
+    assert [thread.name for thread in threading.enumerate()] == ["MainThread"]
+
+
+def ends_with_its_program():
+    """A program that is killed takes the process that draws with it."""
+    session = specula.Session("sphere-grid", env="none", size=(64, 36))
+    session.render()
+    processes = [session._channel.pid, *children(session._channel.pid)]
+    assert len(processes) == 2, processes
+    os.kill(processes[0], signal.SIGKILL)
+    wait_for_end("the program was killed", processes)
+    session.close()
+
+
+def is_interrupted():
+    """Ctrl+C while a session starts, and while it ends."""
+    for moment in ("start", "end"):
+        seen = set()
+
+        def interrupt():
+            end = time.monotonic() + PATIENCE_S
+            while time.monotonic() < end:
+                seen.update(process for process in children(os.getpid()) if is_there(process))
+                if seen and (moment == "start" or any(channel._is_closed for channel in list(_channels))):
+                    break
+            os.kill(os.getpid(), signal.SIGINT)
+
+        before, thread = open_files(), threading.Thread(target=interrupt)
+        gc.collect()
+        thread.start()
+        try:
+            specula.Session("sphere-grid", env="none", size=(64, 36)).close()
+            thread.join()
+        except KeyboardInterrupt:
+            thread.join()
+        else:
+            raise AssertionError(f"{moment}: the call was not interrupted")
+        wait_for_end(f"Ctrl+C at the {moment}", seen)
+        end = time.monotonic() + PATIENCE_S
+        while open_files() > before or threading.active_count() > 1:
+            assert time.monotonic() < end, f"{moment}: {open_files()} open files of {before}, {threading.enumerate()}"
+            time.sleep(0.01)
+
+
 def main():
     joins()
+    gives_back_files_and_threads()
+    ends_with_its_program()
+    is_interrupted()
     # Wrong options: what the program says.
     try:
         specula.Session("sphere-grid", options=["--tonemap", "nonsense"])
@@ -103,7 +175,8 @@ def main():
         processes = [session._channel.pid, *children(session._channel.pid)]
         session.turntable(".gif", frames=2, size=(16, 9))
         folder = session._scratch._folder
-        if os.fork() == 0:
+        forked = os.fork()
+        if forked == 0:
             # The other process has no part in it, and does not keep it alive.
             try:
                 session.render()
@@ -111,7 +184,7 @@ def main():
                 session.close()
                 os._exit(0)
             os._exit(1)
-        assert os.wait()[1] == 0 and folder.exists()
+        assert os.waitpid(forked, 0)[1] == 0 and folder.exists()
         assert session.render().shape == (36, 64, 4)
     assert not any(is_there(process) for process in processes) and not folder.exists()
 
@@ -143,4 +216,5 @@ def leads_to(path, folder):
         return False
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,8 +1,22 @@
 """A session with a window, on the display of the test: it draws what a session without one draws, but for the dither of a window."""
 
+import subprocess
+import sys
+
 import numpy
+from endings import children, wait_for_end
 
 import specula
+
+# Python ends as a notebook's kernel does that is started again.
+KILLED = """
+import os, signal
+import specula
+session = specula.Session("sphere-grid", env="none", window=True)
+print(session._channel.pid, flush=True)
+input()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
 
 
 def differ(a, b):
@@ -28,3 +42,10 @@ with specula.Session("sphere-grid", env="none", window=True) as session:
         assert "view.ev" in str(error), error
     else:
         raise AssertionError("a setting that does not exist is set")
+
+with subprocess.Popen([sys.executable, "-c", KILLED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as killed:
+    process = int(killed.stdout.readline())
+    processes = [process, *children(process)]
+    assert len(processes) == 2, processes
+    killed.stdin.close()
+    wait_for_end("Python was killed", processes)

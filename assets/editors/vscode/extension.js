@@ -5,23 +5,54 @@ const vscode = require('vscode');
 const { LanguageClient, TransportKind } = require('vscode-languageclient/node');
 
 let client;
+// Starts and stops follow each other: a client that is starting cannot be stopped.
+let last = Promise.resolve();
 
-function start() {
+async function start() {
     const settings = vscode.workspace.getConfiguration('specula');
     const run = { command: settings.get('path'), args: ['lsp', ...settings.get('arguments')], transport: TransportKind.stdio };
     client = new LanguageClient('specula', 'Specula', { run, debug: run }, { documentSelector: [{ language: 'glsl' }] });
-    return client.start();
+    try {
+        await client.start();
+    } catch (error) {
+        offerSettings(`\`${[run.command, ...run.args].join(' ')}\` does not start: ${reason(error)}`);
+    }
 }
 
-async function restart() {
-    if (client) await client.stop().catch(() => {});
-    await start();
+async function stop() {
+    const stopped = client;
+    client = undefined;
+    // A client that has not started cannot be stopped, and leaves no process.
+    await stopped?.stop().catch(() => {});
+}
+
+function restart() {
+    last = last.then(stop).then(start);
+    return last;
+}
+
+// The text of an error; the client rejects with strings, too.
+function reason(error) {
+    return error?.message ?? String(error);
+}
+
+async function offerSettings(message) {
+    const [settings, output] = ['Open Settings', 'Show Output'];
+    const chosen = await vscode.window.showErrorMessage(`Specula: ${message}`, settings, output);
+    if (chosen === settings) vscode.commands.executeCommand('workbench.action.openSettings', 'specula.');
+    if (chosen === output) client?.outputChannel.show();
 }
 
 // The pixel of two numbers, `640,360`.
 function pixel(text) {
     const found = /^\s*(\d+)\s*[,\s]\s*(\d+)\s*$/.exec(text);
     return found && [Number(found[1]), Number(found[2])];
+}
+
+// The file in the editor, if it is one of shaders.
+function activeUri() {
+    const document = vscode.window.activeTextEditor?.document;
+    return document?.languageId === 'glsl' ? [client.code2ProtocolConverter.asUri(document.uri)] : [];
 }
 
 async function askPixel() {
@@ -31,51 +62,36 @@ async function askPixel() {
         validateInput: (text) => (pixel(text) ? undefined : 'Two whole numbers, such as 640,360'),
     });
     if (value === undefined) return;
-    const editor = vscode.window.activeTextEditor;
-    const uri = editor ? client.code2ProtocolConverter.asUri(editor.document.uri) : undefined;
     const tracing = { location: vscode.ProgressLocation.Window, title: 'Specula traces the pixel' };
     await vscode.window.withProgress(tracing, async () => {
-        try {
-            const result = await execute('specula.pinPixel', [...pixel(value), ...(uri ? [uri] : [])]);
-            vscode.window.setStatusBarMessage(`Specula: pixel ${result.pixel.join(',')}, ${result.proof}`, 10000);
-        } catch (error) {
-            vscode.window.showErrorMessage(`Specula: ${error.message}`);
-        }
+        const result = await execute('specula.pinPixel', [...pixel(value), ...activeUri()]);
+        vscode.window.setStatusBarMessage(`Specula: pixel ${result.pixel.join(',')}, ${result.proof}`, 10000);
     });
 }
 
-async function showWindow() {
-    const editor = vscode.window.activeTextEditor;
-    const uri = editor ? client.code2ProtocolConverter.asUri(editor.document.uri) : undefined;
-    try {
-        await execute('specula.openWindow', uri ? [uri] : []);
-    } catch (error) {
-        vscode.window.showErrorMessage(`Specula: ${error.message}`);
-    }
-}
-
-function execute(command, args) {
+async function execute(command, args) {
+    if (!client?.isRunning()) throw new Error('the language server is not running');
     return client.sendRequest('workspace/executeCommand', { command, arguments: args });
 }
 
-async function activate(context) {
-    const register = (name, run) => context.subscriptions.push(vscode.commands.registerCommand(name, run));
+function activate(context) {
+    const register = (name, run) => {
+        const shown = () => run().catch((error) => vscode.window.showErrorMessage(`Specula: ${reason(error)}`));
+        context.subscriptions.push(vscode.commands.registerCommand(name, shown));
+    };
     register('specula.askPixel', askPixel);
     register('specula.hideValues', () => execute('specula.unpinPixel', []));
-    register('specula.showWindow', showWindow);
+    register('specula.showWindow', () => execute('specula.openWindow', activeUri()));
     register('specula.restart', restart);
     context.subscriptions.push(vscode.workspace.onDidChangeConfiguration((change) => {
         if (change.affectsConfiguration('specula')) restart();
     }));
-    try {
-        await start();
-    } catch (error) {
-        vscode.window.showErrorMessage(`Specula does not start: ${error.message}. Set specula.path to the program.`);
-    }
+    return restart();
 }
 
 function deactivate() {
-    return client ? client.stop() : undefined;
+    last = last.then(stop);
+    return last;
 }
 
 module.exports = { activate, deactivate, pixel };

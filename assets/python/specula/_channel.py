@@ -83,9 +83,15 @@ class Channel:
             raise ProcessError(f"{arguments[0]} could not be started: {error}") from error
         channel = cls(process, None)
         assert process.stdin and process.stdout and process.stderr
-        channel._begin(channel._write, process.stdin)
-        channel._begin(channel._read_stderr, process.stderr)
-        channel._begin(channel._read, process.stdout)
+        try:
+            channel._begin(channel._write, process.stdin)
+            channel._begin(channel._read_stderr, process.stderr)
+            channel._begin(channel._read, process.stdout)
+        except BaseException:
+            # Ctrl+C, or a limit of threads. Without its threads, the program would not learn of the end.
+            process.kill()
+            channel.close()
+            raise
         return channel
 
     @classmethod
@@ -104,8 +110,8 @@ class Channel:
 
     def _begin(self, work: Callable[[_File], None], file: _File) -> None:
         thread = threading.Thread(target=work, args=(file,), name="specula", daemon=True)
-        self._threads.append(thread)
         thread.start()
+        self._threads.append(thread)
 
     @property
     def stderr(self) -> str:
@@ -261,9 +267,10 @@ class Channel:
                 if self._process.poll() is None:
                     self._process.kill()
                 self._process.wait()
-                for file in (self._process.stdout, self._process.stderr):
+                for file in (self._process.stdin, self._process.stdout, self._process.stderr):
                     if file:
-                        file.close()
+                        with contextlib.suppress(OSError):
+                            file.close()
         elif self._link is not None:
             self._link.close()
         for thread in self._threads:

@@ -83,7 +83,11 @@ class Session:
                 arguments += ["--size", f"{width}x{height}"]
             arguments += options
             self._memory = Memory()
-            self._channel = Channel.start(arguments, self._memory.files)
+            try:
+                self._channel = Channel.start(arguments, self._memory.files)
+            except BaseException:
+                self._memory.close()
+                raise
         self._finalizer = weakref.finalize(self, _end, self._channel, self._scratch, self._memory)
         _ROOTS.add(self._scratch)
         try:

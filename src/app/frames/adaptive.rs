@@ -42,9 +42,12 @@ pub(super) fn plan(
     is_held: bool,
 ) -> Result<Plan, GpuError> {
     let Some(frame) = frame else { return Ok(Plan::Whole) };
-    let is_drag = is_held && state.edits.draft.is_some();
-    let has_new = before.is_none_or(|before| before.state.size != frame.state.size)
-        || before.is_some_and(|before| !before.is_drawn_alike(frame) && !is_drag);
+    // While a value is dragged, new light of the same pipelines and the pipelines of a draft are steps of a movement.
+    let is_alike = |before: &BoundFrame| match is_held {
+        true => state.edits.draft.is_some() || before.has_same_pipelines(frame),
+        false => before.is_drawn_alike(frame),
+    };
+    let has_new = before.is_none_or(|before| before.state.size != frame.state.size || !is_alike(before));
     let is_alone = state.has_window && !state.compare.is_on() && !screen.has_reference() && !state.grid.is_on();
     let accumulates = frame.state.pipelines.accumulates;
     let is_single = frame.stands_alone() && !(accumulates && frame.is_animated());
@@ -56,7 +59,7 @@ pub(super) fn plan(
     let is_same = |before: &BoundFrame| Arc::ptr_eq(&before.state, &frame.state) || before.state.is_same(&frame.state);
     let change = match before {
         _ if has_new => Change::New,
-        Some(before) if is_same(before) => Change::Nothing,
+        Some(before) if is_same(before) && before.is_drawn_alike(frame) => Change::Nothing,
         _ => Change::Moved,
     };
     let view = &screen.view;

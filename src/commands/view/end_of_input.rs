@@ -2,6 +2,7 @@
 
 use specula::control::{Client, Control};
 
+use super::output::nobody_reads;
 use super::supervisor;
 
 /// The last line.
@@ -32,20 +33,4 @@ fn parent() -> u32 {
 #[cfg(not(unix))]
 fn parent() -> u32 {
     0
-}
-
-/// Whether standard output is a pipe that nobody reads any more.
-#[cfg(target_os = "linux")]
-fn nobody_reads() -> bool {
-    use rustix::event::{PollFd, PollFlags, Timespec, poll};
-    let stdout = std::io::stdout();
-    let mut watched = [PollFd::new(&stdout, PollFlags::empty())];
-    let now = Timespec { tv_sec: 0, tv_nsec: 0 };
-    poll(&mut watched, Some(&now)).is_ok_and(|count| count > 0)
-        && watched[0].revents().intersects(PollFlags::ERR | PollFlags::HUP)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn nobody_reads() -> bool {
-    false
 }

@@ -16,6 +16,7 @@ use specula::message;
 use specula::process_end::end_process;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
 
+use super::output::wait_for_end_of_program;
 use crate::commands::Failure;
 
 /// Longer lines are forwarded in parts. The child refuses them anyway.
@@ -212,7 +213,7 @@ impl Input {
                 input.pass(&line);
                 line.clear();
             }
-            if forwards == Forward::All {
+            if forwards == Forward::All || wait_for_end_of_program() {
                 input.end();
             }
         };

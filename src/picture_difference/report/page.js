@@ -4,6 +4,8 @@ const at = id => document.getElementById(id);
 const MODES = [
   ["wipe", "Wipe"], ["a", "A"], ["b", "B"], ["difference", "Difference"], ["map", ""], ["channel", "Largest channel"],
 ];
+// Views that only pictures of the same size have.
+const MAPS = ["map", "channel"];
 // Zoom is in pixels of the screen for each of the picture; x and y are where its upper left corner is on the stage.
 const state = { pair: 0, mode: "wipe", wipe: 50, gain: 0, zoom: 1, x: 0, y: 0 };
 
@@ -29,6 +31,8 @@ function list() {
 function choose(index) {
   state.pair = Math.max(0, Math.min(report.pairs.length - 1, index));
   const shown = pair();
+  if (!shown.map && MAPS.includes(state.mode)) state.mode = "wipe";
+  at("pixel").textContent = "";
   [...at("pairs").children].forEach((button, other) => button.setAttribute("aria-current", other === state.pair));
   at("pairs").children[state.pair].scrollIntoView({ block: "nearest" });
   at("name").textContent = shown.name;
@@ -100,9 +104,9 @@ function update() {
   at("wipe-label").hidden = mode !== "wipe";
   at("gain-label").hidden = !gains;
   for (const button of at("modes").children) button.setAttribute("aria-pressed", button.dataset.mode === mode);
-  const named = at("modes").querySelector("[data-mode=map]");
+  const [named, channel] = MAPS.map(mode => at("modes").querySelector(`[data-mode=${mode}]`));
   named.textContent = `${shown.measure === "RMSE" ? "Difference of each channel" : "FLIP"} (5)`;
-  named.disabled = !shown.map;
+  named.disabled = channel.disabled = at("to-worst").disabled = !shown.map;
 }
 
 function fit() {
@@ -126,10 +130,11 @@ function toWorst() {
   const shown = pair();
   if (shown.why) return;
   const [x, y] = shown.largest_at;
+  // Before the place: a long text makes the stage smaller.
+  at("pixel").textContent = `${x}, ${y}: A ${shown.worst[0].map(value => +value.toPrecision(4)).join(" ")} · B ${shown.worst[1].map(value => +value.toPrecision(4)).join(" ")}`;
   state.zoom = 24;
   state.x = at("stage").clientWidth / 2 - (x + 0.5) * state.zoom;
   state.y = at("stage").clientHeight / 2 - (y + 0.5) * state.zoom;
-  at("pixel").textContent = `${x}, ${y}: A ${shown.worst[0].map(value => +value.toPrecision(4)).join(" ")} · B ${shown.worst[1].map(value => +value.toPrecision(4)).join(" ")}`;
   update();
 }
 
@@ -152,7 +157,7 @@ MODES.forEach(([mode, name], index) => {
   button.dataset.mode = mode;
   button.addEventListener("click", () => set({ mode }));
   at("modes").append(button);
-  KEYS[index + 1] = () => { if (mode !== "map" || pair().map) set({ mode }); };
+  KEYS[index + 1] = () => button.click();
 });
 
 document.addEventListener("keydown", event => {

@@ -2,6 +2,7 @@
 
 mod actions;
 mod client;
+mod code_server;
 mod corners;
 mod diagnostics;
 mod hints;

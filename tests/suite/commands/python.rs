@@ -28,13 +28,13 @@ pub(super) fn interpreter() -> &'static Path {
 /// Runs a script of `tests/python` in `folder`. It finds the package of the repository and the program of this build.
 #[track_caller]
 pub(super) fn run_script(script: &str, folder: &Path) -> Finished {
-    run_script_with(Command::new(interpreter()), script, folder)
+    run_script_with(Command::new(interpreter()), (script, &[]), folder)
 }
 
-/// [`run_script`] by a command that starts the interpreter.
+/// [`run_script`] by a command that starts the interpreter, with arguments.
 #[track_caller]
-fn run_script_with(mut command: Command, script: &str, folder: &Path) -> Finished {
-    command.arg(in_repository("tests/python").join(script)).current_dir(folder);
+pub(super) fn run_script_with(mut command: Command, (script, args): (&str, &[&str]), folder: &Path) -> Finished {
+    command.arg(in_repository("tests/python").join(script)).args(args).current_dir(folder);
     command.env("PYTHONPATH", in_repository("assets/python")).env("PYTHONDONTWRITEBYTECODE", "1");
     command.env("SPECULA", env!("CARGO_BIN_EXE_specula")).env("REPOSITORY", env!("CARGO_MANIFEST_DIR"));
     let ended = finish(&mut command);
@@ -62,7 +62,7 @@ fn a_session_with_a_window_draws_what_one_without_draws() {
         fs::create_dir(folder.path().join(inner)).unwrap();
         command.env(variable, folder.path().join(inner));
     }
-    run_script_with(command, "window.py", folder.path());
+    run_script_with(command, ("window.py", &[]), folder.path());
     let left: Vec<_> = fs::read_dir(folder.path().join("runtime")).unwrap().collect();
     assert!(left.is_empty(), "{left:?}");
 }

@@ -1,8 +1,9 @@
 //! Pages of HTML about results, in a browser.
 
 use std::fs;
+use std::path::Path;
 
-use image::{Rgba, RgbaImage};
+use image::{Rgb, RgbImage, Rgba, RgbaImage};
 use serde_json::json;
 
 use crate::support::browser::Browser;
@@ -41,9 +42,166 @@ fn the_border_between_two_pictures_moves_with_the_mouse() {
     browser.drag(at(0.5), at(0.25));
     let picture = browser.picture();
     assert_eq!([0.1, 0.4, 0.6, 0.9].map(|part| color(&picture, part)), [blue, red, red, red]);
-    // The view of the largest channel is that of the difference: both channels differ by all there is.
+    assert!(is_self_contained(&browser));
+}
+
+/// Two pictures of 64x40 pixels, and the page that compares them: they are alike in the left half, differ a little in the right one, and most
+/// at [`WORST`].
+fn pair_with_a_worst_pixel(here: &Path) -> Browser {
+    let colors = |left: [u8; 3], right: [u8; 3], worst: [u8; 3]| {
+        RgbImage::from_fn(64, 40, |x, y| {
+            Rgb(if [x, y] == WORST {
+                worst
+            } else if x < 32 {
+                left
+            } else {
+                right
+            })
+        })
+    };
+    colors(LEFT, [90, 60, 30], [20, 40, 60]).save(here.join("a.png")).unwrap();
+    colors(LEFT, [80, 64, 30], [30, 240, 55]).save(here.join("b.png")).unwrap();
+    run(here, &["diff", "a.png", "b.png", "--out", "map.png", "--report", "page.html"]).expect(1, &[]);
+    Browser::open(&here.join("page.html"), (1200, 900))
+}
+
+const WORST: [u32; 2] = [50, 10];
+const LEFT: [u8; 3] = [10, 100, 200];
+
+/// The color of a pixel of the pictures on the screen.
+fn color_of(browser: &Browser, screen: &RgbaImage, [x, y]: [u32; 2]) -> [u8; 3] {
+    let [left, top, width, height] = browser.area("#view");
+    let at =
+        |pixel: u32, start: f64, length: f64, pixels: f64| (start + (f64::from(pixel) + 0.5) * length / pixels) as u32;
+    let [r, g, b, _] = screen.get_pixel(at(x, left, width, 64.0), at(y, top, height, 40.0)).0;
+    [r, g, b]
+}
+
+#[test]
+fn each_view_of_a_pair_shows_its_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    let browser = pair_with_a_worst_pixel(folder.path());
+    let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
+    let (a, b, map) = (picture("a.png"), picture("b.png"), picture("map.png"));
+    let places = [[10, 20], [40, 20], [60, 35], WORST];
+    let shown = || {
+        let screen = browser.picture();
+        places.map(|at| color_of(&browser, &screen, at))
+    };
+    let of = |picture: &RgbImage| places.map(|[x, y]| picture.get_pixel(x, y).0);
+    let difference = |at: usize| [0, 1, 2].map(|channel| of(&a)[at][channel].abs_diff(of(&b)[at][channel]));
+    let differences = [0, 1, 2, 3].map(difference);
+    let [left, top, width, height] = browser.area("#modes button[data-mode=a]");
+    browser.click([left + width / 2.0, top + height / 2.0], None);
+    assert_eq!(shown(), of(&a), "A");
+    browser.press(" ");
+    assert_eq!(shown(), of(&a), "the space bar presses the button that has the focus");
+    browser.run("document.activeElement.blur();");
+    for expected in [&b, &a, &b] {
+        browser.press(" ");
+        assert_eq!(shown(), of(expected), "flip");
+    }
+    for (key, expected) in [("2", of(&a)), ("3", of(&b)), ("4", differences), ("5", of(&map))] {
+        browser.press(key);
+        assert_eq!(shown(), expected, "view {key}");
+    }
     browser.press("6");
-    assert_eq!(color(&browser.picture(), 0.5), [255; 4]);
+    let largest = differences.map(|channels| [*channels.iter().max().unwrap(); 3]);
+    assert_eq!(shown(), largest, "the largest channel");
+    assert_eq!(largest, [[0; 3], [10; 3], [10; 3], [200; 3]]);
+    // The gain brightens both views of differences, and no other.
+    let [left, top, width, height] = browser.area("#gain");
+    browser.click([left + width / 4.0, top + height / 2.0], None);
+    assert_eq!(browser.run("return document.querySelector('#gain-text').textContent;"), json!("×4"));
+    let brighter = |colors: [[u8; 3]; 4]| colors.map(|color| color.map(|value| value.saturating_mul(4)));
+    assert_eq!(shown(), brighter(largest), "gain");
+    browser.press("4");
+    assert_eq!(shown(), brighter(differences), "gain");
+    browser.press("5");
+    assert_eq!(shown(), of(&map), "FLIP has no gain");
+    browser.press("1");
+    assert_eq!(shown(), [LEFT, of(&b)[1], of(&b)[2], of(&b)[3]], "wipe");
+    assert!(is_self_contained(&browser));
+}
+
+#[test]
+fn the_worst_pixel_is_found_and_framed() {
+    let folder = tempfile::tempdir().unwrap();
+    let browser = pair_with_a_worst_pixel(folder.path());
+    let text = || browser.run("return document.querySelector('#pixel').textContent;");
+    let before = browser.area("#view");
+    browser.press("z");
+    let [left, top, width, height] = browser.area("#stage");
+    let frame = browser.area("#worst");
+    assert_eq!([frame[2], frame[3]], [24.0; 2], "a pixel is 24 of the screen wide");
+    let (center, middle) = (left + width / 2.0, top + height / 2.0);
+    let is_centered = (frame[0] + 12.0 - center).abs() <= 1.5 && (frame[1] + 12.0 - middle).abs() <= 1.5;
+    assert!(is_centered, "{frame:?} on a stage around {center}, {middle}");
+    // The values of both, of 0 to 1, as in the files.
+    let values = |color: [u8; 3]| color.map(|value| f64::from(value) / 255.0);
+    let told = text().as_str().unwrap().to_owned();
+    let (place, both) = told.split_once(": A ").unwrap();
+    assert_eq!(place, format!("{}, {}", WORST[0], WORST[1]));
+    let (of_a, of_b) = both.split_once(" · B ").unwrap();
+    for (told, expected) in [(of_a, [20, 40, 60]), (of_b, [30, 240, 55])] {
+        let told: Vec<f64> = told.split(' ').map(|value| value.parse().unwrap()).collect();
+        let is_near = |(told, expected): (&f64, f64)| (told - expected).abs() < 1e-4;
+        assert!(told.len() == 4 && told.iter().zip(values(expected)).all(is_near) && told[3] == 1.0, "{told:?}");
+    }
+    for (key, worst, beside) in [("2", [20, 40, 60], [90, 60, 30]), ("3", [30, 240, 55], [80, 64, 30])] {
+        browser.press(key);
+        let screen = browser.picture();
+        assert_eq!(browser.area("#worst"), frame, "another view moves the pictures");
+        let [x, y] = WORST;
+        assert_eq!(color_of(&browser, &screen, WORST), worst);
+        // Each pixel is sharp up to its frame.
+        let corner = screen.get_pixel(frame[0] as u32 + 2, frame[1] as u32 + 2).0;
+        assert_eq!(corner[..3], worst);
+        for beside_it in [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]] {
+            assert_eq!(color_of(&browser, &screen, beside_it), beside);
+        }
+        let edge = screen.get_pixel(frame[0] as u32 - 1, middle as u32).0;
+        assert_eq!(edge, [255, 0, 255, 255], "its frame");
+    }
+    browser.press("0");
+    let after = browser.area("#view");
+    let is_whole = after[0] >= left && after[1] >= top && after[2] <= width && after[3] <= height;
+    assert!(is_whole && after[2] > before[2] * 0.8, "{after:?}, and {before:?} before");
+    assert!(is_self_contained(&browser));
+}
+
+/// Where pictures of different sizes cannot be compared, views of their differences are not offered, and nothing of the pair before stays.
+#[test]
+fn a_pair_without_a_comparison_offers_no_maps() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let save = |name: &str, size: u32, color: [u8; 3]| {
+        fs::create_dir_all(here.join(name).parent().unwrap()).unwrap();
+        RgbImage::from_pixel(size, 40, Rgb(color)).save(here.join(name)).unwrap();
+    };
+    save("a/one.png", 64, [0, 0, 255]);
+    save("b/one.png", 64, [255, 0, 0]);
+    save("a/two.png", 64, [0, 0, 255]);
+    save("b/two.png", 32, [255, 0, 0]);
+    run(here, &["diff", "a", "b", "--report", "page.html"]).expect(1, &[]);
+    let browser = Browser::open(&here.join("page.html"), (1200, 900));
+    let state = || {
+        browser.run(
+            "const pressed = document.querySelector('#modes [aria-pressed=true]'); \
+            const disabled = [...document.querySelectorAll('#modes button, #to-worst')].filter(button => button.disabled); \
+            return [document.querySelector('#name').textContent, pressed.dataset.mode, disabled.length, \
+                document.querySelector('#pixel').textContent !== ''];",
+        )
+    };
+    assert_eq!(state(), json!(["two.png", "wipe", 3, false]));
+    browser.press("6");
+    assert_eq!(state(), json!(["two.png", "wipe", 3, false]));
+    browser.press("\u{e015}"); // down
+    browser.press("z");
+    browser.press("6");
+    assert_eq!(state(), json!(["one.png", "channel", 0, true]));
+    browser.press("\u{e013}"); // up
+    assert_eq!(state(), json!(["two.png", "wipe", 3, false]));
     assert!(is_self_contained(&browser));
 }
 

@@ -4,6 +4,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::time::Instant;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -12,6 +13,19 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use super::process::PATIENCE;
+
+/// No window, and no connection but to the page.
+const OPTIONS: [&str; 9] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--force-device-scale-factor=1",
+];
 
 /// Chromium with a page. Dropping it ends the browser.
 pub struct Browser {
@@ -24,7 +38,12 @@ pub struct Browser {
 
 impl Browser {
     /// Starts the browser with a file.
-    pub fn open(page: &Path, (width, height): (u32, u32)) -> Self {
+    pub fn open(page: &Path, size: (u32, u32)) -> Self {
+        Self::open_url(&format!("file://{}", page.display()), size)
+    }
+
+    /// Starts the browser with a page.
+    pub fn open_url(url: &str, (width, height): (u32, u32)) -> Self {
         let home = tempfile::tempdir().unwrap();
         let mut command = Command::new("chromedriver");
         command.arg("--port=0").env("HOME", home.path()).env("TMPDIR", home.path());
@@ -38,17 +57,34 @@ impl Browser {
         let mut browser = Self { driver, port: port.expect("a port"), session: String::new(), _home: home };
         let profile = format!("--user-data-dir={}", browser._home.path().join("profile").display());
         let window = format!("--window-size={width},{height}");
-        let args = ["--headless", "--no-sandbox", "--disable-gpu", "--force-device-scale-factor=1", &profile, &window];
+        let args = [&OPTIONS[..], &[&profile, &window]].concat();
         let always = json!({ "goog:chromeOptions": { "args": args }, "goog:loggingPrefs": { "browser": "ALL" } });
         let options = json!({ "capabilities": { "alwaysMatch": always } });
         browser.session = browser.ask("POST", "/session", &options)["sessionId"].as_str().unwrap().to_owned();
-        browser.command("url", &json!({ "url": format!("file://{}", page.display()) }));
+        browser.command("url", &json!({ "url": url }));
         browser
     }
 
     /// The value of a script, which is the body of a function.
     pub fn run(&self, script: &str) -> Value {
         self.command("execute/sync", &json!({ "script": script, "args": [] }))
+    }
+
+    /// The value of a script, which is the body of a function, once it is neither `false` nor `null`.
+    #[track_caller]
+    pub fn until(&self, what: &str, script: &str) -> Value {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let value = self.run(script);
+            if value != json!(false) && !value.is_null() {
+                return value;
+            }
+            if Instant::now() > deadline {
+                let (_, path) = tempfile::Builder::new().suffix(".png").tempfile().unwrap().keep().unwrap();
+                self.picture().save(&path).unwrap();
+                panic!("{what} never appeared; the page is kept as {}", path.display());
+            }
+        }
     }
 
     /// Drags the mouse from one place of the window to another, with these keys down.
@@ -83,9 +119,31 @@ impl Browser {
         );
     }
 
+    /// Moves the mouse.
+    pub fn hover(&self, [x, y]: [f64; 2]) {
+        let step = json!({ "type": "pointerMove", "duration": 0, "x": x.round(), "y": y.round() });
+        self.command("actions", &json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": [step] }] }));
+    }
+
     /// Presses a key.
     pub fn press(&self, key: &str) {
-        let steps = [json!({ "type": "keyDown", "value": key }), json!({ "type": "keyUp", "value": key })];
+        self.press_all(&[key]);
+    }
+
+    /// Presses keys, and releases them in the opposite order.
+    pub fn press_all(&self, keys: &[&str]) {
+        let down = keys.iter().map(|key| json!({ "type": "keyDown", "value": key }));
+        let up = keys.iter().rev().map(|key| json!({ "type": "keyUp", "value": key }));
+        self.keys(&down.chain(up).collect());
+    }
+
+    /// Types a text, key by key.
+    pub fn type_text(&self, text: &str) {
+        let of = |letter: char| ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "value": letter.to_string() }));
+        self.keys(&text.chars().flat_map(of).collect());
+    }
+
+    fn keys(&self, steps: &Value) {
         self.command("actions", &json!({ "actions": [{ "type": "key", "id": "keys", "actions": steps }] }));
     }
 

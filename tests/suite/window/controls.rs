@@ -39,8 +39,12 @@ pub(super) fn choose(viewer: &Viewer, words: &str) {
     viewer.key("Return");
 }
 
+/// The place of `value` on the slider in row `y` of the panel with the left edge `left`: 0 and 1 are its ends.
+pub(super) fn on_rail((left, y): (u32, u32), value: f32) -> (u32, u32) {
+    (left + CONTROL + (value * 100.0).round() as u32, y)
+}
+
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.
 pub(super) fn drag_slider(viewer: &Viewer, left: u32, y: u32, value: f32) {
-    let rail = |value: f32| (left + CONTROL + (value * 100.0).round() as u32, y);
-    viewer.drag(rail(0.5), rail(value));
+    viewer.drag(on_rail((left, y), 0.5), on_rail((left, y), value));
 }

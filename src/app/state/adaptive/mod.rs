@@ -33,7 +33,7 @@ const MOST_AWAITED: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Change {
     Nothing,
-    /// Camera, lights, values or time.
+    /// Camera, lights, values or time; while a value is dragged, also light that is baked from it.
     Moved,
     /// Pipelines, light or the size of the window.
     New,

@@ -14,8 +14,8 @@ use crate::support::window::Viewer;
 
 const NDF: &str = "brdf/ndf.glsl";
 
-const OPTIONS: [&str; 7] = ["--env", "none", "--size", "96x64", "--validate", "--set", "view.msaa=1"];
-const PIN: [u32; 2] = [50, 30];
+pub(super) const OPTIONS: [&str; 7] = ["--env", "none", "--size", "96x64", "--validate", "--set", "view.msaa=1"];
+pub(super) const PIN: [u32; 2] = [50, 30];
 const REFRESH: &str = "workspace/inlayHint/refresh";
 
 /// The hints of the open file by their lines, from 0.
