@@ -185,7 +185,7 @@ fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
             out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}");
             let coverage = trace.coverage_text(fragment);
             if !coverage.is_empty() {
-                out!("covers {coverage}");
+                out!("{coverage}");
             }
         }
         _ => out!("pixel {x} {y}, {stage}, {}, {fragment} of {count}: {proof}", trace.name_of(fragment).to_lowercase()),

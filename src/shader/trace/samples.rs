@@ -70,15 +70,15 @@ impl Trace {
         all.into_iter().min_by_key(|color| ulps(*color, self.picture))
     }
 
-    /// The samples of a fragment, as `samples 0, 2 of 4`, and its primitive; empty if nothing is known of them.
+    /// The samples of a fragment, as `covers samples 0, 2 of 4`, and its primitive; empty if nothing is known of them.
     pub fn coverage_text(&self, fragment: usize) -> String {
         let Some(of) = self.fragments.get(fragment) else { return String::new() };
         let samples = of.samples.filter(|_| self.samples > 1).map(|samples| match samples & self.all_samples() {
-            all if all == self.all_samples() => format!("all {} samples", self.samples),
+            all if all == self.all_samples() => format!("covers all {} samples", self.samples),
             few => {
                 let numbers: Vec<String> = numbers(few).map(|number| number.to_string()).collect();
                 let noun = if numbers.len() == 1 { "sample" } else { "samples" };
-                format!("{noun} {} of {}", numbers.join(", "), self.samples)
+                format!("covers {noun} {} of {}", numbers.join(", "), self.samples)
             }
         });
         let primitive = of.primitive.map(|number| format!("primitive {}", grouped(f64::from(number))));
@@ -136,8 +136,8 @@ mod tests {
         );
         assert_eq!(edge.proof_text(1), "shares the pixel, whose 4 samples together are equal to the picture");
         let texts = [edge.coverage_text(0), edge.coverage_text(1)];
-        assert_eq!(texts, ["sample 0 of 4 · primitive 1,234", "all 4 samples · primitive 1,234"]);
-        assert_eq!(of(&[(0.9, 0b0101, RED)], RED).coverage_text(0), "samples 0, 2 of 4 · primitive 1,234");
+        assert_eq!(texts, ["covers sample 0 of 4 · primitive 1,234", "covers all 4 samples · primitive 1,234"]);
+        assert_eq!(of(&[(0.9, 0b0101, RED)], RED).coverage_text(0), "covers samples 0, 2 of 4 · primitive 1,234");
         // A silhouette before nothing.
         let alone = of(&[(0.9, 0b0110, RED)], [0.5, 0.0, 0.0, 0.5]);
         assert_eq!((states(&alone), alone.is_proven(0)), (vec![Shares], true));
