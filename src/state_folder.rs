@@ -16,6 +16,11 @@ fn file(name: &str) -> Option<PathBuf> {
     Some(base.join("specula").join(name))
 }
 
+/// The folder of texts that were typed and not saved when a session ended for good. `None` without a home folder.
+pub(crate) fn unsaved_texts() -> Option<PathBuf> {
+    file("unsaved")
+}
+
 /// The text of a file, if it exists and can be read.
 pub(crate) fn load(name: &str) -> Option<String> {
     regular_file::read_text(&file(name)?).ok()

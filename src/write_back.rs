@@ -98,26 +98,42 @@ pub struct TreeFile {
     pub path: TreePath,
 }
 
+/// Why a typed text was not written.
+#[derive(Debug)]
+pub struct NotWritten {
+    /// A message for the user.
+    pub message: String,
+    /// The text of the file, if another program has changed the same lines.
+    pub theirs: Option<String>,
+}
+
+impl From<String> for NotWritten {
+    fn from(message: String) -> Self {
+        Self { message, theirs: None }
+    }
+}
+
 /// Writes a text that was typed into a file. `base` is the text with which the typing began. If another program has changed the
 /// file since, its changes are merged, unless both have changed the same lines. Returns the text that the file then has.
 ///
 /// # Errors
 /// A message, if the same lines were changed, or the file cannot be read or written. The file then stays as it is.
-pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Written), String> {
+pub fn write_text(file: &TreeFile, base: &str, text: &str) -> Result<(String, Written), NotWritten> {
     let TreeFile { root, path } = file;
     let file = root.join(path.as_str());
     if leads_out(root, path.as_str()) {
-        return Err(format!("cannot write {}: {}", file.display(), SourceError::Outside));
+        return Err(format!("cannot write {}: {}", file.display(), SourceError::Outside).into());
     }
     let bytes = regular_file::read(&file, regular_file::LONGEST_TEXT);
     let bytes = bytes.map_err(|error| format!("cannot read {}: {error}", file.display()))?;
     let on_disk = std::str::from_utf8(&bytes).map_err(|_| format!("{} is no UTF-8", file.display()))?;
     let form = TextForm::of(on_disk);
-    let new = merge::merge(&form.write(base), on_disk, &form.write(text)).map_err(|line| {
-        format!(
+    let new = merge::merge(&form.write(base), on_disk, &form.write(text)).map_err(|line| NotWritten {
+        message: format!(
             "{} was changed by another program in the same place, at line {line}, so it stays as it is",
             file.display()
-        )
+        ),
+        theirs: Some(form.read(on_disk)),
     })?;
     let text = form.read(&new);
     let new = new.into_bytes();
@@ -180,9 +196,10 @@ mod tests {
         // Both have changed a line.
         std::fs::write(&file, "one\n2\nthree\nfour\n").unwrap();
         let error = write_text(&of_tree, base, "one\nTWO\nthree\nfour\n").unwrap_err();
-        assert!(error.contains("changed by another program in the same place, at line 2"), "{error}");
+        assert!(error.message.contains("changed by another program in the same place, at line 2"), "{error:?}");
+        assert_eq!(error.theirs.as_deref(), Some("one\n2\nthree\nfour\n"));
         assert_eq!(read(), "one\n2\nthree\nfour\n");
-        assert!(write_text(&missing, "", "").unwrap_err().contains("cannot read"));
+        assert!(write_text(&missing, "", "").unwrap_err().message.contains("cannot read"));
         // A tree reads this file without its mark.
         std::fs::write(&file, "\u{feff}one\r\ntwo\r\n").unwrap();
         let (text, _) = write_text(&of_tree, "one\r\ntwo\r\n", "one\r\nmore\ntwo\r\n").unwrap();

@@ -272,10 +272,9 @@ impl ApplicationHandler<Message> for App {
 impl App {
     fn handle(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let is_frame = event == WindowEvent::RedrawRequested;
         let response = open.interface.on_window_event(&event);
         // egui requests a repaint in response to every redraw, so the window would never be idle.
-        if response.repaint && !is_frame {
+        if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
         }
         match event {
@@ -316,9 +315,6 @@ impl App {
                     open.window.request_redraw();
                 }
             }
-        }
-        if is_frame {
-            open.engine.recorder.record_typed(open.interface.panels.unsaved());
         }
         if std::mem::take(&mut open.state.quits_by_hand) {
             let unsaved = open.interface.panels.unsaved();

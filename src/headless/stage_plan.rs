@@ -149,7 +149,8 @@ fn is_untraced(state: &FrameState, file: &str) -> bool {
 pub(super) fn reads_earlier_frames(state: &FrameState, stage: &str) -> bool {
     let graph = &state.shaders.graph;
     let reads = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
-    let mut passes = state.pipelines.passes.iter().filter(|pass| pass.desc.stage == stage);
+    let passes = state.pipelines.passes.iter().map(|pass| &**pass);
+    let mut passes = passes.filter(|pass| pass.desc.stage == stage || pass.pre_rasterization.vertex == stage);
     passes.any(|pass| graph.needed_by(pass.name()).into_iter().any(|of| graph.passes[of].inputs.values().any(reads)))
 }
 

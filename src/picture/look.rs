@@ -168,9 +168,21 @@ pub fn read_checked_look(path: &Path) -> Result<Look, String> {
 pub fn may_hold_look(path: &Path) -> bool {
     match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
         true => has_settings(path).unwrap_or(false),
-        false => regular_file::read(path, GLANCE)
-            .is_ok_and(|bytes| String::from_utf8(bytes).is_ok_and(|text| Settings::may_be_toml(&text))),
+        false => glance(path).is_ok_and(|text| Settings::may_be_toml(&text)),
     }
+}
+
+/// The begin of a text. The end of a longer one may be missing, so that it is no TOML.
+fn glance(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    regular_file::open(path)?.into_inner().take(GLANCE).read_to_end(&mut bytes)?;
+    // The limit may cut a character.
+    if let Err(error) = std::str::from_utf8(&bytes)
+        && error.error_len().is_none()
+    {
+        bytes.truncate(error.valid_up_to());
+    }
+    String::from_utf8(bytes).map_err(io::Error::other)
 }
 
 /// Whether a chunk before the pixels of a PNG is that of settings. Of each chunk, its head and keyword are read.
@@ -310,6 +322,9 @@ mod tests {
         assert!(!is_look("c.png", &with[..40]) && !is_look("d.png", b"") && !is_look("e.png", b"text"));
         assert!(is_look("f.toml", Settings::default().to_toml().as_bytes()));
         assert!(is_look("g.toml", b"[view]\nev = 1.0\n") && is_look("h.toml", b"[view\n"));
+        // Longer than a glance, which ends within a character.
+        let long = format!("mode = \"final\"\n# {}\n", "ä".repeat(GLANCE as usize));
+        assert!(is_look("k.toml", long.as_bytes()));
         assert!(!is_look("i.toml", b"[package]\nname = \"a\"\n") && !is_look("j.toml", &[0xff; 9]));
         assert!(!may_hold_look(folder.path()));
     }

@@ -59,7 +59,7 @@ use crate::shader::{Source, TreePath, text_hash};
 
 use files::{read, unfinished, write};
 pub use recorder::Recorder;
-pub use typed::TypedText;
+pub use typed::{TypedText, keep_typed};
 
 /// The environment variable with the folder of the session, by which a process knows that it is the child.
 pub const VARIABLE: &str = "SPECULA_SESSION";

@@ -103,6 +103,25 @@ fn records_are_read_by_the_next_process() {
     assert!(!folder.path().exists());
 }
 
+#[test]
+fn typed_texts_are_kept_beside_those_of_before() {
+    let (folder, state) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let kept = state.path().join("unsaved");
+    assert!(typed::copy(folder.path(), &kept).is_empty() && !kept.exists());
+    let typed = |text: &str| TypedText {
+        root: "tree".into(),
+        file: "brdf/ndf.glsl".into(),
+        path: "brdf/ndf.glsl".into(),
+        base: String::new(),
+        text: text.to_owned(),
+    };
+    for (text, name) in [("one", "brdf-ndf.glsl"), ("two", "2-brdf-ndf.glsl")] {
+        typed::write(folder.path(), &[typed(text)]).unwrap();
+        assert_eq!(typed::copy(folder.path(), &kept), [kept.join(name)]);
+        assert_eq!(fs::read_to_string(kept.join(name)).unwrap(), text);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn nobody_waits_while_the_texts_are_written() {

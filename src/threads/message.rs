@@ -25,7 +25,7 @@ use crate::shader::not_finite::NotFinite;
 use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::statistics::Difference;
-use crate::write_back::{TreeFile, Written};
+use crate::write_back::{NotWritten, TreeFile, Written};
 
 /// The desktop shows no file dialog: no XDG portal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ pub(crate) enum Message {
     /// A summary of the edits that were written to the shader files with the files, or the reason why none were.
     Written(Result<(String, Written), String>),
     /// A text that was typed into a file of the tree, and the text that the file has now, or the reason why it was not written.
-    TypedWritten(TreeFile, Arc<str>, Result<(String, Written), String>),
+    TypedWritten(TreeFile, Arc<str>, Result<(String, Written), NotWritten>),
     /// Files of the tree have other texts, which a program has sent or an undo brings back, or the reason why not, by the number of the
     /// request.
     TextWritten(u64, Result<TextsWritten, String>),

@@ -15,7 +15,7 @@ use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
 use crate::shader::{Change, Expression, ShaderSet};
 use crate::threads::Message;
-use crate::write_back::{self, TreeFile, Written};
+use crate::write_back::{self, NotWritten, TreeFile, Written};
 
 /// Tells the worker of another watched expression. It reads the settings.
 pub(in crate::app) fn watch_expression(state: &mut State, engine: &mut Engine) {
@@ -117,7 +117,7 @@ pub(in crate::app) fn save_typed(
     // The result of a save before, perhaps of the same text, is not that of this one.
     state.traces.written = None;
     if let Err(message) = check_open(state, &file) {
-        return on_typed_written(state, file, text, Err(message));
+        return on_typed_written(state, file, text, Err(message.into()));
     }
     engine.threads.wait(move || {
         let written = write_back::write_text(&file, &base, &text);
@@ -142,10 +142,10 @@ pub(in crate::app) fn on_typed_written(
     state: &mut State,
     file: TreeFile,
     typed: Arc<str>,
-    written: Result<(String, Written), String>,
+    written: Result<(String, Written), NotWritten>,
 ) {
     let path = &file.path;
-    let text = match written {
+    let (text, theirs) = match written {
         Ok((text, written)) => {
             state.history.record_files(&state.session.shared_settings(), written);
             state.say(if *typed == *text {
@@ -153,14 +153,14 @@ pub(in crate::app) fn on_typed_written(
             } else {
                 format!("Saved {path} with the changes of another program")
             });
-            Some(text.into())
+            (Some(text.into()), None)
         }
-        Err(message) => {
+        Err(NotWritten { message, theirs }) => {
             state.say(message);
-            None
+            (None, theirs.map(Into::into))
         }
     };
-    state.traces.written = Some(WrittenText { file, typed, text });
+    state.traces.written = Some(WrittenText { file, typed, text, theirs });
 }
 
 /// Takes the result of writing.
@@ -216,7 +216,7 @@ mod tests {
         state.source = Source::embedded();
         assert_eq!(check_open(&state, &file), Err(NO_FOLDER.to_owned()));
         // The panel learns of the failure, so that it can save again.
-        on_typed_written(&mut state, file.clone(), "typed".into(), Err(refused));
+        on_typed_written(&mut state, file.clone(), "typed".into(), Err(refused.into()));
         assert!(state.traces.written.is_some_and(|written| written.file == file && written.text.is_none()));
     }
 }

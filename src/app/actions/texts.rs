@@ -55,7 +55,10 @@ pub(in crate::app) fn write_text(
         let number = state.text_writes.begin();
         engine.threads.writer.write(move || {
             let written = match base {
-                Some(base) => write_back::write_text(&file, &base, &text).map(|(_, written)| written),
+                Some(base) => match write_back::write_text(&file, &base, &text) {
+                    Ok((_, written)) => Ok(written),
+                    Err(refused) => Err(refused.message),
+                },
                 None => write_back::write_whole(&file, &text),
             };
             let done = |written| TextsWritten {

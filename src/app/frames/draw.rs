@@ -145,6 +145,10 @@ impl Drawing {
         // The user interface, which determines the rectangle of the picture.
         let begin = Instant::now();
         let has_run = self.run_interface(interface.as_deref_mut(), state, engine)?;
+        // Before the device can be lost with this frame.
+        if let Some(interface) = interface.as_ref().filter(|_| has_run) {
+            engine.recorder.record_typed(interface.panels.unsaved());
+        }
         let textures = std::mem::take(&mut self.shown.textures);
         let shown = &self.shown;
         let cells = arrange(state, &mut self.screen, shown.picture, shown.pixels_per_point);

@@ -104,7 +104,7 @@ impl Layout {
     }
 
     /// Shows a preset until the user chooses another arrangement, or until [`Self::arrange_as_before`]. The next window is arranged as
-    /// before. Panels that no preset has stay open, and that for single files is as the user has changed it.
+    /// before. Panels that no preset has stay open, unless the user has changed the arrangement for single files.
     pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
         let before = self.before.take();
         let before = before.unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own, self.preset));
@@ -114,6 +114,7 @@ impl Layout {
         (self.is_temporary, self.before) = (true, Some(before));
         if let Some(tree) = self.of_file.clone().filter(|_| preset == Preset::Toy) {
             (self.tree, self.is_own) = (tree, true);
+            return;
         }
         for panel in added {
             if !self.is_open(panel) {

@@ -145,6 +145,14 @@ fn the_arrangement_for_a_single_file_is_the_users() {
     assert!(!layout.is_open(Panel::SOURCE));
     layout.arrange_temporarily(Preset::Toy);
     assert!(!layout.is_open(Panel::SOURCE) && layout.is_open(Panel::TIMELINE), "as it was at first");
+    show(&mut layout);
+    layout.close(Panel::TIMELINE);
+    layout.arrange_as_before();
+    show(&mut layout);
+    layout.open(Panel::SOURCE);
+    layout.arrange_temporarily(Preset::Toy);
+    show(&mut layout);
+    assert!(!layout.is_open(Panel::SOURCE) && !layout.is_open(Panel::TIMELINE), "the user's own, without Source");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use specula::control::{MOST_BYTES, remove_sockets};
 use specula::message;
 use specula::process_end::end_process;
-use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, remove_folder};
+use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, RecoveryState, VARIABLE, keep_typed, remove_folder};
 
 use super::output::wait_for_end_of_program;
 use crate::commands::Failure;
@@ -70,7 +70,7 @@ pub fn run(forwards: Forward, in_place: impl FnOnce() -> Result<(), Failure>) ->
             _ => state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref())),
         };
         if state.losses >= MOST_LOSSES {
-            return Err(Failure::Device(farewell(&cause, &state)));
+            return Err(Failure::Device(farewell(&cause, &state, &keep_typed(&folder.0))));
         }
         message::tell(format_args!("{cause}; the session goes on in a new process"));
         let next = state.write(&folder.0).and_then(|()| run_child(&program, &folder.0, &input, forwards));
@@ -275,13 +275,19 @@ fn crash(_: ExitStatus, code: Option<i32>) -> Option<String> {
 }
 
 /// Why the session ends.
-fn farewell(cause: &str, state: &RecoveryState) -> String {
+/// `kept`: the files with the texts that were not saved.
+fn farewell(cause: &str, state: &RecoveryState, kept: &[PathBuf]) -> String {
     let refused: Vec<&str> = state.quarantined.keys().map(String::as_str).collect();
     let advice = match refused.as_slice() {
         [] => "Another program may have caused it; try `--device NAME` or `--env none`".to_owned(),
         refused => format!("Undo the last edits of {} before you start again", refused.join(", ")),
     };
-    format!("{cause}, the third time in a row, so the session ends. Your files are as you saved them. {advice}")
+    let kept: Vec<String> = kept.iter().map(|path| path.display().to_string()).collect();
+    let typed = match kept.as_slice() {
+        [] => String::new(),
+        kept => format!(" What you typed and did not save is in {}.", kept.join(", ")),
+    };
+    format!("{cause}, the third time in a row, so the session ends. Your files are as you saved them.{typed} {advice}")
 }
 
 /// Ends this process as the child has ended.

@@ -38,6 +38,8 @@ struct Typing {
     sent: Option<Arc<str>>,
     /// The text that the tree had last.
     known: Arc<str>,
+    /// The text of another program that has changed the same lines, so that the typed text was not saved.
+    theirs: Option<Arc<str>>,
     /// Older texts of the file, which the tree may show until it has compiled the newest.
     older: Vec<Arc<str>>,
 }
@@ -80,7 +82,15 @@ impl Editor {
         self.cursor = Some(text.split_inclusive('\n').take(line).map(|line| line.chars().count()).sum());
         let new = || {
             let (base, known) = (text.clone(), text.clone());
-            Typing { path: path.clone(), base, text: text.to_string(), sent: None, known, older: Vec::new() }
+            Typing {
+                path: path.clone(),
+                base,
+                text: text.to_string(),
+                sent: None,
+                known,
+                theirs: None,
+                older: Vec::new(),
+            }
         };
         self.files.entry(file).or_insert_with(new);
     }
@@ -136,8 +146,24 @@ impl Editor {
             let base: Arc<str> = base.as_str().into();
             let (path, text, known) = (path.clone(), text.clone(), base.clone());
             let file = TreeFile { root: root.clone(), path: file.clone() };
-            self.files.entry(file).or_insert(Typing { path, base, text, sent: None, known, older: Vec::new() });
+            let typing = Typing { path, base, text, sent: None, known, theirs: None, older: Vec::new() };
+            self.files.entry(file).or_insert(typing);
         }
+    }
+
+    /// The text of another program that keeps the typed text from being saved.
+    pub(super) fn conflict(&self, path: &TreePath) -> Option<Arc<str>> {
+        self.typing(path)?.theirs.clone()
+    }
+
+    /// Ends a conflict: the text of the other program takes the place of the typed one, or is overwritten by it with the next save.
+    pub(super) fn settle(&mut self, path: &TreePath, takes_theirs: bool) {
+        let Some(typing) = self.file(path).and_then(|file| self.files.get_mut(&file)) else { return };
+        let Some(theirs) = typing.theirs.take() else { return };
+        if takes_theirs {
+            typing.text = theirs.to_string();
+        }
+        typing.saved(theirs);
     }
 
     /// The typed text of a file.
@@ -160,7 +186,7 @@ impl Editor {
                     file.saved(text.clone());
                 }
                 Some(_) => file.saved(sent),
-                None => {}
+                None => file.theirs.clone_from(&saved.theirs),
             }
         }
         let root = self.source.as_ref().and_then(|source| source.folder_of_files());
@@ -299,6 +325,7 @@ mod tests {
             text: "b".to_owned(),
             sent: None,
             known: text("a"),
+            theirs: None,
             older: Vec::new(),
         };
         file.saved(text("b"));

@@ -14,6 +14,7 @@ use super::tests::{TEXT, Window, events, window};
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::state::trace::saved::WrittenText;
+use crate::app::state::workspace::PanelRequest;
 use crate::recovery::TypedText;
 use crate::shader::{Diagnostic, ShaderSet, Source, TreePath};
 use crate::write_back::TreeFile;
@@ -77,7 +78,7 @@ fn a_file_is_typed_and_saved() {
     assert_eq!(harness.state().asked, [SAVE_FILE.with(Typed { file: file.clone(), base, text: text.clone() })]);
     // Another program has added a line, which the merged text has.
     let merged: Arc<str> = format!("{text}// theirs\n").into();
-    let written = WrittenText { file, typed: text, text: Some(merged.clone()) };
+    let written = WrittenText { file, typed: text, text: Some(merged.clone()), theirs: None };
     harness.state_mut().state.traces.written = Some(written);
     harness.run_steps(2);
     assert!(harness.query_by_label("not saved").is_none());
@@ -186,9 +187,47 @@ fn typed_text_stays_in_its_tree() {
         harness.run_steps(2);
         let save = SAVE_FILE.with(Typed { file: file.clone(), base: TEXT.into(), text: text.clone() });
         assert_eq!(harness.state().asked, vec![save; saves]);
-        let written = WrittenText { file: file.clone(), typed: text.clone(), text: None };
+        let written = WrittenText { file: file.clone(), typed: text.clone(), text: None, theirs: None };
         harness.state_mut().state.traces.written = Some(written);
         harness.run_steps(2);
     }
     harness.get_by_label("not saved");
+}
+
+/// The lines of both are shown, and neither is lost without a click.
+#[test]
+fn lines_that_another_program_has_changed_too_are_the_users_choice() {
+    let mut harness = window(TEXT, events(2.0), &[2, 3]);
+    let folder = tempfile::tempdir().unwrap();
+    crate::shader::embedded::write_to(&folder.path().join("tree"), None).unwrap();
+    let root = folder.path().join("tree");
+    open(&mut harness, &root);
+    harness.run_steps(2);
+    let file = TreeFile { root: root.clone(), path: "a.glsl".into() };
+    let (mine, theirs): (Arc<str>, Arc<str>) = (format!("// mine\n{TEXT}").into(), format!("// theirs\n{TEXT}").into());
+    let typed =
+        TypedText { root, file: "a.glsl".into(), path: "a.glsl".into(), base: TEXT.to_owned(), text: mine.to_string() };
+    harness.state_mut().panel.on_request(&PanelRequest::RestoreTyped(vec![typed]));
+    harness.run_steps(2);
+    let text = |harness: &Harness<'_, Window>| harness.get_by_label("Text of the file").accesskit_node().value();
+    let refuse = |harness: &mut Harness<'_, Window>| {
+        let refused = WrittenText { file: file.clone(), typed: mine.clone(), text: None, theirs: Some(theirs.clone()) };
+        harness.state_mut().state.traces.written = Some(refused);
+        harness.run_steps(2);
+        harness.get_by_label("not saved: another program has changed the same lines");
+    };
+    let save = |base: &str| SAVE_FILE.with(Typed { file: file.clone(), base: base.into(), text: mine.clone() });
+    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.run_steps(2);
+    refuse(&mut harness);
+    assert_eq!(text(&harness).as_deref(), Some(&*mine));
+    harness.get_by_role_and_label(Role::Button, "Save mine").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().asked, [save(TEXT), save(&theirs)]);
+    // The other program has written once more.
+    refuse(&mut harness);
+    harness.get_by_role_and_label(Role::Button, "Take theirs").click();
+    harness.run_steps(2);
+    assert_eq!(text(&harness).as_deref(), Some(&*theirs));
+    assert!(harness.query_by_label("not saved").is_none());
 }

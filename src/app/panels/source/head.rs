@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use egui::{ComboBox, Key, Label, PopupCloseBehavior, RichText, ScrollArea, Ui};
+use similar::TextDiff;
 
 use super::choices::{self, MENU};
 use super::edit::Editor;
@@ -251,6 +252,9 @@ fn edit(
         }
         return;
     }
+    if let Some(theirs) = editor.conflict(path) {
+        return settle(ui, path, &theirs, (editor, scroll), commands);
+    }
     let is_unsaved = editor.is_unsaved(path);
     let save = ui.add_enabled(is_unsaved, egui::Button::new("Save").small());
     let hint = "Ctrl+S. Changes that another program has made since are kept, unless they are in the same lines";
@@ -267,6 +271,35 @@ fn edit(
     }
     if is_unsaved {
         ui.label(RichText::new("not saved").small().color(WARNING));
+    }
+}
+
+/// The choice between what was typed and what another program has written to the same lines.
+fn settle(
+    ui: &mut Ui,
+    path: &TreePath,
+    theirs: &str,
+    (editor, scroll): (&mut Editor, &mut Scroll),
+    commands: &mut Commands,
+) {
+    let told = RichText::new("not saved: another program has changed the same lines").small().color(WARNING);
+    ui.label(told).on_hover_ui(|ui| {
+        let typed = editor.text(path).unwrap_or_default();
+        let difference = TextDiff::from_lines(theirs, &*typed);
+        let difference = difference.unified_diff().context_radius(1).header("theirs", "yours").to_string();
+        ui.label(RichText::new(difference).monospace());
+    });
+    if ui
+        .small_button("Save mine")
+        .on_hover_text("Write what you typed over the changes of the other program")
+        .clicked()
+    {
+        editor.settle(path, false);
+        editor.save(path).into_iter().for_each(|typed| commands.push(SAVE_FILE.with(typed)));
+    }
+    if ui.small_button("Take theirs").on_hover_text("Drop what you typed, and go on with the file as it is").clicked() {
+        editor.settle(path, true);
+        scroll.keep();
     }
 }
 

@@ -128,16 +128,15 @@ impl Versions {
     /// Adds the version that has just come on screen.
     pub(in crate::app) fn add(&mut self, shaders: &Arc<ShaderSet>, reload: ReloadEvent, is_draft: bool) {
         let generation = shaders.generation;
-        if self.list.back().is_some_and(|last| last.is_draft) {
-            self.list.pop_back();
-        }
+        let draft = self.list.pop_back_if(|last| last.is_draft);
         // Watching another expression, and going back to the newest version, create none; the sources are unchanged.
         if let Some(last) = self.list.back_mut().filter(|last| has_same_texts(&last.shaders, shaders)) {
             (last.generation, last.shaders) = (generation, shaders.clone());
             return;
         }
         self.list.push_back(Version {
-            number: self.list.back().map_or(1, |last| last.number + 1),
+            // Memory that runs short takes older versions, not their numbers.
+            number: self.list.back().map(|last| last.number + 1).or(draft.map(|draft| draft.number)).unwrap_or(1),
             generation,
             since: Local::now(),
             reload,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::choice::Choice;
 use super::rounds::{Round, ends_of_do};
 use crate::shader::expression::lines_before;
-use crate::shader::trace::{Act, Done, LineOfTrace, Trace, is_related};
+use crate::shader::trace::{Act, Done, LineOfTrace, Trace, TracedValue, is_related};
 
 /// A trace and the text of its file.
 pub(in crate::app) struct Side<'a> {
@@ -217,11 +217,13 @@ fn values(done: &Done, decides: Decides) -> String {
             }
         }
         Act::Condition if done.values().count() == count => {
-            let taken = done.values().filter(|value| value.numbers().any(|number| number != 0.0)).count();
+            let is_true = |value: TracedValue| value.numbers().any(|number| number != 0.0);
+            let taken = done.values().filter(|value| is_true(*value)).count();
             let rounds = match decides {
                 Decides::Branch => None,
                 Decides::Round => Some(taken),
-                Decides::Again => Some(count),
+                // Behind the last condition that was true, a round ended without one.
+                Decides::Again => Some(count + usize::from(done.values().last().is_some_and(is_true))),
             };
             match (rounds, taken) {
                 (Some(1), _) => "1 round".to_owned(),

@@ -14,6 +14,8 @@ pub(in crate::app) struct WrittenText {
     pub(in crate::app) typed: Arc<str>,
     /// The text of the file, with the changes of other programs; `None` if it could not be written.
     pub(in crate::app) text: Option<Arc<str>>,
+    /// The text of the file, if another program has changed the same lines.
+    pub(in crate::app) theirs: Option<Arc<str>>,
 }
 
 /// The text of one file.

@@ -1,4 +1,4 @@
-//! The rounds of `do ... while`. A round begins with the body, which no condition announces, and ends with the condition, or by `break`.
+//! The rounds of `do ... while`. A round begins with the body, which no condition announces, and ends with the condition, or by `break`, `return` or `discard`.
 
 use super::loops::{Loop, TracedLoop, label};
 use crate::shader::trace::{Doing, Event, is_related, paths_to};
@@ -14,23 +14,27 @@ struct UnderWay<'a> {
 }
 
 impl Loop<'_> {
-    /// Divides the events of a fragment. A round has the number of the evaluation of the condition that ends it, and one that `break` ends
-    /// a number behind all of those.
+    /// Divides the events of a fragment. A round has the number of the evaluation of the condition that ends it, and one that ends
+    /// without it a number behind all of those.
     pub(super) fn traced_do(self, events: &[Option<&Event>], call: Option<&str>) -> TracedLoop {
         let mut owners: Vec<Option<u32>> = vec![None; events.len()];
         let mut rounds: Vec<(u32, String)> = Vec::new();
         let is_wanted = |calls: &str| call.is_none_or(|call| is_related(calls, call));
+        let leave = |left: &UnderWay<'_>, owners: &mut Vec<Option<u32>>, rounds: &mut Vec<(u32, String)>| {
+            if left.events.is_empty() {
+                return;
+            }
+            let number = u32::MAX - rounds.len() as u32;
+            left.events.iter().for_each(|at| owners[*at] = Some(number));
+            if is_wanted(left.calls) {
+                rounds.push((number, label(&[], events, rounds.len() + 1)));
+            }
+        };
         let mut now: Option<UnderWay<'_>> = None;
         let mut last = 0;
         for (at, event) in events.iter().enumerate().filter_map(|(at, event)| Some((at, (*event)?))) {
-            if let Some(left) = now.take_if(|now| !self.is_inside(event, now.calls))
-                && !left.events.is_empty()
-            {
-                let number = u32::MAX - rounds.len() as u32;
-                left.events.iter().for_each(|at| owners[*at] = Some(number));
-                if is_wanted(left.calls) {
-                    rounds.push((number, label(&[], events, rounds.len() + 1)));
-                }
+            if let Some(left) = now.take_if(|now| !self.is_inside(event, now.calls)) {
+                leave(&left, &mut owners, &mut rounds);
             }
             if now.is_none() && self.lines.contains(&event.doing.line) {
                 let calls = &*event.calls;
@@ -58,13 +62,18 @@ impl Loop<'_> {
                 now = None;
             }
         }
+        // The last statement of all was in the loop.
+        if let Some(left) = now {
+            leave(&left, &mut owners, &mut rounds);
+        }
         TracedLoop { line: *self.lines.start(), code: self.code, rounds, owners }
     }
 }
 
 /// The events of calls that a call made directly before an event: of the first statement of a body.
 fn called_before(events: &[Option<&Event>], at: usize, calls: &str) -> Vec<usize> {
-    let is_called = |event: &Event| *event.calls != *calls && paths_to(&event.calls).any(|path| path == calls);
+    let is_below = |of: &str| calls.is_empty() || paths_to(of).any(|path| path == calls);
+    let is_called = |event: &Event| *event.calls != *calls && is_below(&event.calls);
     let before = events[..at].iter().enumerate().rev().filter_map(|(at, event)| Some((at, (*event)?)));
     let mut found: Vec<usize> = before.take_while(|(_, event)| is_called(event)).map(|(at, _)| at).collect();
     found.reverse();
@@ -145,10 +154,32 @@ mod tests {
         assert_eq!(found.owners, owners);
     }
 
+    /// A `return` in a loop of `main`, behind which nothing was logged, after a call that nothing came before.
+    #[test]
+    fn a_round_ends_with_the_last_statement_of_all() {
+        let text = "void main() {\n    do {\n        s = g(s);\n        if (s > 2.0) return;\n    } while (true);\n}\nfloat g(float x) {\n    \
+            return x;\n}\n";
+        let of_g = |calls: &str| called(calls, 8, Act::Return, "", &[1.0]);
+        let own = |line: u32, act: Act, name: &str| called("", line, act, name, &[1.0]);
+        let round = |calls: &str| [of_g(calls), own(3, Act::Store, "s"), own(4, Act::Condition, "")];
+        let mut events = round("g").to_vec();
+        events.push(own(5, Act::Condition, ""));
+        events.extend(round("g [2]"));
+        let found = traced(text, events, None);
+        let left = u32::MAX - 1;
+        assert_eq!(found.rounds.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, left]);
+        assert_eq!(found.owners, [1, 1, 1, 1, left, left, left].map(Some));
+    }
+
     #[test]
     fn a_condition_on_the_line_of_the_loops_own_hides_its_rounds() {
-        for text in ["void f() { do { if (a) b(); } while (c); }", "void f() {\n do\n  for (;;) a();\n while (c); }"] {
-            assert_eq!(loops(text).iter().filter(|of| of.is_do).count(), usize::from(text.contains('\n')), "{text}");
+        for (text, count) in [
+            ("void f() { do { if (a) b(); } while (c); }", 0),
+            ("void f() {\n do {\n a();\n } while (c); if (d) e();\n}", 0),
+            ("void f() {\n if (a) b(); for (;;)\n c();\n}", 0),
+            ("void f() {\n do\n  for (;;) a();\n while (c); }", 2),
+        ] {
+            assert_eq!(loops(text).len(), count, "{text}");
         }
     }
 }

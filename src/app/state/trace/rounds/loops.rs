@@ -1,6 +1,6 @@
 //! The loops of a text, and what belongs to them.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use crate::shader::glsl::syntax::{Statement, StatementKind, functions, within};
 use crate::shader::glsl::{Code, spelled};
@@ -39,60 +39,52 @@ pub(super) struct Loop<'a> {
     pub(super) is_do: bool,
 }
 
-/// The loops of a text.
+/// The loops of a text. One is left out if another condition stands on the lines of its own, which cannot be told from it.
 pub(super) fn loops(text: &str) -> Vec<Loop<'_>> {
     let code = Code::new(text);
-    let mut found = Vec::new();
-    functions(&code.tokens).iter().for_each(|function| find(&function.body, text, &code, &mut found));
+    let (mut found, mut decisions) = (Vec::new(), Vec::new());
+    functions(&code.tokens).iter().for_each(|function| find(&function.body, text, &code, &mut found, &mut decisions));
+    let stand_on = |lines: &RangeInclusive<u32>| {
+        decisions.iter().filter(|of| of.start() <= lines.end() && of.end() >= lines.start()).count()
+    };
+    found.retain(|of| stand_on(&of.header) == 1);
     found
 }
 
-fn find<'a>(statement: &Statement, text: &'a str, code: &Code<'_>, found: &mut Vec<Loop<'a>>) {
-    if statement.kind == StatementKind::Loop {
-        let first = code.number_at(statement.bytes.start);
-        let header = first..=code.number_at(statement.header.end.saturating_sub(1));
-        // A condition beside the loop's cannot be told from it.
-        if !statement.parts.iter().any(|part| decides_at(part, code, *header.end())) {
-            let lines = first..=code.number_at(statement.bytes.end.saturating_sub(1));
-            let tokens = within(&code.tokens, &(statement.bytes.start..statement.header.end));
+/// Finds the loops in a statement, and the lines of each condition.
+fn find<'a>(
+    statement: &Statement,
+    text: &'a str,
+    code: &Code<'_>,
+    found: &mut Vec<Loop<'a>>,
+    decisions: &mut Vec<RangeInclusive<u32>>,
+) {
+    let lines = |bytes: &Range<usize>| code.number_at(bytes.start)..=code.number_at(bytes.end.saturating_sub(1));
+    let head = statement.bytes.start..statement.header.end;
+    match statement.kind {
+        StatementKind::Branch => decisions.push(lines(&head)),
+        StatementKind::Loop => {
+            let tokens = within(&code.tokens, &head);
             let words = tokens.iter().map(|token| &text[token.bytes.clone()]);
             let words = words.filter(|_| tokens.first().is_some_and(|token| token.text == "for")).collect();
+            let (lines, header) = (lines(&statement.bytes), lines(&head));
+            decisions.push(header.clone());
             found.push(Loop { lines, header, code: spelled(tokens), words, is_do: false });
         }
+        StatementKind::DoLoop => {
+            let header = lines(&statement.header);
+            let end = spelled(within(&code.tokens, &statement.header));
+            let code = format!("do … {}", end.trim_end_matches(';'));
+            decisions.push(header.clone());
+            let lines = *lines(&statement.bytes).start()..=*header.end();
+            found.push(Loop { lines, header, code, words: Vec::new(), is_do: true });
+        }
+        _ => {}
     }
-    if statement.kind == StatementKind::DoLoop {
-        found.extend(find_do(statement, code));
-    }
-    statement.parts.iter().for_each(|part| find(part, text, code, found));
+    statement.parts.iter().for_each(|part| find(part, text, code, found, decisions));
 }
 
-/// Whether a condition of a statement stands on a line.
-fn decides_at(statement: &Statement, code: &Code<'_>, line: u32) -> bool {
-    let decides = matches!(statement.kind, StatementKind::Branch | StatementKind::Loop | StatementKind::DoLoop);
-    (decides && code.number_at(statement.bytes.start) <= line)
-        || statement.parts.iter().any(|part| decides_at(part, code, line))
-}
-
-/// The loop of a `do` statement. `None` if a condition in its body stands on the lines of its own, which cannot be told from it.
-fn find_do<'a>(statement: &Statement, code: &Code<'_>) -> Option<Loop<'a>> {
-    let line = |byte: usize| code.number_at(byte);
-    let header = line(statement.header.start)..=line(statement.header.end.saturating_sub(1));
-    if statement.parts.iter().any(|part| decides_behind(part, code, *header.start())) {
-        return None;
-    }
-    let lines = line(statement.bytes.start)..=*header.end();
-    let end = spelled(within(&code.tokens, &statement.header));
-    Some(Loop { lines, header, code: format!("do … {}", end.trim_end_matches(';')), words: Vec::new(), is_do: true })
-}
-
-/// Whether the condition of a statement ends on a line, or behind it.
-fn decides_behind(statement: &Statement, code: &Code<'_>, line: u32) -> bool {
-    let decides = matches!(statement.kind, StatementKind::Branch | StatementKind::Loop | StatementKind::DoLoop);
-    (decides && code.number_at(statement.header.end.saturating_sub(1)) >= line)
-        || statement.parts.iter().any(|part| decides_behind(part, code, line))
-}
-
-/// The first lines of the ends of all such loops, which have their conditions.
+/// The first lines of the ends of all `do` loops, which have their conditions.
 pub(in crate::app::state::trace) fn ends_of_do(text: &str) -> Vec<u32> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     if !text.split(|c| !is_word(c)).any(|word| word == "do") {
