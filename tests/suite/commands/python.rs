@@ -77,6 +77,11 @@ fn package_and_notebooks_pass_the_strict_type_check() {
     run_script("type_check.py", tempfile::tempdir().unwrap().path());
 }
 
+#[test]
+fn all_that_is_linked_has_the_text_of_its_license() {
+    run_script("licenses.py", tempfile::tempdir().unwrap().path());
+}
+
 /// The wheel is installed without a network into a new environment. numpy comes from that of the tests.
 #[test]
 fn a_wheel_in_a_new_environment_draws_a_picture() {
