@@ -163,7 +163,7 @@ use_kept_shaderc() {
         )
         say "using the cached shader compiler in $cache"
     else
-        say "building the shader compiler (C++, once; about two minutes on two cores)"
+        say "building the shader compiler (C++, once; some 90 s on two cores)"
     fi
 }
 
