@@ -1,20 +1,24 @@
-"""`scripts/packaging/licenses.py`: each package that is linked has the text of each license that binds it, or nothing is packed."""
+"""The scripts of scripts/packaging.
+
+Each package that is linked has the text of each license that binds it, or nothing is packed; the description of the wheel needs no file beside it.
+"""
 
 import json
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 REPOSITORY = Path(os.environ["REPOSITORY"])
-SCRIPT = REPOSITORY / "scripts/packaging/licenses.py"
+PACKAGING = REPOSITORY / "scripts/packaging"
 OWN_TEXT = "Permission is hereby granted, free of charge, to any\nperson obtaining a copy of this software: its own text"
 
 
 def run(metadata, *folders):
     path = Path("metadata.json")
     path.write_text(metadata, encoding="utf-8")
-    return subprocess.run([sys.executable, SCRIPT, path, *folders], capture_output=True, text=True, encoding="utf-8", check=False)
+    return subprocess.run([sys.executable, PACKAGING / "licenses.py", path, *folders], capture_output=True, text=True, encoding="utf-8", check=False)
 
 
 def package(name, license, authors=(), files=(), kind=None, target="lib"):
@@ -94,6 +98,26 @@ def all_that_specula_links_has_a_text():
         assert part.lower() in ended.stdout.lower(), part
 
 
+def the_description_of_the_wheel_needs_no_file():
+    Path("usr/bin").mkdir(parents=True)
+    Path("usr/bin/specula").write_bytes(b"program")
+
+    def wheel(readme):
+        names = ["usr", "specula", "0.1.0", "Test", "linux_x86_64", REPOSITORY / readme, REPOSITORY / "assets/python/specula", "out"]
+        return subprocess.run([sys.executable, PACKAGING / "wheel.py", *names], capture_output=True, text=True, check=False)
+
+    refused = wheel("README.md")
+    assert refused.returncode == 1 and "(assets/manual/python.md)" in refused.stderr, refused.stderr
+    assert not Path("out").exists()
+    made = wheel("assets/python/README.md")
+    assert made.returncode == 0, made.stderr
+    with zipfile.ZipFile(made.stdout.strip()) as file:
+        fields, description = file.read("specula-0.1.0.dist-info/METADATA").decode().split("\n\n", 1)
+    assert "Requires-Python: >=3.8" in fields.splitlines()
+    assert description == (REPOSITORY / "assets/python/README.md").read_text(encoding="utf-8")
+
+
 standard_texts_replace_missing_ones()
 what_has_no_text_is_an_error()
 all_that_specula_links_has_a_text()
+the_description_of_the_wheel_needs_no_file()
