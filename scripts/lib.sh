@@ -9,9 +9,10 @@ TARGET_DIR=${CARGO_TARGET_DIR:-target}
 SPECULA=$TARGET_DIR/release/specula
 
 # To build: compilers, and the tools that shaderc's build needs.
-# To run: Vulkan with a software device, and the libraries that winit loads.
+PACKAGES_BUILD=(ca-certificates curl cmake g++ git ninja-build pkg-config python3)
+# To build and run: Vulkan with a software device, and the libraries that winit loads.
 PACKAGES_PLAY=(
-    ca-certificates curl cmake g++ git ninja-build pkg-config python3
+    "${PACKAGES_BUILD[@]}"
     libvulkan1 mesa-vulkan-drivers
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
@@ -163,7 +164,7 @@ use_kept_shaderc() {
         )
         say "using the cached shader compiler in $cache"
     else
-        say "building the shader compiler (C++, once; about two minutes on two cores)"
+        say "building the shader compiler (C++, once; some 90 s on two cores)"
     fi
 }
 

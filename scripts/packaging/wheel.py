@@ -1,12 +1,13 @@
 """Writes a wheel with the program, its share folder and its Python package:
 python3 wheel.py ROOT NAME VERSION SUMMARY PLATFORM README PACKAGE OUT_FOLDER.
 
-ROOT holds bin/ and share/. pip puts them into bin and share of a virtual environment, or of ~/.local, and the package where it is imported
+README becomes the page of the wheel on PyPI, where nothing is beside it: it must not link to files. ROOT holds bin/ and share/. pip puts them into bin and share of a virtual environment, or of ~/.local, and the package where it is imported
 from. The same files give the same wheel.
 """
 
 import base64
 import hashlib
+import re
 import sys
 import zipfile
 from pathlib import Path
@@ -40,11 +41,15 @@ def members(root: Path, package: Path, data: str) -> "list[tuple[str, int, bytes
 
 def main() -> None:
     root, name, version, summary, platform, readme, package, out = sys.argv[1:]
+    description = Path(readme).read_text(encoding="utf-8")
+    relative = re.findall(r"\]\((?!https?:|#)[^)]*\)", description)
+    if relative:
+        sys.exit(f"wheel.py: {readme} links to files: {' '.join(relative)}")
     tag = f"py3-none-{platform}"
     info = f"{name}-{version}.dist-info"
     metadata = (
         f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\nSummary: {summary}\nLicense: MIT OR Apache-2.0\n"
-        "Requires-Python: >=3.8\nRequires-Dist: numpy\nDescription-Content-Type: text/markdown\n\n" + Path(readme).read_text(encoding="utf-8")
+        "Requires-Python: >=3.8\nRequires-Dist: numpy\nDescription-Content-Type: text/markdown\n\n" + description
     )
     wheel_text = f"Wheel-Version: 1.0\nGenerator: specula\nRoot-Is-Purelib: false\nTag: {tag}\n"
     content = members(Path(root), Path(package), f"{name}-{version}.data")

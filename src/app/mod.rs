@@ -83,6 +83,7 @@ pub use state::window_size::last_size;
 pub fn run(mut options: AppOptions) -> Result<(), AppError> {
     // Its end writes the last events, so it outlives the window.
     let control = std::mem::take(&mut options.control);
+    has_key_library()?;
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
     let proxy = event_loop.create_proxy();
     let sender = MessageSender::Window(proxy.clone());
@@ -94,6 +95,26 @@ pub fn run(mut options: AppOptions) -> Result<(), AppError> {
     let mut app = App { proxy, sender, asked, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
+}
+
+/// Whether the library of keys on X11 is installed. Not every desktop has it, and winit panics without it.
+#[cfg(target_os = "linux")]
+fn has_key_library() -> Result<(), AppError> {
+    let is_set = |variable: &str| std::env::var_os(variable).is_some_and(|value| !value.is_empty());
+    // winit's own order
+    let is_x11 = !is_set("WAYLAND_DISPLAY") && !is_set("WAYLAND_SOCKET") && is_set("DISPLAY");
+    if is_x11 && xkbcommon_dl::x11::xkbcommon_x11_option().is_none() {
+        return Err(AppError::NoDisplay(
+            "the library libxkbcommon-x11.so.0 is missing (on Debian and Ubuntu: apt install libxkbcommon-x11-0)"
+                .into(),
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn has_key_library() -> Result<(), AppError> {
+    Ok(())
 }
 
 /// The window with the name of its desktop file, which gives it its icon.

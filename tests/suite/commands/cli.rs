@@ -215,6 +215,26 @@ fn no_display() {
     finish(command.arg("view")).expect(3, &["no display", "render --watch"]);
 }
 
+/// Without the library of keys, winit would panic.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_library_of_keys() {
+    let directory = directory();
+    let view = |libraries: &Path| {
+        let mut command = specula(directory.path());
+        command.env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET").env("LD_LIBRARY_PATH", libraries);
+        finish(command.arg("view").env("DISPLAY", ":nothing"))
+    };
+    let there = view(directory.path());
+    there.expect(3, &["no display"]);
+    assert!(!there.stderr.contains("libxkbcommon-x11"), "{}", there.stderr);
+    // The loader of libraries takes the first file of the name, and refuses an empty one.
+    for name in ["libxkbcommon-x11.so.0", "libxkbcommon-x11.so"] {
+        fs::write(directory.path().join(name), "").unwrap();
+    }
+    view(directory.path()).expect(3, &["no display", "libxkbcommon-x11.so.0 is missing", "apt install"]);
+}
+
 #[test]
 fn an_out_that_cannot_be_written() {
     let directory = directory();

@@ -77,6 +77,11 @@ fn package_and_notebooks_pass_the_strict_type_check() {
     run_script("type_check.py", tempfile::tempdir().unwrap().path());
 }
 
+#[test]
+fn licenses_and_description_of_the_packages_are_whole() {
+    run_script("packages.py", tempfile::tempdir().unwrap().path());
+}
+
 /// The wheel is installed without a network into a new environment. numpy comes from that of the tests.
 #[test]
 fn a_wheel_in_a_new_environment_draws_a_picture() {
@@ -95,7 +100,7 @@ fn a_wheel_in_a_new_environment_draws_a_picture() {
     let python = interpreter();
     let mut wheel = in_folder(python);
     wheel.arg(in_repository("scripts/packaging/wheel.py")).args(["root", "specula", "0.1.0", "Test", "linux_x86_64"]);
-    wheel.arg(in_repository("README.md")).arg(in_repository("assets/python/specula")).arg("out");
+    wheel.arg(in_repository("assets/python/README.md")).arg(in_repository("assets/python/specula")).arg("out");
     let file = finish(&mut wheel);
     assert_eq!(file.code, Some(0), "{}", file.stderr);
     let made = finish(in_folder(python).args(["-m", "venv", "--without-pip", "new"]));
