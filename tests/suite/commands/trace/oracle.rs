@@ -137,10 +137,7 @@ fn layers_of_the_brdf_are_those_of_the_cpu() {
 #[test]
 fn choices_of_the_brdf_are_those_of_the_cpu() {
     let cases: [(&[&str], &[Formula]); 4] = [
-        (
-            &["NDF=Beckmann", "MASKING_SHADOWING=Separable", "DIFFUSE=Burley"],
-            &[D_BECKMANN, V_SEPARABLE, F_BURLEY],
-        ),
+        (&["NDF=Beckmann", "MASKING_SHADOWING=Separable", "DIFFUSE=Burley"], &[D_BECKMANN, V_SEPARABLE, F_BURLEY]),
         (
             &["MASKING_SHADOWING=Schlick", "DIFFUSE=OrenNayar", "FRESNEL_METAL=Conductor"],
             &[V_SCHLICK, F_OREN_NAYAR, F_CONDUCTOR],
