@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde::Serialize;
 
+use serde_json::Value;
 use super::{Comparison, Measure, Picture, differences};
 use crate::report::{png_uri, uri_of};
 
@@ -53,8 +54,8 @@ pub struct ReportPair {
     size: (u32, u32),
     a: Option<Side>,
     b: Option<Side>,
-    /// Both values of the pixel with the largest difference: RGBA.
-    worst: Option<[[f32; 4]; 2]>,
+    /// Both values of the pixel with the largest difference: RGBA. Those that JSON does not know are text.
+    worst: Option<[[Value; 4]; 2]>,
     /// [`Comparison::map`] as a URI.
     map: Option<String>,
     /// The largest difference of a channel in each pixel as a URI.
@@ -81,7 +82,7 @@ impl ReportPair {
             largest_at: Some((x, y)),
             differing: found.differing,
             pixels: found.pixels,
-            worst: Some(worst),
+            worst: Some(worst.map(|values| values.map(json_of))),
             map: Some(uri_of(&displayed(found.map(), found.largest))?),
             channel: Some(uri_of(&of_channels(&differences, a.picture, found.largest))?),
             settings: settings_that_differ([a, b].map(|side| side.settings.as_deref())),
@@ -162,6 +163,11 @@ fn srgb(linear: f32) -> u8 {
     let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0).round() as u8
 }
+/// A number, or the name of one that JSON does not know.
+fn json_of(value: f32) -> Value {
+    if value.is_finite() { value.into() } else { value.to_string().into() }
+}
+
 
 /// A map in 8 bits: that of raw values with the largest difference as white.
 fn displayed(map: &DynamicImage, largest: f64) -> DynamicImage {
