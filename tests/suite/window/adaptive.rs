@@ -5,7 +5,7 @@ use std::time::Duration;
 use image::RgbaImage;
 use serde_json::{Value, json};
 
-use super::controls::{TILES, WARNING, choose, count, on_rail};
+use super::controls::{TILES, WARNING, choose, count, is_about, on_rail};
 use crate::support::Tree;
 use crate::support::window::Viewer;
 
@@ -177,6 +177,40 @@ fn a_slider_has_previews() {
     assert!(value.as_f64() > Some(0.5), "{value}");
     let picture = viewer.screenshot();
     assert!(picture != still, "the slider changes nothing");
+    viewer.display.xdotool(&["mouseup", "1"]);
+    is_whole(&mut viewer, &picture);
+    viewer.quit();
+}
+
+/// Where the handle of a white light is: a disk in a ring.
+fn handle(screen: &RgbaImage) -> Option<(u32, u32)> {
+    // The center lies between pixels.
+    let is_around = |(x, y): (u32, u32), radius: u32, color: [u8; 3]| {
+        let is = |x: u32, y: u32| is_about(screen.get_pixel(x, y), color);
+        let radii = radius..=radius + 1;
+        let along = |is: &dyn Fn(u32) -> bool| radii.clone().any(is);
+        along(&|r| is(x - r, y)) && along(&|r| is(x + r, y)) && along(&|r| is(x, y - r)) && along(&|r| is(x, y + r))
+    };
+    let places = TILES.flat_map(|y| (12..628).map(move |x| (x, y)));
+    { places }.find(|at| is_around(*at, 5, [255; 3]) && is_around(*at, 9, SELECTION))
+}
+
+/// The ring around what is selected, as `src/app/widgets/theme.rs` has it.
+const SELECTION: [u8; 3] = [255, 160, 48];
+
+#[test]
+fn the_handle_of_a_light_has_previews() {
+    let mut viewer = Viewer::driven(Tree::new(), &[&["sphere-grid"][..], &OPTIONS].concat());
+    viewer.running.event("ready");
+    choose(&viewer, "place the rectangular light");
+    let (x, y) = handle(&viewer.until_screen("the handle", |screen| handle(screen).is_some())).unwrap();
+    let before = viewer.running.done(json!({"command": "get", "path": "lights.rect.azimuth"}));
+    let still = viewer.screenshot();
+    previews_of_drag(&mut viewer, &[0, 10, 20, 30].map(|step| (x + 2 * step, y + step)));
+    let after = viewer.running.done(json!({"command": "get", "path": "lights.rect.azimuth"}));
+    assert_ne!(after, before, "the light has not moved");
+    let picture = viewer.screenshot();
+    assert!(picture != still, "the light changes nothing");
     viewer.display.xdotool(&["mouseup", "1"]);
     is_whole(&mut viewer, &picture);
     viewer.quit();
