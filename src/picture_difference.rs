@@ -146,6 +146,26 @@ impl Comparison {
         self.error <= limits.max && limits.max_channel.is_none_or(|most| self.largest <= most)
     }
 
+    /// How bad the differences are at some limits: greater is worse. One that fails is worse than one that passes; then counts by which factor it
+    /// exceeds its nearest limit, which compares FLIP with RMSE. Without such a factor, as at a limit of 0, all RMSE come after all FLIP.
+    pub fn badness(&self, limits: Limits) -> [u64; 6] {
+        let beyond = |value: f64, limit: f64| {
+            if value == 0.0 || limit == f64::INFINITY { 0.0 } else { value / limit.abs() }
+        };
+        let of_channel = limits.max_channel.map_or(0.0, |most| beyond(self.largest, most));
+        let flag = |is_set: bool| f64::from(u8::from(is_set));
+        let parts = [
+            flag(!self.passes(limits)),
+            beyond(self.error, limits.max).max(of_channel),
+            flag(self.error == f64::INFINITY),
+            flag(self.measure == Measure::Flip),
+            self.error,
+            self.largest,
+        ];
+        // The bits of floats that are not negative are in the order of the floats.
+        parts.map(f64::to_bits)
+    }
+
     /// The difference per pixel: FLIP in magma colors for display-encoded pictures, |a - b| for raw ones.
     pub fn map(&self) -> &DynamicImage {
         &self.map

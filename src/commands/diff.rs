@@ -2,6 +2,7 @@
 
 mod report;
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ pub struct Args {
     /// Write a page for a browser, which shows the pictures, the worst first, with their differences and settings
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
-    /// Print JSON
+    /// Print JSON; an infinite difference, as of NaN and a number, is null
     #[arg(long)]
     json: bool,
 }
@@ -60,8 +61,8 @@ impl Pair {
         let compared = both.and_then(|[a, b]| Comparison::new(&a.picture, &b.picture));
         let mut pair = Self { name, compared, reported: None };
         if args.report.is_some() {
-            let passes = pair.passes(args.limits());
-            pair.reported = Some(reported((&pair.name, &pair.compared), [a.as_ref().ok(), b.as_ref().ok()], passes)?);
+            let sides = [a.as_ref().ok(), b.as_ref().ok()];
+            pair.reported = Some(reported((&pair.name, &pair.compared), sides, args.limits())?);
         }
         Ok(pair)
     }
@@ -116,7 +117,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let pictures = pairs.iter().map(|pair| listed(&pair.name, &pair.compared, limits)).collect();
         print_json(&listed_all(pictures, limits));
     } else {
-        print_all(&pairs);
+        print_all(&pairs, limits);
     }
     let failed = pairs.iter().filter(|pair| !pair.passes(limits)).count();
     match failed {
@@ -194,12 +195,12 @@ fn write_maps(pairs: &[Pair], out: &Path, folders: bool, limits: Limits) -> Resu
     Ok(())
 }
 
-/// Prints the pairs that cannot be compared, then those that differ, the worst first, then the number of the others.
-fn print_all(pairs: &[Pair]) {
-    let error = |pair: &Pair| pair.compared.as_ref().map_or(f64::INFINITY, |found| found.error);
+/// Prints the pairs that cannot be compared, then those that differ, the worst at these limits first, then the number of the others.
+fn print_all(pairs: &[Pair], limits: Limits) {
+    let badness = |pair: &Pair| pair.compared.as_ref().ok().map(|found| found.badness(limits));
     let is_same = |pair: &&Pair| pair.compared.as_ref().is_ok_and(|found| found.differing == 0);
     let (same, mut other): (Vec<&Pair>, Vec<&Pair>) = pairs.iter().partition(is_same);
-    other.sort_by(|a, b| error(b).total_cmp(&error(a)));
+    other.sort_by_key(|pair| Reverse((pair.compared.is_err(), badness(pair))));
     other.into_iter().for_each(print);
     match same.as_slice() {
         [] => {}

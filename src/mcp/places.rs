@@ -6,8 +6,8 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Endings of files that a shader tree consists of.
-const SHADERS: [&str; 9] = ["glsl", "vert", "frag", "comp", "geom", "tesc", "tese", "mesh", "task"];
+/// Endings of files that a shader tree consists of; the last one is that of a single file of another playground.
+const SHADERS: [&str; 10] = ["glsl", "vert", "frag", "comp", "geom", "tesc", "tese", "mesh", "task", "fs"];
 
 /// The path of a file below a folder.
 ///

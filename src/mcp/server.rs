@@ -48,6 +48,7 @@ pub fn serve(config: Config, mut input: impl BufRead, output: impl Write + Send 
         places,
         calls: Mutex::default(),
         seen: Mutex::default(),
+        made: Mutex::default(),
         checking: Mutex::default(),
     });
     let mut server = Server { shared: shared.clone(), outgoing, version: None, threads: Vec::new() };

@@ -1,6 +1,6 @@
 //! The state that all calls of a client share.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::places::Places;
@@ -15,6 +15,8 @@ pub struct Shared {
     /// The texts of files as the agent has last seen or written them. Locked while an edit is under way, so that no other one begins with the
     /// text before it.
     pub seen: Mutex<HashMap<String, String>>,
+    /// Files that the agent has made. Beside a single shader file, they belong to it only once it includes them.
+    pub made: Mutex<HashSet<String>>,
     /// Locked while the picture is checked, which changes a setting meanwhile.
     pub checking: Mutex<()>,
 }

@@ -2,7 +2,9 @@
 
 import asyncio
 import base64
+import json
 import os
+import re
 import subprocess
 import time
 from pathlib import Path
@@ -14,11 +16,15 @@ SHAPE = (96).to_bytes(4, "big") + (54).to_bytes(4, "big")
 
 
 RUNTIME = Path("runtime").absolute()
+HOME = Path("home").absolute()
+# Where a program may keep files without being asked to.
+FOLDERS = ("SPECULA_CACHE", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_STATE_HOME", "MESA_SHADER_CACHE_DIR")
 
 
 def server(*arguments):
     # The client hands on few variables; the others choose the device.
-    env = {**os.environ, "XDG_RUNTIME_DIR": str(RUNTIME)}
+    env = {name: value for name, value in os.environ.items() if name not in FOLDERS}
+    env.update(XDG_RUNTIME_DIR=str(RUNTIME), HOME=str(HOME))
     return StdioServerParameters(command=os.environ["SPECULA"], args=["mcp", *arguments], env=env)
 
 
@@ -38,6 +44,28 @@ async def call(client, name, **arguments):
     result = await client.call_tool(name, arguments)
     assert not result.is_error, text_of(result)
     return result
+
+
+async def drawn(client):
+    """The number of a new picture."""
+    return int(re.match(r"Picture (\d+): ", text_of(await call(client, "render")))[1])
+
+
+async def is_equal(client, a, b):
+    told = text_of(await call(client, "diff", a=a, b=b))
+    assert ("are equal" in told) != ("mean FLIP" in told), told
+    return "are equal" in told
+
+
+async def camera(client, **arguments):
+    """Position, target and field of view after a call."""
+    told = text_of(await call(client, "camera", **arguments))
+    number = r"(-?[\d.e-]+)"
+    point = rf"\[{number},{number},{number}\] m"
+    found = re.fullmatch(rf"The camera is at {point}, looks at {point}, with a vertical field of view of {number} degrees\.", told)
+    assert found, told
+    values = [float(value) for value in found.groups()]
+    return values[:3], values[3:6], values[6]
 
 
 async def refused(client, name, part, **arguments):
@@ -62,9 +90,41 @@ async def looks(client):
     await refused(client, "set", "view.ev", values={"view.evv": 1})
     assert "view.tonemap = " in text_of(await call(client, "settings", find="tonemap"))
     assert "d: Normal distribution D" in text_of(await call(client, "modes", find="ndf"))
-    await call(client, "camera", view="front")
-    await call(client, "open", environment="none")
+    await opens(client)
+    await moves(client)
+
+
+async def opens(client):
+    before = await drawn(client)
+    for kind, other, own in [("environment", "furnace", "none"), ("model", "metal-grid", "sphere-grid")]:
+        assert text_of(await call(client, "open", **{kind: other})) == f"Opened {kind} {other}."
+        assert not await is_equal(client, before, await drawn(client)), kind
+        assert text_of(await call(client, "open", **{kind: own})) == f"Opened {kind} {own}."
+        assert await is_equal(client, before, await drawn(client)), kind
     await refused(client, "open", "no such", model="nonsense")
+    assert await is_equal(client, before, await drawn(client))
+
+
+def is_near(a, b):
+    """Whether two cameras are the same but for rounding."""
+    pairs = zip([*a[0], *a[1], a[2]], [*b[0], *b[1], b[2]])
+    return all(abs(x - y) <= 1e-4 * max(1.0, abs(y)) for x, y in pairs)
+
+
+async def moves(client):
+    before = await drawn(client)
+    _, _, fovy = await camera(client)
+    eye, target, _ = await camera(client, view="front")
+    assert abs(eye[0] - target[0]) < 1e-4 and abs(eye[1] - target[1]) < 1e-4 and eye[2] > target[2] + 0.1, (eye, target)
+    front = await drawn(client)
+    assert not await is_equal(client, before, front)
+    placed = ([0.5, 1.25, 4.0], [0.0, 0.25, 0.0], 30.0)
+    for found in (await camera(client, eye=placed[0], target=placed[1], fovy=placed[2]), await camera(client)):
+        assert is_near(found, placed), found
+    assert not await is_equal(client, front, await drawn(client))
+    await camera(client, fovy=fovy)
+    found = await camera(client, view="front")
+    assert is_near(found, (eye, target, fovy)), found
 
 
 async def edits(client, tree):
@@ -80,7 +140,8 @@ async def edits(client, tree):
     good = text_of(await call(client, "edit_shader", file=ndf, old="a2 = aplha;", new="a2 = alpha;"))
     assert f"Wrote {tree}/{ndf}" in good and "+    float a2 = alpha;" in good, good
     assert "float a2 = alpha;" in (tree / ndf).read_text(encoding="utf-8")
-    assert "compile" in text_of(await call(client, "check"))
+    assert text_of(await call(client, "check")) == "All files compile, without warnings."
+    await checks_picture(client)
     await call(client, "edit_shader", file=ndf, old="a2 = alpha;", new="a2 = alpha * alpha;")
     # Edits at the same time keep each other; the whole of a file is written only over what the agent has seen.
     lines = [{"file": ndf, "old": "#endif", "new": f"// {n}\n#endif"} for n in range(3)]
@@ -110,6 +171,23 @@ async def edits(client, tree):
         pass
     else:
         raise AssertionError("a file that is not there was read")
+
+
+async def checks_picture(client):
+    """A check of the picture lists what fails in it."""
+    chosen = text_of(await call(client, "settings", find="view.checks"))
+    hook = "void user_surface(inout Surface s, Fragment f, vec3 v) {"
+    wrong = '\n    assert(s.roughness > 2.0, "is rough");\n    float root = sqrt(-1.0 - s.roughness);'
+    await call(client, "edit_shader", file="user.glsl", old=hook, new=hook + wrong)
+    _, assertions = text_of(await call(client, "check", assertions=True)).split("\n", 1)
+    (line,) = assertions.splitlines()
+    assert re.search(r"user\.glsl:\d+: .*is rough.* \(\d+ times, first at \[\d+,\d+\]\)$", line), line
+    _, undefined = text_of(await call(client, "check", undefined=True)).split("\n", 1)
+    assert "is rough" in undefined and "sqrt" in undefined and "sqrt" not in assertions, undefined
+    assert text_of(await call(client, "settings", find="view.checks")) == chosen
+    await call(client, "edit_shader", file="user.glsl", old=hook + wrong, new=hook)
+    told = text_of(await call(client, "check", assertions=True, undefined=True))
+    assert told == "All files compile, without warnings.\nNo check of the picture failed.", told
 
 
 async def measures(client, out):
@@ -143,6 +221,63 @@ async def cancels(client):
     assert picture_of(await call(client, "render"))
 
 
+WAVE = """#include "shape.glsl"
+void main() {
+    gl_FragColor = vec4(level(), 0.5, 0.0, 1.0);
+}
+"""
+
+
+async def single_file(here):
+    """A single file is the tree, with what it includes. Others in its folder stay as they are."""
+    folder = here / "toy"
+    folder.mkdir()
+    texts = {"wave.fs": WAVE, "shape.glsl": "float level() { return 0.25; }\n", "other.glsl": "float other = 1.0;\n"}
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    async with Client(server("--shaders", str(folder / "wave.fs"), "--size", SIZE)) as client:
+        tree, *files = text_of(await call(client, "read_shader")).splitlines()
+        assert tree == f"Shader tree: {folder}/wave.fs" and files[0] == "opened/wave.fs", files
+        assert "opened/shape.glsl" in files and "opened/other.glsl" not in files, files
+        pictures = [await drawn(client)]
+        for name, old, new in [("wave.fs", "0.5", "0.75"), ("shape.glsl", "0.25", "0.5")]:
+            told = text_of(await call(client, "edit_shader", file=f"opened/{name}", old=old, new=new))
+            assert told.startswith(f"Wrote {folder}/{name}:\n") and "the picture shows it" in told, told
+            texts[name] = texts[name].replace(old, new)
+            pictures.append(await drawn(client))
+            assert not await is_equal(client, *pictures[-2:]), name
+        broken = await client.call_tool("edit_shader", {"file": "opened/wave.fs", "old": "level()", "new": "levle()"})
+        assert broken.is_error and f"{folder}/wave.fs:3:" in text_of(broken), text_of(broken)
+        await call(client, "edit_shader", file="opened/wave.fs", old="levle()", new="level()")
+        await call(client, "read_shader", file="opened/other.glsl")
+        await refused(client, "edit_shader", "does not belong to the shader tree", file="opened/other.glsl", text="// mine\n")
+        await refused(client, "edit_shader", "single file", file="toy.glsl", text="// mine\n")
+        await refused(client, "edit_shader", "out of its folder", file="opened/../outside.glsl", text="// mine\n")
+        texts["new.glsl"] = "float added() { return 1.0; }\n"
+        made = text_of(await call(client, "edit_shader", file="opened/new.glsl", text=texts["new.glsl"].replace("1.0", "0.0")))
+        assert made.startswith(f"Made {folder}/new.glsl."), made
+        await call(client, "edit_shader", file="opened/new.glsl", old="0.0", new="1.0")
+    assert {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()} == texts
+
+
+async def configured(here):
+    """The start that the manual shows to clients, in a folder with a tree."""
+    manual = (Path(os.environ["REPOSITORY"]) / "assets/manual/agents.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```json\n(.*?)```", manual, re.DOTALL)
+    start = json.loads(block)["mcpServers"]["specula"]
+    assert start["command"] == "specula" and start["args"][0] == "mcp", start
+    async with Client(server(*start["args"][1:])) as client:
+        tree = Path(text_of(await call(client, "read_shader")).splitlines()[0].removeprefix("Shader tree: "))
+        assert tree.resolve() == here / "shaders", tree
+        saved = text_of(await call(client, "render", size=[96, 54], save="seen.png"))
+        assert f"Wrote {here}/pictures/seen.png" in saved and (here / "pictures/seen.png").exists(), saved
+
+
+def files_below(folder):
+    found = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
+    return {str(path.relative_to(folder)): path.read_bytes() for path in found}
+
+
 async def main():
     here = Path.cwd()
     # Other commands take ./shaders by themselves; an agent must be given it.
@@ -152,6 +287,8 @@ async def main():
         ("looks", looks, ()), ("edits", edits, (tree,)), ("measures", measures, (out,)), ("cancels", cancels, ()),
     ]  # fmt: skip
     RUNTIME.mkdir(mode=0o700)
+    HOME.mkdir()
+    before = files_below(here)
     start = server("sphere-grid", "--shaders", str(tree), "--out-folder", str(out), "--size", SIZE, "--env", "none")
     async with Client(start) as client:
         assert client.server_info.name == "specula" and client.protocol_version in ("2025-06-18", "2025-11-25")
@@ -159,11 +296,20 @@ async def main():
             begun = time.monotonic()
             await step(client, *arguments)
             print(f"{name}: {time.monotonic() - begun:.2f} s", flush=True)
+    after = files_below(here)
+    changed = {name for name in before.keys() | after.keys() if before.get(name) != after.get(name)}
+    cached = {name.split("/")[2] for name in changed if name.startswith("home/.cache/")}
+    assert "specula" in cached and cached <= {"specula", "mesa_shader_cache", "mesa_shader_cache_db"}, cached
+    written = {name for name in changed if not name.startswith("home/.cache/")}
+    assert written == {"shaders/brdf/ndf.glsl", "out/a/d.exr", "out/final.png"}, written
+    await single_file(here)
+    await configured(here)
     # Without a tree and a folder.
     async with Client(server("sphere-grid", "--size", SIZE, "--env", "none")) as client:
         await refused(client, "render", "--out-folder", save="a.png")
         edited = await call(client, "edit_shader", file="brdf/ndf.glsl", old="a2 = alpha * alpha;", new="a2 = alpha;")
-        assert "in memory" in text_of(edited), text_of(edited)
+        assert "stay in the memory of the program" in text_of(edited), text_of(edited)
+        assert "stay in the memory of the program" in text_of(await call(client, "read_shader")).splitlines()[0]
     # A session that somebody else has started, by its socket.
     socket = RUNTIME / "specula.sock"
     command = [os.environ["SPECULA"], "serve", "sphere-grid", "--env", "none", "--size", SIZE, "--socket", str(socket)]

@@ -1,5 +1,6 @@
 //! Pictures as they are shown, stored and compared.
 
+mod brdf_pages;
 mod capture;
 mod diff;
 mod display;

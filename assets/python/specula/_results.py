@@ -210,6 +210,7 @@ class Difference:
     measure: str
     """``flip`` (8-bit pictures: the mean of FLIP, 0 to 1) or ``rmse`` (raw values, in their own unit)."""
     error: float
+    """Infinite where only one of the pictures has NaN or infinity."""
     largest: float
     """The largest difference of a channel."""
     largest_at: Tuple[int, int]

@@ -278,7 +278,7 @@ class Session:
                 _remove(path)
         at = pair["largest_at"]
         return Difference(
-            str(pair["measure"]), pair["error"], pair["largest"], (at[0], at[1]), pair["differing"], pair["pixels"], shown
+            str(pair["measure"]), _size_of(pair["error"]), _size_of(pair["largest"]), (at[0], at[1]), pair["differing"], pair["pixels"], shown
         )
 
     # Everything else
@@ -379,6 +379,11 @@ def _remove(path: Path) -> None:
 
 def _size(size: Optional[Size]) -> Optional[List[int]]:
     return None if size is None else [int(size[0]), int(size[1])]
+
+
+def _size_of(difference: Any) -> float:
+    """A difference, for which JSON has no infinity: that of NaN and a number."""
+    return float("inf") if difference is None else float(difference)
 
 
 def _plain(value: Any) -> Any:

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::app::engine::Engine;
 use crate::app::state::State;
-use crate::shader::{Change, StageKind, TreePath};
+use crate::shader::{Change, Source, StageKind, TreePath};
 use crate::threads::{Message, TextsWritten};
 use crate::write_back::{self, TreeFile, Written};
 
@@ -22,11 +22,13 @@ pub(in crate::app) enum Outcome {
 ///
 /// # Errors
 /// Why it may not.
-pub(in crate::app) fn writable(path: &str) -> Result<TreePath, String> {
+pub(in crate::app) fn writable(source: &Source, path: &str) -> Result<TreePath, String> {
     let inside =
         TreePath::parse(path).ok_or_else(|| format!("{path} is not in the shader tree; name it from its root"))?;
     let is_hidden = inside.as_str().split('/').any(|part| part.starts_with('.'));
-    if is_hidden || !(inside.extension() == Some("glsl") || StageKind::of(&inside).is_some()) {
+    let is_code = inside.extension() == Some("glsl") || StageKind::of(&inside).is_some();
+    let is_of_toy = source.is_toy() && inside.extension() == Some("fs");
+    if is_hidden || !(is_code || is_of_toy) {
         return Err(format!("{path} is no file of shader code: its name must end as .glsl, .vert, .frag or .comp do"));
     }
     Ok(inside)

@@ -1,7 +1,5 @@
 //! Commands that read and write the texts of the shader tree.
 
-use std::path::Path;
-
 use serde_json::json;
 
 use super::fields;
@@ -48,10 +46,11 @@ pub(in crate::app) static FILE: Spec<String> = Spec::new("file", read).parsed(
 );
 
 pub(in crate::app) static FILES: Spec<()> = Spec::fallible("files", list)
-    .line("The files of the shader tree. Result: tree (its folder or file; null for the built-in one), files");
+    .line("The files of the shader tree. Result: tree (its folder or file; null for the built-in one), files, folder (of the files that edit \
+        writes; null for the built-in tree), below (where that folder is in the tree: opened for a single file, else empty)");
 
 fn edit(state: &mut State, engine: &mut Engine, Edit { file, text, base }: Edit) -> Outcome {
-    let path = writable(&file)?;
+    let path = writable(&state.source, &file)?;
     Ok(match write_text(state, engine, path, text.map(Into::into), base)? {
         texts::Outcome::Compiling => Until::Reloaded,
         texts::Outcome::Writing(number) => Until::TextWritten(number),
@@ -75,8 +74,10 @@ fn read(state: &mut State, _: &mut Engine, file: String) -> Outcome {
 fn list(state: &mut State, _: &mut Engine, (): ()) -> Outcome {
     let source = state.source.clone();
     let run = move || {
-        let files: Vec<TreePath> = source.opened().into_iter().chain(source.list()).collect();
-        Ok(json!({ "tree": source.location().map(Path::to_owned), "files": files }))
+        let files: Vec<TreePath> = source.own_files().into_iter().chain(source.list()).collect();
+        Ok(
+            json!({ "tree": source.location(), "files": files, "folder": source.folder_of_files(), "below": source.path_of_folder() }),
+        )
     };
     Ok(Until::Work(Work { uses_device: false, run: Box::new(run) }))
 }

@@ -59,11 +59,11 @@ fn settings_in(path: &Path) -> Option<String> {
 pub(super) fn reported(
     (name, compared): (&str, &Result<Comparison, String>),
     sides: [Option<&Opened>; 2],
-    passes: bool,
+    limits: Limits,
 ) -> Result<ReportPair, String> {
     let [a, b] = sides.map(|side| side.map(Opened::shown));
     match (compared, &a, &b) {
-        (Ok(found), Some(a), Some(b)) => ReportPair::compared(name, [a, b], found, passes),
+        (Ok(found), Some(a), Some(b)) => ReportPair::compared(name, [a, b], found, limits),
         (Ok(_), ..) => ReportPair::failed(name, [a.as_ref(), b.as_ref()], "a picture is missing".to_owned()),
         (Err(why), ..) => ReportPair::failed(name, [a.as_ref(), b.as_ref()], why.clone()),
     }

@@ -181,12 +181,17 @@ fn diff(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     if let Some(why) = pair["why"].as_str() {
         return Err(failed(why.to_owned()));
     }
+    let number = |name: &str| if pair[name].is_null() { "infinite".to_owned() } else { pair[name].to_string() };
     let measure = if pair["measure"] == "flip" { "mean FLIP" } else { "RMSE" };
     let mut content = vec![text(match pair["differing"].as_u64() {
         Some(0) => "The pictures are equal, bit by bit.".to_owned(),
         _ => format!(
             "{measure} {}; largest difference of a channel {} at pixel {}; {} of {} pixels differ. The map shows where.",
-            pair["error"], pair["largest"], pair["largest_at"], pair["differing"], pair["pixels"]
+            number("error"),
+            number("largest"),
+            pair["largest_at"],
+            pair["differing"],
+            pair["pixels"]
         ),
     })];
     content.extend(shown);

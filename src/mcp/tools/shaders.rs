@@ -13,6 +13,10 @@ use crate::mcp::places::of_tree;
 use crate::mcp::program::{Call, Failure};
 use crate::mcp::shared::lock;
 
+/// The tree without --shaders.
+const BUILT_IN: &str =
+    "built in; edits stay in the memory of the program (start specula mcp with --shaders DIR to keep them)";
+
 pub static READ_SHADER: Tool = Tool {
     name: "read_shader",
     title: "Read a shader",
@@ -78,7 +82,7 @@ fn read_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     let Some(file) = file else {
         let found = caller.ask("files", &json!({}))?;
         let files = found["files"].as_array().into_iter().flatten().filter_map(Value::as_str);
-        let tree = found["tree"].as_str().unwrap_or("built-in, read-only");
+        let tree = found["tree"].as_str().unwrap_or(BUILT_IN);
         return Ok(vec![text(format!("Shader tree: {tree}\n{}", files.collect::<Vec<_>>().join("\n")))]);
     };
     let all = text_of(caller, &file)?;
@@ -97,6 +101,44 @@ fn text_of(caller: &Caller<'_>, file: &str) -> Result<String, Failure> {
     Ok(found["text"].as_str().unwrap_or_default().to_owned())
 }
 
+/// Where an edit goes.
+struct Place {
+    /// Its name for the agent.
+    name: String,
+    /// Whether the file is there already.
+    is_there: bool,
+}
+
+/// Where an edit of a file goes.
+///
+/// # Errors
+/// The agent may not write there.
+fn place_of(caller: &Caller<'_>, file: &str) -> Result<Place, Failure> {
+    let listed = caller.ask("files", &json!({}))?;
+    let is_there = listed["files"].as_array().is_some_and(|files| files.iter().any(|of| *of == *file));
+    let Some(folder) = listed["folder"].as_str() else {
+        let name = format!("{file} of the shader tree, {BUILT_IN}");
+        return Ok(Place { name, is_there });
+    };
+    let below = listed["below"].as_str().unwrap_or_default();
+    let name = if below.is_empty() {
+        file
+    } else {
+        file.strip_prefix(below).and_then(|file| file.strip_prefix('/')).ok_or_else(|| {
+            failed(format!(
+                "the shader is a single file, and `{file}` is one of the program around it: name one below {below}/"
+            ))
+        })?
+    };
+    let path = of_tree(Path::new(folder), name).map_err(failed)?;
+    let (name, exists) = (path.display().to_string(), path.exists());
+    // The folder of a single file has others, which the agent was not given.
+    if exists && !is_there && !lock(&caller.shared.made).contains(&name) {
+        return Err(failed(format!("{name} does not belong to the shader tree, so it stays as it is")));
+    }
+    Ok(Place { name, is_there: is_there || exists })
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edit {
@@ -108,17 +150,9 @@ struct Edit {
 
 fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     let Edit { file, old, new, text: whole } = read(arguments)?;
-    // The built-in shaders have no folder: they change in the program's memory.
-    let listed = caller.ask("files", &json!({}))?;
-    let is_there = listed["files"].as_array().is_some_and(|files| files.iter().any(|of| *of == *file));
-    let place = match listed["tree"].as_str() {
-        Some(tree) => of_tree(Path::new(tree), &file).map_err(failed)?.display().to_string(),
-        None => {
-            format!("{file} of the built-in shaders, in memory (start specula mcp with --shaders DIR to keep changes)")
-        }
-    };
     // Until the answer, no other edit begins.
     let mut seen = lock(&caller.shared.seen);
+    let Place { name: place, is_there } = place_of(caller, &file)?;
     let before = if is_there { Some(text_of(caller, &file)?) } else { None };
     let after = match (old, new, whole) {
         (None, None, Some(whole)) => {
@@ -151,6 +185,9 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
         (true, false) => format!("Wrote {place}:\n{}", changes.trim_end()),
         (false, _) => format!("Made {place}."),
     };
+    if before.is_none() {
+        lock(&caller.shared.made).insert(place.clone());
+    }
     // A save of the user in between stays.
     let outcome = caller.ask("edit", &json!({ "file": file, "text": after, "base": before }));
     seen.insert(file, after);

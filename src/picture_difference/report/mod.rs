@@ -1,11 +1,13 @@
 //! A page of HTML about the differences of pictures: all in one file, without a network.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use serde::Serialize;
+use serde_json::Value;
 
-use super::{Comparison, Measure, Picture, differences};
+use super::{Comparison, Limits, Measure, Picture, differences};
 use crate::report::{png_uri, uri_of};
 
 /// The page without its pictures, and its script.
@@ -53,22 +55,25 @@ pub struct ReportPair {
     size: (u32, u32),
     a: Option<Side>,
     b: Option<Side>,
-    /// Both values of the pixel with the largest difference: RGBA.
-    worst: Option<[[f32; 4]; 2]>,
+    /// Both values of the pixel with the largest difference: RGBA. Those that JSON does not know are text.
+    worst: Option<[[Value; 4]; 2]>,
     /// [`Comparison::map`] as a URI.
     map: Option<String>,
     /// The largest difference of a channel in each pixel as a URI.
     channel: Option<String>,
     /// The settings that differ: path, and both values.
     settings: Vec<[String; 3]>,
+    /// [`Comparison::badness`]; `None` if they cannot be compared.
+    #[serde(skip)]
+    badness: Option<[u64; 6]>,
 }
 
 impl ReportPair {
-    /// Two pictures that were compared. `passes`: whether no limit is exceeded.
+    /// Two pictures that were compared.
     ///
     /// # Errors
     /// A message if a picture cannot be encoded.
-    pub fn compared(name: &str, [a, b]: [&Shown<'_>; 2], found: &Comparison, passes: bool) -> Result<Self, String> {
+    pub fn compared(name: &str, [a, b]: [&Shown<'_>; 2], found: &Comparison, limits: Limits) -> Result<Self, String> {
         let (x, y) = found.largest_at;
         let pixels = [a, b].map(|side| side.picture.pixels());
         let index = (y * a.picture.size().0 + x) as usize;
@@ -81,13 +86,15 @@ impl ReportPair {
             largest_at: Some((x, y)),
             differing: found.differing,
             pixels: found.pixels,
-            worst: Some(worst),
+            worst: Some(worst.map(|values| values.map(json_of))),
             map: Some(uri_of(&displayed(found.map(), found.largest))?),
             channel: Some(uri_of(&of_channels(&differences, a.picture, found.largest))?),
             settings: settings_that_differ([a, b].map(|side| side.settings.as_deref())),
+            badness: Some(found.badness(limits)),
+            passes: found.passes(limits),
+            why: None,
             ..Self::failed(name, [Some(a), Some(b)], String::new())?
-        }
-        .with(passes))
+        })
     }
 
     /// Pictures that cannot be compared, and why. One of them may be missing.
@@ -114,21 +121,14 @@ impl ReportPair {
             map: None,
             channel: None,
             settings: Vec::new(),
+            badness: None,
         })
-    }
-
-    fn with(self, passes: bool) -> Self {
-        Self { passes, why: None, ..self }
     }
 }
 
-/// The page about `pairs`, the worst first. `limits` names the limits, as in "--max 0.01".
+/// The page about `pairs`: those that cannot be compared, then the others, the worst first. `limits` names the limits, as in "--max 0.01".
 pub fn page(title: &str, limits: &str, mut pairs: Vec<ReportPair>) -> String {
-    let badness = |pair: &ReportPair| (pair.why.is_some(), pair.error, pair.largest);
-    pairs.sort_by(|one, other| {
-        let ((a_fails, a_error, a_largest), (b_fails, b_error, b_largest)) = (badness(one), badness(other));
-        b_fails.cmp(&a_fails).then(b_error.total_cmp(&a_error)).then(b_largest.total_cmp(&a_largest))
-    });
+    pairs.sort_by_key(|pair| Reverse((pair.badness.is_none(), pair.badness)));
     let data = serde_json::json!({ "title": title, "limits": limits, "pairs": pairs });
     // No text of a file ends the script that holds it.
     let data = data.to_string().replace('<', "\\u003c");
@@ -161,6 +161,11 @@ fn srgb(linear: f32) -> u8 {
     let linear = if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) };
     let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0).round() as u8
+}
+
+/// A number, or the name of one that JSON does not know.
+fn json_of(value: f32) -> Value {
+    if value.is_finite() { value.into() } else { value.to_string().into() }
 }
 
 /// A map in 8 bits: that of raw values with the largest difference as white.
@@ -239,7 +244,7 @@ mod tests {
         let [a, b] = [shown(&black, "mode = \"d\"\n[view]\nev = 1.0"), shown(&red, "mode = \"d\"\n[view]\nev = 2.0")];
         let pair = |name, sides: [&Shown<'_>; 2]| {
             let found = Comparison::new(sides[0].picture, sides[1].picture).unwrap();
-            ReportPair::compared(name, sides, &found, found.error == 0.0).unwrap()
+            ReportPair::compared(name, sides, &found, Limits::default()).unwrap()
         };
         let lone = ReportPair::failed("lone", [Some(&a), None], "only in a".into()).unwrap();
         let page = page("a and b", "--max 0", vec![pair("same", [&a, &a]), pair("differs", [&a, &b]), lone]);

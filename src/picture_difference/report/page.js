@@ -10,6 +10,8 @@ const MAPS = ["map", "channel"];
 const state = { pair: 0, mode: "wipe", wipe: 50, gain: 0, zoom: 1, x: 0, y: 0 };
 
 const number = value => value === null ? "∞" : value === 0 ? "0" : value < 0.00005 ? "< 0.0001" : value.toFixed(4);
+// NaN and infinity are text.
+const rounded = value => typeof value === "string" ? value : +value.toPrecision(4);
 const pair = () => report.pairs[state.pair];
 
 function element(tag, text, properties) {
@@ -131,7 +133,8 @@ function toWorst() {
   if (shown.why) return;
   const [x, y] = shown.largest_at;
   // Before the place: a long text makes the stage smaller.
-  at("pixel").textContent = `${x}, ${y}: A ${shown.worst[0].map(value => +value.toPrecision(4)).join(" ")} · B ${shown.worst[1].map(value => +value.toPrecision(4)).join(" ")}`;
+  const [a, b] = shown.worst.map(values => values.map(rounded).join(" "));
+  at("pixel").textContent = `${x}, ${y}: A ${a} · B ${b}`;
   state.zoom = 24;
   state.x = at("stage").clientWidth / 2 - (x + 0.5) * state.zoom;
   state.y = at("stage").clientHeight / 2 - (y + 0.5) * state.zoom;

@@ -109,6 +109,14 @@ impl Source {
         }
     }
 
+    /// The files of a tree that is made of a single file: this one first, and those beside it that belong to it.
+    pub fn own_files(&self) -> Vec<TreePath> {
+        match &self.tree {
+            Tree::Toy(toy) => toy.own_files(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The tree that was compiled into the binary.
     pub fn embedded() -> Self {
         Self::example(None)

@@ -8,7 +8,7 @@ use super::directory;
 use super::embedded::{self, Example};
 use super::error::{MAX_IMAGE_BYTES, SourceError};
 use super::read::{check_text, names_in, read_bytes, read_file};
-use super::toy::Toy;
+use super::toy::{OPENED, Toy};
 use super::tree_path::TreePath;
 use crate::shader::diagnostic::Diagnostic;
 
@@ -118,6 +118,14 @@ impl Tree {
         match self {
             Self::Toy(toy) => Some(toy.folder()),
             _ => self.root(),
+        }
+    }
+
+    /// The folder of the tree that is [`Self::folder_of_files`]; empty for the root.
+    pub fn path_of_folder(&self) -> &'static str {
+        match self {
+            Self::Toy(_) => OPENED,
+            _ => "",
         }
     }
 

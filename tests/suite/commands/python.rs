@@ -49,6 +49,16 @@ fn a_session_draws_edits_measures_and_survives() {
 }
 
 #[test]
+fn a_session_writes_its_own_tree_and_all_kinds_of_files() {
+    run_script("own_tree.py", tempfile::tempdir().unwrap().path());
+}
+
+#[test]
+fn the_python_of_the_pages_runs() {
+    run_script("pages.py", tempfile::tempdir().unwrap().path());
+}
+
+#[test]
 fn sessions_leave_nothing_behind() {
     run_script("endings.py", tempfile::tempdir().unwrap().path());
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use image::{Rgb, RgbImage, Rgba, RgbaImage};
+use image::{Rgb, RgbImage, Rgba, Rgba32FImage, RgbaImage};
 use serde_json::json;
 
 use crate::support::browser::Browser;
@@ -14,7 +14,7 @@ const SHIFT: &str = "\u{e008}";
 const ESCAPE: &str = "\u{e00c}";
 
 /// Whether a page has loaded nothing but what is in its file, and its scripts have no error.
-fn is_self_contained(browser: &Browser) -> bool {
+pub(super) fn is_self_contained(browser: &Browser) -> bool {
     let script = "return performance.getEntriesByType('resource').map(entry => entry.name).filter(name => !name.startsWith('data:'));";
     browser.run(script) == json!([]) && browser.log() == json!([])
 }
@@ -170,6 +170,102 @@ fn the_worst_pixel_is_found_and_framed() {
     assert!(is_self_contained(&browser));
 }
 
+/// NaN and infinity, which JSON does not know, are values like others: their pixel is the worst one.
+#[test]
+fn the_worst_pixel_may_have_no_number() {
+    for (value, name) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (f32::NEG_INFINITY, "-inf")] {
+        let folder = tempfile::tempdir().unwrap();
+        let here = folder.path();
+        for (file, red) in [("a.exr", 0.5), ("b.exr", value)] {
+            let color = |x, y| Rgba([if [x, y] == WORST { red } else { 2.0 }, 1.0, 0.25, 1.0]);
+            Rgba32FImage::from_fn(64, 40, color).save(here.join(file)).unwrap();
+        }
+        run(here, &["diff", "a.exr", "b.exr", "--report", "page.html"]).expect(1, &[]);
+        let browser = Browser::open(&here.join("page.html"), (1200, 900));
+        browser.press("z");
+        let told = browser.run("return document.querySelector('#pixel').textContent;");
+        assert_eq!(told, json!(format!("50, 10: A 0.5 1 0.25 1 · B {name} 1 0.25 1")));
+        let ([left, _, width, _], [at, _, pixel, _]) = (browser.area("#stage"), browser.area("#worst"));
+        let center = left + width / 2.0;
+        assert!(pixel == 24.0 && (at + 12.0 - center).abs() <= 1.5, "{name}: {pixel} at {at}, around {center}");
+        let numbers = browser.run("return document.querySelector('#numbers').textContent;");
+        assert!(numbers.as_str().unwrap().starts_with("RMSE ∞ · largest difference of a channel ∞"), "{numbers}");
+        assert!(is_self_contained(&browser));
+    }
+}
+
+/// A pair that fails a limit stands above one that passes, however large its mean is. Of those that fail, the one that is farthest beyond a
+/// limit comes first, as FLIP and RMSE have no other common measure.
+#[test]
+fn pairs_that_fail_come_first_the_farthest_beyond_a_limit_at_the_top() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    ["a", "b"].iter().for_each(|side| fs::create_dir(here.join(side)).unwrap());
+    let png = |name: &str, differs: &dyn Fn(u32, u32) -> u8| {
+        for (side, scale) in [("a", 0), ("b", 1)] {
+            let color = |x, y| Rgb([100 + scale * differs(x, y), 100, 100]);
+            RgbImage::from_fn(64, 40, color).save(here.join(side).join(name)).unwrap();
+        }
+    };
+    png("even.png", &|_, _| 20);
+    png("spot.png", &|x, y| if [x, y] == WORST { 130 } else { 0 });
+    png("same.png", &|_, _| 0);
+    RgbImage::new(4, 4).save(here.join("a/lone.png")).unwrap();
+    let flip = |name: &str| {
+        let [a, b] = ["a", "b"].map(|side| format!("{side}/{name}"));
+        run(here, &["diff", &a, &b, "--json"]).json()["pictures"][0]["error"].as_f64().unwrap()
+    };
+    let even = flip("even.png");
+    assert!(even > 2.0 * flip("spot.png"), "{even}");
+    // An RMSE of half as much again; alpha does not differ.
+    let step = (1.5 * even / 0.75_f64.sqrt()) as f32;
+    for (side, value) in [("a", 0.5), ("b", 0.5 + step)] {
+        let image = Rgba32FImage::from_pixel(64, 40, Rgba([value, value, value, 1.0]));
+        image.save(here.join(side).join("raw.exr")).unwrap();
+    }
+    let order = |limits: &[&str]| {
+        let told = run(here, &[&["diff", "a", "b", "--report", "page.html"], limits].concat());
+        told.expect(1, &[]);
+        let browser = Browser::open(&here.join("page.html"), (1200, 900));
+        let names = "return [...document.querySelectorAll('#pairs b')].map(name => name.textContent);";
+        let names: Vec<String> = serde_json::from_value(browser.run(names)).unwrap();
+        let printed = told.stdout.lines().filter_map(|line| line.split_whitespace().nth(1));
+        assert_eq!(printed.collect::<Vec<_>>(), names, "the lines have another order than the page");
+        names
+    };
+    let limits = ["--max", &(1.2 * even).to_string(), "--max-channel", "0.2"];
+    assert_eq!(order(&limits), ["lone.png", "spot.png", "raw.exr", "even.png", "same.png"]);
+    // A limit of 0 has no multiples.
+    assert_eq!(order(&[]), ["lone.png", "even.png", "spot.png", "raw.exr", "same.png"]);
+}
+
+/// The table of a page has the settings in which two pictures of Specula differ, and no others.
+#[test]
+fn pictures_of_specula_bring_their_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let scene = ["render", "sphere-grid", "--env", "none", "--size", "64x36"];
+    let looks = [["--set", "view.ev=1", "--set", "NDF=GGX"], ["--set", "view.ev=2", "--set", "NDF=Beckmann"]];
+    for (name, look) in [("a.png", looks[0]), ("b.png", looks[1]), ("again.png", looks[0])] {
+        run(here, &[&scene[..], &look[..], &["--out", name]].concat()).expect(0, &[]);
+    }
+    run(here, &["diff", "a.png", "b.png", "--report", "page.html"]).expect(1, &[]);
+    let browser = Browser::open(&here.join("page.html"), (1200, 900));
+    let rows = "return [...document.querySelectorAll('#settings tr')].map(row => [...row.children].map(cell => cell.textContent));";
+    let expected = json!([["setting", "A", "B"], ["shader.NDF", "\"GGX\"", "\"Beckmann\""], ["view.ev", "1.0", "2.0"]]);
+    assert_eq!(browser.run(rows), expected);
+    let texts = browser.run("return [...document.querySelectorAll('#settings pre')].map(text => text.textContent);");
+    let texts: [String; 2] = serde_json::from_value(texts).unwrap();
+    for (text, ev) in texts.iter().zip(["ev = 1.0", "ev = 2.0"]) {
+        assert!(text.contains(ev), "{text}");
+    }
+    assert!(is_self_contained(&browser));
+    run(here, &["diff", "a.png", "again.png", "--report", "same.html"]).expect(0, &[]);
+    let browser = Browser::open(&here.join("same.html"), (1200, 900));
+    let told = browser.run("return document.querySelector('#settings > p').textContent;");
+    assert_eq!((told, browser.run(rows)), (json!("Both pictures have the same settings."), json!([])));
+}
+
 /// Where pictures of different sizes cannot be compared, views of their differences are not offered, and nothing of the pair before stays.
 #[test]
 fn a_pair_without_a_comparison_offers_no_maps() {
@@ -242,26 +338,5 @@ fn two_pictures_of_a_sheet_are_compared_with_a_border() {
     browser.press(ESCAPE);
     assert_eq!(browser.run("return document.querySelector('dialog').open;"), json!(false));
     assert!(is_self_contained(&browser));
-}
-
-#[test]
-fn measurements_of_the_brdf_have_pages() {
-    let folder = tempfile::tempdir().unwrap();
-    let here = folder.path();
-    run(here, &["brdf", "normalization", "--report", "d.html"]).expect(0, &[]);
-    let browser = Browser::open(&here.join("d.html"), (1000, 800));
-    assert_eq!(
-        browser.run("return document.querySelectorAll('svg path.line').length;"),
-        json!(2),
-        "a line and its legend"
-    );
-    assert_eq!(browser.run("return document.querySelectorAll('tbody tr').length > 20;"), json!(true));
-    let verdict = browser.run("return document.querySelector('.verdict.good').textContent;");
-    assert!(verdict.as_str().unwrap().starts_with("D is normalized"), "{verdict}");
-    assert!(is_self_contained(&browser));
-    run(here, &["brdf", "furnace", "--set", "NDF=GGX", "--report", "furnace.html"]).expect(0, &[]);
-    let page = fs::read_to_string(here.join("furnace.html")).unwrap();
-    assert_eq!(page.matches("<td style=\"background:rgba(").count(), 20 * 18);
-    run(here, &["brdf", "furnace", "--report", "furnace.png"]).expect(2, &["must end in .html"]);
     run(here, &["render", "--report", "page.html"]).expect(2, &["--sheet"]);
 }

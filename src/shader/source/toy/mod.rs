@@ -17,21 +17,20 @@ mod channel;
 mod declared;
 mod drawing;
 mod explain;
+mod files;
 mod initial;
 mod noise;
 mod own;
 mod plain;
 mod problems;
 
-use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{MAX_FILE_BYTES, MAX_IMAGE_BYTES};
-use super::pattern::{FACES, Pattern};
 use super::read::{check_text, names_in, read_anywhere, read_bytes, read_file};
 use super::{SourceError, TreePath, embedded};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::glsl::{code, includes};
+use crate::shader::glsl::code;
 use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses, version};
 use channel::{Channel, channels};
 use declared::{add_standard, assignments, globals, outputs, sliders, variables_of};
@@ -40,7 +39,7 @@ use own::OwnNames;
 use plain::{plain, with_plain_names};
 
 /// The folder of the opened files in the tree.
-const OPENED: &str = "opened";
+pub(super) const OPENED: &str = "opened";
 /// The folder of the stages.
 const STAGES: &str = "passes";
 /// The pass of the opened file itself.
@@ -214,20 +213,6 @@ impl Toy {
         unknown.iter().map(warning).collect()
     }
 
-    /// The files whose change changes the tree. Some may not exist yet.
-    pub fn watched(&self) -> Vec<PathBuf> {
-        let mut names: Vec<String> = self.candidates(COMMON).into();
-        names.extend(BUFFERS.iter().flat_map(|buffer| self.candidates(buffer)));
-        for drawing in self.drawings() {
-            names.extend(adapt::named_files(&drawing.text).iter().flat_map(|file| self.files_of(file)));
-            names.push(drawing.file);
-        }
-        names.push(self.name());
-        names.sort();
-        names.dedup();
-        names.iter().map(|name| self.folder().join(name)).collect()
-    }
-
     /// The paths of the tree that depend on `file` on disk. Stages depend on the files beside them, too.
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
@@ -239,38 +224,12 @@ impl Toy {
             .collect()
     }
 
-    /// The files that a name with a `*` stands for: those that exist, and the faces of a cube map, which may not exist yet.
-    fn files_of(&self, name: &str) -> Vec<String> {
-        let Some(pattern) = Pattern::of(name) else { return vec![name.to_owned()] };
-        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
-        let faces = FACES.iter().flatten().map(|part| pattern.with(part));
-        let found = names_in(&self.folder().join(folder)).into_iter().filter(|name| pattern.part(name).is_some());
-        let place = |name: String| if folder.is_empty() { name } else { format!("{folder}/{name}") };
-        faces.chain(found).map(place).collect()
-    }
-
     fn name(&self) -> String {
         self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     fn stem(&self) -> String {
         self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-    }
-
-    /// Candidate names for the file of a buffer, or of the shared code, starting with one for this toy alone. `Buffer A.glsl` is
-    /// Shadertoy's own name for `buffer_a.glsl`.
-    fn candidates(&self, name: &str) -> [String; 3] {
-        let words = name.split('_').map(|word| word[..1].to_ascii_uppercase() + &word[1..]);
-        let words: Vec<String> = words.collect();
-        [format!("{}.{name}.glsl", self.stem()), format!("{name}.glsl"), format!("{}.glsl", words.join(" "))]
-    }
-
-    /// The file of this name beside the toy, and its text.
-    fn beside(&self, name: &str) -> Option<(String, String)> {
-        self.candidates(name).into_iter().filter(|file| *file != self.name()).find_map(|file| {
-            let text = self.text(&file).ok()?;
-            Some((file, text))
-        })
     }
 
     /// The files that draw images, in drawing order: Shadertoy's buffers, others after what they read, and the file itself last.
@@ -302,11 +261,6 @@ impl Toy {
         out.push(Drawing { pass: pass.to_owned(), file: file.to_owned(), text, part: None });
     }
 
-    /// The file that all drawings share, and its text.
-    fn common(&self) -> Option<(String, String)> {
-        self.beside(COMMON)
-    }
-
     /// Whether a file reads the state of the keys.
     fn reads_keyboard(&self, drawings: &[Drawing]) -> bool {
         let common = self.common().map(|(_, text)| text);
@@ -319,23 +273,6 @@ impl Toy {
         let own = drawings.iter().map(|drawing| (drawing.file.as_str(), drawing.text.as_str()));
         let common = common.iter().map(|(file, text)| (file.as_str(), text.as_str()));
         sliders(&variables_of(&self.texts(common.chain(own))))
-    }
-
-    /// The texts of files and of what they include.
-    fn texts<'a>(&self, files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Vec<String> {
-        let mut open: Vec<(TreePath, String)> =
-            files.into_iter().map(|(file, text)| (TreePath::from(file), text.to_owned())).collect();
-        let (mut out, mut seen): (Vec<String>, BTreeSet<TreePath>) = Default::default();
-        while let Some((path, text)) = open.pop() {
-            for name in includes(&text).map(|include| include.name) {
-                let places = path.sibling(name).into_iter().chain(TreePath::parse(name));
-                let found = places.filter_map(|place| Some((self.text(place.as_str()).ok()?, place)));
-                let found = { found }.next().filter(|(_, place)| seen.insert(place.clone()));
-                open.extend(found.map(|(text, place)| (place, text)));
-            }
-            out.push(text);
-        }
-        out
     }
 
     /// The text of a stage.
