@@ -29,6 +29,8 @@ _File = Union[IO[bytes], socket.SocketIO]
 
 _PATIENCE_S = 5.0
 """How long the process may take to end by itself."""
+_SIGNALS_S = 0.25
+"""Seconds between two looks for signals: one that comes just before a wait begins does not end it."""
 _STDERR_LINES = 40
 _MOST_BYTES = 4 << 20
 """Of a command."""
@@ -136,7 +138,8 @@ class Channel:
                     raise self._end
                 self._pending[number] = pending
             self._send({**fields, "id": number, "command": command})
-            pending.done.wait()
+            while not pending.done.wait(_SIGNALS_S):
+                pass
         except ValueError:
             with self._lock:
                 self._pending.pop(number, None)
@@ -248,6 +251,11 @@ class Channel:
     @property
     def end(self) -> Optional[ProcessError]:
         """Why the channel has ended; `None` while it has not."""
+        return self._end
+
+    def await_end(self) -> Optional[ProcessError]:
+        """Why the channel has ended, or does so within seconds; `None` if it goes on."""
+        self._threads[-1].join(2.0 * _PATIENCE_S)
         return self._end
 
     def close(self) -> None:

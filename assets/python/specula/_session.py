@@ -93,6 +93,11 @@ class Session:
         try:
             # Wrong options end the program, which has printed why.
             self.command("get", path="mode")
+        except CommandError as error:
+            # A program that ends may still refuse the command.
+            end = self._channel.await_end()
+            self.close()
+            raise end or error from None
         except BaseException:
             self.close()
             raise
