@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use crate::scene::error::Problem;
 
-/// What the parts of any file may take, bytes.
+/// Memory that the parts of any file may take, bytes.
 pub const BASE: u64 = 1 << 30;
-/// What they may take beyond it for each stored byte. Compressed geometry and plain textures become some hundred times as large.
+/// Memory beyond it for each stored byte. Compressed geometry and plain textures become some hundred times as large.
 const EACH: u64 = 256;
 
-/// What the parts of a file may still take. Each is charged by what it takes while it is read, before it is.
+/// The memory of a file's parts. Each is charged by what it takes while it is read, before it is.
 pub struct Memory {
     most: AtomicU64,
     taken: AtomicU64,

@@ -24,7 +24,7 @@ pub struct Files<'t> {
     allow_outside: bool,
     /// Whether the load is no longer needed.
     pub canceled: Canceled<'t>,
-    /// What the model may take. Each file that it names counts as often as it does.
+    /// Memory for the model's parts. A file counts as often as the model names it.
     pub memory: Memory,
     /// Every file read or looked for so far, absolute.
     pub tried: &'t mut Vec<PathBuf>,

@@ -22,7 +22,7 @@ pub struct Reader<'a> {
     pub root: &'a json::Root,
     /// Its buffers.
     pub buffers: &'a Buffers<'a>,
-    /// What is read takes of it.
+    /// Memory for the elements.
     pub memory: &'a Memory,
 }
 
