@@ -1,6 +1,7 @@
 //! The panels as a screen reader finds them: roles, names, and the keyboard.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -22,6 +23,8 @@ use crate::app::context::Context;
 use crate::app::gallery::Thumbnails;
 use crate::app::readings::{LegendOf, Readings, Readout};
 use crate::app::state::State;
+use crate::app::state::adaptive::plan::Plan;
+use crate::app::state::adaptive::{Change, NextFrame};
 use crate::app::state::captures::Captures;
 use crate::app::state::compare::Compare;
 use crate::app::state::dialog::Dialog;
@@ -317,12 +320,10 @@ struct Shown {
     asked: Vec<Command>,
 }
 
-#[test]
-fn errors_are_hidden_until_they_change() {
-    let mut state = with_a_model();
-    state.session.diagnostics = vec![Diagnostic::error("a.glsl", "the first error")];
+/// What lies over the picture.
+fn over_the_picture(state: State) -> Harness<'static, State> {
     let mut own = overlay::Overlay::default();
-    let mut harness = harness(state, move |ui, state| {
+    harness(state, move |ui, state| {
         let (thumbnails, baked) = (Thumbnails::default(), BakeReport::default());
         let readings = Readings {
             baking: None,
@@ -337,7 +338,14 @@ fn errors_are_hidden_until_they_change() {
         };
         let (egui, picture, mut commands) = (ui.ctx().clone(), ui.max_rect(), Commands::new(&state.session.settings));
         overlay::show(&egui, &Context::new(state, readings), &mut own, true, picture, &mut commands);
-    });
+    })
+}
+
+#[test]
+fn errors_are_hidden_until_they_change() {
+    let mut state = with_a_model();
+    state.session.diagnostics = vec![Diagnostic::error("a.glsl", "the first error")];
+    let mut harness = over_the_picture(state);
     harness.get_by_label("the first error");
     harness.get_by_role_and_label(Role::Button, "Hide").click();
     harness.run();
@@ -346,6 +354,27 @@ fn errors_are_hidden_until_they_change() {
     harness.run();
     harness.get_by_label("the second error");
     assert_eq!(harness.state().session.diagnostics.len(), 2, "hiding forgets nothing");
+}
+
+#[test]
+fn the_mark_of_a_preview_lies_beside_other_cards() {
+    const MARK: &str = "Preview of lower resolution";
+    let mut state = with_a_model();
+    state.session.diagnostics = vec![Diagnostic::error("a.glsl", "the first error")];
+    let now = Instant::now();
+    let plan = NextFrame {
+        change: Change::Moved,
+        has_parts: false,
+        is_held: false,
+        accumulates: false,
+        improves: false,
+        is_awaited: false,
+        now,
+    };
+    assert_eq!(state.previews.plan(&plan), Plan::Preview);
+    let harness = over_the_picture(state);
+    let [mark, hide] = [harness.get_by_label(MARK), harness.get_by_label("Hide")].map(|node| node.rect());
+    assert!(mark.max.y < hide.min.y, "{mark} lies over the card of {hide}");
 }
 
 const SIZES: [egui::Vec2; 2] = [egui::vec2(190.0, 420.0), egui::vec2(900.0, 240.0)];

@@ -88,7 +88,7 @@ pub(super) fn show(
     version::show(egui, state, picture, &mut commands.list);
     warnings(egui, state, picture, &mut commands.list);
     light::show(egui, context, picture);
-    preview::show(egui, state, picture);
+    preview::show(egui, state, if free.height() >= NOTICE { free } else { picture });
     notice(egui, state, picture, free);
     if with_panels {
         label(egui, context, &mut own.legend, picture, commands);
