@@ -88,7 +88,8 @@ void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float vi
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
-    add(lit.punctual, lobes, illumination.irradiance * (abs(dot(s.n, illumination.l)) * visibility));
+    vec3 irradiance = illumination.irradiance * (abs(dot(s.n, illumination.l)) * visibility);
+    add(lit.punctual, lobes, irradiance);
 }
 
 // Adds what the surface reflects of many lights.

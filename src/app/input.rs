@@ -77,7 +77,7 @@ pub(super) fn on_window_event(
                 MouseScrollDelta::LineDelta(_, lines) => *lines,
                 MouseScrollDelta::PixelDelta(pixels) => pixels.y as f32 / 40.0,
             };
-            let Some(view) = screen.camera_view() else { return false };
+            let Some(view) = screen.camera_now(&state.session) else { return false };
             CameraController::dolly(&mut state.session.settings.camera, &view, steps);
             true
         }
@@ -186,7 +186,7 @@ fn inside(screen: &Screen, at: Vec2) -> bool {
 }
 
 fn drag(state: &mut State, interface: &Interface, screen: &Screen, delta: Vec2) -> bool {
-    let Some(view) = screen.camera_view() else { return false };
+    let Some(view) = screen.camera_now(&state.session) else { return false };
     let settings = &mut state.session.settings;
     let (mouse, camera) = (&interface.mouse, &mut settings.camera);
     let modifiers = mouse.modifiers;

@@ -39,7 +39,8 @@ use super::state::grid::PictureRect;
 use crate::gpu::{Buffer, Frames, Gpu, GpuError, SetLayouts, Swapchain, UiRenderer};
 use crate::render::tools::Outline;
 use crate::render::{BoundFrame, PixelAt, View};
-use crate::scene::CameraView;
+use crate::scene::{CameraView, view_of};
+use crate::session::Session;
 use between::Between;
 pub(super) use between::POLL;
 pub(super) use between_request::{BetweenRequest, Build, Inspected, InspectorRequest};
@@ -165,6 +166,12 @@ impl Screen {
     /// The camera of the last frame.
     pub(super) fn camera_view(&self) -> Option<CameraView> {
         self.last.as_ref().map(|frame| frame.state.camera)
+    }
+
+    /// The camera of the next frame, which one event after another moves. That of the last frame knows none of them.
+    pub(super) fn camera_now(&self, session: &Session) -> Option<CameraView> {
+        let model = session.placed_model().unwrap_or_default();
+        self.camera_view().map(|last| view_of(&model, &session.settings.camera, last.aspect))
     }
 
     /// The frame that was accepted last.

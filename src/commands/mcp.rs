@@ -5,9 +5,11 @@ use std::io::BufReader;
 use std::path::PathBuf;
 
 use specula::control::socket_path;
-use specula::mcp::{Config, Connection, Start, serve};
+use specula::mcp::{Config, Connection, Start, remove_temporary, serve};
+use specula::process_end::end_process;
 
 use super::common::{BUILT_IN, Common, Models};
+use super::view::output::wait_for_end_of_program;
 use super::{Failure, limits};
 
 /// Size of the picture without `--size`: agents pay for each pixel that they see.
@@ -57,6 +59,15 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
             Connection::Start(Start { program, arguments })
         }
     };
+    // A client that is gone waits for nothing that is still under way. The program behind the server notices that, too.
+    let client = std::thread::Builder::new().name("specula-mcp-client".to_owned());
+    let end_with_client = || {
+        if wait_for_end_of_program() {
+            remove_temporary();
+            end_process(0);
+        }
+    };
+    client.spawn(end_with_client).map_err(|error| Failure::Device(format!("cannot start a thread: {error}")))?;
     let config = Config { connection, out: args.out_folder };
     serve(config, BufReader::new(std::io::stdin()), std::io::stdout())
         .map_err(|error| Failure::Input(format!("cannot serve: {error}")))

@@ -1,10 +1,11 @@
 //! Lines of the client, and lines to it.
 
-use std::io::{BufRead, ErrorKind, Read as _, Write};
+use std::io::{BufRead, ErrorKind, Read, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::message::{INVALID_REQUEST, PARSE_ERROR, error};
@@ -25,9 +26,8 @@ pub fn next(input: &mut impl BufRead) -> Option<Result<Value, Value>> {
             Err(_) => return None,
         }
         if line.len() as u64 > MOST_BYTES && !line.ends_with(b"\n") {
-            skip_line(input);
             let why = format!("a message is longer than {MOST_BYTES} bytes; it was skipped");
-            return Some(Err(error(Value::Null, INVALID_REQUEST, &why)));
+            return Some(Err(error(skip(&line, input), INVALID_REQUEST, &why)));
         }
         if line.trim_ascii().is_empty() {
             continue;
@@ -37,22 +37,37 @@ pub fn next(input: &mut impl BufRead) -> Option<Result<Value, Value>> {
     }
 }
 
-/// Reads to the end of a line, and keeps nothing of it.
-fn skip_line(input: &mut impl BufRead) {
-    loop {
-        let (used, ends) = match input.fill_buf() {
-            Ok([]) => return,
-            Ok(bytes) => match bytes.iter().position(|byte| *byte == b'\n') {
-                Some(at) => (at + 1, true),
-                None => (bytes.len(), false),
-            },
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            Err(_) => return,
-        };
-        input.consume(used);
-        if ends {
-            return;
+/// Reads to the end of a line that has begun with `begun`, and keeps of it only the `id` of its message, for which a client waits.
+fn skip(begun: &[u8], input: &mut impl BufRead) -> Value {
+    #[derive(Deserialize)]
+    struct Message {
+        #[serde(default)]
+        id: Value,
+    }
+    let mut line = begun.chain(RestOfLine { input, ended: false });
+    let id = Message::deserialize(&mut serde_json::Deserializer::from_reader(&mut line)).map(|message| message.id);
+    let _ = std::io::copy(&mut line, &mut std::io::sink());
+    id.ok().filter(|id| id.is_number() || id.is_string()).unwrap_or_default()
+}
+
+/// The input up to the end of its line.
+struct RestOfLine<'a, R> {
+    input: &'a mut R,
+    ended: bool,
+}
+
+impl<R: BufRead> Read for RestOfLine<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.ended || buffer.is_empty() {
+            return Ok(0);
         }
+        let bytes = self.input.fill_buf()?;
+        let line = bytes.iter().position(|byte| *byte == b'\n');
+        let count = line.unwrap_or(bytes.len()).min(buffer.len());
+        buffer[..count].copy_from_slice(&bytes[..count]);
+        self.ended = line == Some(count);
+        self.input.consume(count + usize::from(self.ended));
+        Ok(count)
     }
 }
 

@@ -133,6 +133,27 @@ def edits(s):
     assert s.read("brdf/ndf.glsl") == text and np.array_equal(s.render(), before)
 
 
+def mistakes(s):
+    """Wrong arguments are told, by what they lack."""
+    for part, wrong in (
+        ("such as (640, 360)", lambda: s.render(size="640x360")),
+        ("such as (640, 360)", lambda: s.render(size=(10.5, 10))),
+        ("such as (640, 360)", lambda: s.render(size=(10,))),
+        ("lacks a value", lambda: s.set("view.ev")),
+        ("takes one or more of", s.open),
+        ("['--lights', 'none']", lambda: specula.Session(options="--lights none")),
+        ("has no value at this pixel", lambda: s.trace(48, 27, "brdf/ndf.glsl")["nothing"]),
+    ):
+        try:
+            wrong()
+        except (TypeError, KeyError) as error:
+            assert part in str(error), error
+        else:
+            raise AssertionError(f"no error about: {part}")
+    s.open(env="none")
+    assert s["environment.name"] == "none"
+
+
 def values(s):
     x, y = 48, 27
     raw = s.render("d", raw=True)
@@ -140,6 +161,7 @@ def values(s):
     y, x = (int(at) for at in covered[len(covered) // 2])
     probe = s.probe(x, y, ["d", "n-dot-h"])
     assert probe.pixel == (x, y) and set(probe.modes) == {"d", "n-dot-h"} and probe["d"].shape == (4,)
+    assert np.array_equal(s.probe(x, y, "d")["d"], probe["d"])
     trace = s.trace(x, y, "brdf/ndf.glsl")
     assert trace.stage == "pbr.frag" and "a2 =" in str(trace), trace
     assert 0 < trace["a2"] < 1
@@ -190,7 +212,7 @@ def crash(s):
 
 def main():
     session = specula.Session("sphere-grid", env="none", size=SIZE)
-    for step in (pictures, settings, threads, interrupts, edits, values, crash):
+    for step in (pictures, settings, threads, interrupts, edits, mistakes, values, crash):
         start = time.monotonic()
         step(session)
         print(f"{step.__name__}: {time.monotonic() - start:.2f} s", flush=True)

@@ -3,6 +3,7 @@
 
 mod adaptive;
 mod attacks;
+mod camera;
 mod commands;
 mod compare;
 mod compare_files;

@@ -138,7 +138,9 @@ class Trace:
             for done in reversed(line.done):
                 if done.get("name") == name and (done.get("last") or done.get("first")):
                     return (done.get("last") or done["first"])[-1]["value"]
-        raise KeyError(name)
+        names = dict.fromkeys(str(done["name"]) for line in self.lines for done in line.done if done.get("name"))
+        reached = f"the values are of {', '.join(names)}" if names else "no statement of the file was reached"
+        raise KeyError(f"{name} has no value at this pixel: {reached}")
 
     def __str__(self) -> str:
         lines = [f"pixel {self.pixel[0]} {self.pixel[1]}, {self.stage}"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import operator
 import os
 import threading
 import weakref
@@ -27,6 +28,12 @@ __all__ = ["PathLike", "Session", "Size"]
 PathLike = Union[str, "os.PathLike[str]"]
 Size = Tuple[int, int]
 """Width and height, pixels."""
+
+# None is a value of some settings.
+_NOTHING: Any = object()
+
+# The fields of the command, where the arguments of a session have other names
+_OPENED = {"env": "environment", "shaders": "tree"}
 
 _ROOTS: "weakref.WeakSet[Scratch]" = weakref.WeakSet()
 
@@ -59,8 +66,11 @@ class Session:
         options: Sequence[str] = (),
         program: Optional[PathLike] = None,
     ) -> None:
+        chosen = _size(size) or [640, 360]
+        if isinstance(options, str):
+            raise TypeError(f"options={options!r}: a list of words is expected, such as {options.split()!r}")
         self._scratch = Scratch()
-        width, height = size or (640, 360)
+        width, height = chosen
         self._size: Optional[Size] = (width, height)
         self._program = ""
         self._modes: Dict[str, Mode] = {}
@@ -155,7 +165,7 @@ class Session:
 
     # Settings
 
-    def set(self, path: Union[str, Mapping[str, Any], None] = None, value: Any = None, **values: Any) -> None:
+    def set(self, path: Union[str, Mapping[str, Any], None] = None, value: Any = _NOTHING, **values: Any) -> None:
         """Changes settings, all or none; returns when their picture is complete.
 
         ``s.set("view.ev", 1)``, ``s.set({"view.ev": 1, "mode": "d"})``, ``s.set(NDF="Beckmann", material={"enabled": True})``. The names are those
@@ -163,6 +173,8 @@ class Session:
         """
         changed: Dict[str, Any] = dict(values)
         if isinstance(path, str):
+            if value is _NOTHING:
+                raise TypeError(f"set({path!r}) lacks a value")
             changed[path] = value
         elif path is not None:
             changed.update(path)
@@ -181,9 +193,11 @@ class Session:
         return self.get(path)
 
     def open(self, **what: PathLike) -> None:
-        """Opens another ``model=``, ``environment=``, ``tree=`` (shaders), ``look=`` or ``measured=`` BRDF; ``beside=`` adds a model."""
+        """Opens another ``model=``, ``env=``, ``shaders=``, ``look=`` or ``measured=`` BRDF; ``beside=`` adds a model."""
+        if not what:
+            raise TypeError("open() takes one or more of model, env, shaders, look, measured and beside")
         for kind, path in what.items():
-            self.command("open", **{kind: os.fspath(path)})
+            self.command("open", **{_OPENED.get(kind, kind): os.fspath(path)})
         self._modes = {}
 
     def modes(self) -> List[Mode]:
@@ -247,9 +261,12 @@ class Session:
 
     # Values
 
-    def probe(self, x: int, y: int, modes: Optional[Sequence[str]] = None) -> Probe:
-        """Reads the raw values of a pixel in these modes; without them, in all but those of random paths."""
-        answer = self.command("probe", at=[x, y], modes=None if modes is None else list(modes))
+    def probe(self, x: int, y: int, modes: Union[str, Sequence[str], None] = None) -> Probe:
+        """Reads the raw values of a pixel in a mode, or in a list of modes; without them, in all but those of random paths, which takes
+        longer.
+        """
+        chosen = [modes] if isinstance(modes, str) else modes
+        answer = self.command("probe", at=[x, y], modes=None if chosen is None else list(chosen))
         return Probe((x, y), answer["modes"], answer["textures"], answer.get("not_finite"))
 
     def trace(self, x: int, y: int, file: str = "pbr.frag", *, stage: Optional[str] = None) -> Trace:
@@ -383,7 +400,15 @@ def _remove(path: Path) -> None:
 
 
 def _size(size: Optional[Size]) -> Optional[List[int]]:
-    return None if size is None else [int(size[0]), int(size[1])]
+    if size is None:
+        return None
+    # Not all programs are checked for types.
+    given: Any = size
+    try:
+        width, height = given
+        return [operator.index(width), operator.index(height)]
+    except (TypeError, ValueError):
+        raise TypeError(f"size={given!r}: width and height are expected, such as (640, 360)") from None
 
 
 def _size_of(difference: Any) -> float:

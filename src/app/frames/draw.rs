@@ -327,7 +327,9 @@ impl Drawing {
         let Some(interface) = interface else { return false };
         // Limit the step, so that lights do not jump after a pause.
         state.turn_lights(seconds.min(0.5));
-        let Some((view, model)) = self.screen.camera_view().zip(state.session.placed_model()) else { return false };
+        let Some((view, model)) = self.screen.camera_now(&state.session).zip(state.session.placed_model()) else {
+            return false;
+        };
         interface.camera.step(&mut state.session.settings.camera, &view, &model.bounds, seconds)
     }
 }

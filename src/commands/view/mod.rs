@@ -1,7 +1,7 @@
 //! `specula view`: opens the window, in a child process; and the same session without a window, for `specula serve`.
 
 mod end_of_input;
-mod output;
+pub(super) mod output;
 pub mod supervisor;
 
 use std::collections::BTreeMap;

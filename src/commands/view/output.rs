@@ -9,7 +9,7 @@ use rustix::event::Timespec;
 /// Waits until nobody reads the events of a window whose standard input has ended, if both are pipes: the program that has started the window
 /// holds both until its own end. Returns `false` at once if another input or output says nothing about that.
 #[cfg(target_os = "linux")]
-pub(super) fn wait_for_end_of_program() -> bool {
+pub(in crate::commands) fn wait_for_end_of_program() -> bool {
     use rustix::fs::{FileType, fstat};
     let is_pipe = |file: BorrowedFd<'_>| {
         let kind = fstat(file).map(|status| FileType::from_raw_mode(status.st_mode));
@@ -25,7 +25,7 @@ pub(super) fn wait_for_end_of_program() -> bool {
 }
 
 #[cfg(not(target_os = "linux"))]
-pub(super) fn wait_for_end_of_program() -> bool {
+pub(in crate::commands) fn wait_for_end_of_program() -> bool {
     false
 }
 

@@ -188,12 +188,21 @@ fn edit_shader(caller: &Caller<'_>, arguments: Map<String, Value>) -> Content {
     if before.is_none() {
         lock(&caller.shared.made).insert(place.clone());
     }
+    let generation = caller.ask("pinned", &json!({}))?["generation"].clone();
     // A save of the user in between stays.
     let outcome = caller.ask("edit", &json!({ "file": file, "text": after, "base": before }));
     seen.insert(file, after);
     drop(seen);
     match outcome {
-        Ok(_) => Ok(vec![text(format!("{said}\nIt compiles, and the picture shows it."))]),
+        Ok(shown) => {
+            let result = match shown["generation"] == generation {
+                true => {
+                    "The picture stays as it is: no stage includes this file, or its code is the same. `check` compiles all files."
+                }
+                false => "It compiles, and the picture shows it.",
+            };
+            Ok(vec![text(format!("{said}\n{result}"))])
+        }
         Err(Failure::Refused { diagnostics, .. }) if !diagnostics.is_empty() => Err(Failure::Refused {
             message: format!("{said}\nIt does not compile. The picture stays that of the last good shaders.\n"),
             diagnostics,

@@ -1,18 +1,60 @@
 //! `specula mcp`: a server for agents, with the official client.
 
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 use image::RgbaImage;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::python::{interpreter, run_script, run_script_with};
+use crate::support::process::{PATIENCE, specula};
 use crate::support::window::Viewer;
 use crate::support::{Tree, open_image};
 
 #[test]
 fn an_agent_sees_edits_and_measures() {
     run_script("agent.py", tempfile::tempdir().unwrap().path());
+}
+
+/// A message that is too long is answered with its own number, wherever that stands, and the next one is read.
+#[test]
+fn long_messages_and_clients_that_vanish_hold_up_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut server = specula(folder.path());
+    let mut server = server.arg("mcp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let (mut input, output) = (server.stdin.take().unwrap(), server.stdout.take().unwrap());
+    let mut lines = BufReader::new(output).lines();
+    let text = "x".repeat(17 << 20);
+    for line in [
+        format!(r#"{{"jsonrpc":"2.0","id":1,"method":"ping","params":{{"text":"{text}"}}}}"#),
+        format!(r#"{{"params":{{"id":7,"text":"{text}"}},"method":"ping","id":"two"}}"#),
+        format!(r#"{{"params":"{text}"#),
+    ] {
+        writeln!(input, "{line}").unwrap();
+    }
+    writeln!(input, r#"{{"jsonrpc":"2.0","id":4,"method":"ping"}}"#).unwrap();
+    let mut answer = || -> Value { serde_json::from_str(&lines.next().unwrap().unwrap()).unwrap() };
+    for id in [json!(1), json!("two"), json!(null)] {
+        let answer = answer();
+        assert_eq!(answer["id"], id);
+        assert!(answer["error"]["message"].as_str().unwrap().contains("longer than"), "{answer}");
+    }
+    assert_eq!(answer(), json!({"jsonrpc": "2.0", "id": 4, "result": {}}));
+    // Nobody reads the answer to a call that takes longer than this test waits.
+    let paths = json!({"name": "render", "arguments": {"mode": "path-traced", "size": [1280, 720]}});
+    writeln!(input, "{}", json!({"jsonrpc": "2.0", "id": 5, "method": "tools/call", "params": paths})).unwrap();
+    drop(lines);
+    let deadline = Instant::now() + PATIENCE;
+    let status = loop {
+        match server.try_wait().unwrap() {
+            Some(status) => break status,
+            None => assert!(Instant::now() < deadline, "the server goes on without a client"),
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    };
+    assert_eq!(status.code(), Some(0));
 }
 
 /// Whether two pictures differ by no more than the dither of a window.
