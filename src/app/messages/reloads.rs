@@ -120,7 +120,7 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
             tell_expression(state, &set.shaders);
             if state.session.shaders.as_ref().is_some_and(|before| before.tree != set.shaders.tree) {
-                state.playback.restart();
+                state.playback.begin();
             }
             state.session.shaders = Some(set.shaders.clone());
             engine.resources.set_pipelines(set);

@@ -109,3 +109,22 @@ fn a_single_file_is_a_tree() {
     viewer.running.done(json!({ "command": "open", "file": model }));
     assert!(viewer.quit().contains("is loaded, but toy.glsl draws no model"));
 }
+
+/// The pause and the speed were those of the toy before.
+#[test]
+fn a_toy_that_is_opened_after_a_pause_runs() {
+    let tree = Tree::new();
+    let (first, second) = (tree.beside("first.glsl"), tree.beside("second.glsl"));
+    std::fs::write(&first, "void mainImage(out vec4 c, in vec2 p) { c = vec4(fract(iTime), 0.0, 0.0, 1.0); }\n")
+        .unwrap();
+    std::fs::write(&second, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, step(0.001, iTime), 0.0, 1.0); }\n")
+        .unwrap();
+    let mut viewer = Viewer::driven(tree, &["sphere-grid", "--shaders", first.to_str().unwrap()]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "playback", "paused": true, "speed": 0 }));
+    viewer.running.done(json!({ "command": "open", "tree": second }));
+    viewer.until("the second toy at a later time", |shot| shot.get_pixel(0, 0).0[..3] == [0, 255, 0]);
+    let clock = viewer.running.done(json!({ "command": "playback" }));
+    assert_eq!((&clock["paused"], &clock["speed"]), (&json!(false), &json!(1.0)), "{clock}");
+    viewer.quit();
+}
