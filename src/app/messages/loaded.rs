@@ -75,7 +75,7 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             if is_next && !state.shader.is_single_file {
                 state.playback.begin();
             }
-            if is_next && state.shader.is_single_file {
+            if is_next && state.shader.is_single_file && !state.shader.compiling {
                 let file = Path::new(&state.shader.tree).file_name().unwrap_or_default().to_string_lossy().into_owned();
                 state.say(format!("{} is loaded, but {file} draws no model. Open a shader tree to see it", model.name));
             }
