@@ -27,7 +27,7 @@ pub(in crate::app) fn on_tree_found(
         }
     };
     state.waiting.tree_found(path, Ok(()));
-    if source.location().is_none_or(|path| path.parent() != Some(&state.learning.parent())) {
+    if !state.learning.holds(source.location()) {
         leave_exercise(state, engine);
     }
     if stops {

@@ -24,7 +24,7 @@ pub(in crate::app) fn on_endless_loop(state: &mut State, engine: &mut Engine, wo
 }
 /// Shows the panels for a single file, which has no model, or those of before for a tree.
 pub(in crate::app) fn arrange_for(state: &mut State, is_single_file: bool) {
-    if !is_single_file {
+    if !is_single_file && !state.learning.holds(state.shader.location.as_deref()) {
         state.shader.last_tree.clone_from(&state.shader.location);
     }
     let was_single_file = std::mem::replace(&mut state.shader.is_single_file, is_single_file);

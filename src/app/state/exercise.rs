@@ -74,6 +74,11 @@ impl Learning {
         self.progress.folder.clone().unwrap_or_else(standard)
     }
 
+    /// Whether a tree lies where the exercises do.
+    pub(in crate::app) fn holds(&self, tree: Option<&Path>) -> bool {
+        tree.is_some_and(|tree| tree.parent() == Some(&self.parent()))
+    }
+
     /// Sets the exercise of a tree that has been opened.
     pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<Arc<Exercise>>) {
         let (progress, before) = (std::mem::take(&mut self.progress), self.before.take());

@@ -42,7 +42,7 @@ fn an_exercise_costs_no_setting_of_the_tree_before() {
     viewer.running.done(json!({ "command": "set", "values": { "roughness_scale": 0.4, "view.ev": 1.5 } }));
     let own = viewer.screenshot();
     let learn = json!({ "command": "run", "entry": "Exercise 1: Square the roughness" });
-    viewer.running.done(learn);
+    viewer.running.done(learn.clone());
     viewer.running.event("exercise");
     let ev = |viewer: &mut Viewer| viewer.running.done(json!({ "command": "get", "path": "view.ev" }));
     assert_ne!(ev(&mut viewer), json!(1.5), "the exercise has settings of its own");
@@ -54,6 +54,14 @@ fn an_exercise_costs_no_setting_of_the_tree_before() {
     viewer.running.done(json!({ "command": "open", "tree": tree }));
     assert_eq!(ev(&mut viewer), json!(1.5));
     viewer.until("the picture of before", |shot| *shot == own);
+    // A model that is opened over a single file after an exercise is not shown by the exercise.
+    viewer.running.done(learn);
+    viewer.running.event("exercise");
+    let toy = viewer.tree.beside("toy.glsl");
+    std::fs::write(&toy, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 1.0, 0.0, 1.0); }\n").unwrap();
+    viewer.running.done(json!({ "command": "open", "tree": toy }));
+    viewer.running.done(json!({ "command": "open", "model": "sphere-grid" }));
+    viewer.until("the model in its own tree", |shot| *shot == own);
     viewer.running.end_input();
     viewer.quit();
 }
