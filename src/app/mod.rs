@@ -53,7 +53,7 @@ use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::threads::WorkerMessage;
 use crate::threads::{Message, MessageSender};
-use actions::sessions::remember_session;
+use actions::work::remember_session;
 use closing::Closing;
 use drops::{DropEvent, Drops};
 use ending::Ending;

@@ -45,7 +45,7 @@ pub fn serve(mut options: AppOptions) -> Result<(), AppError> {
     let drawing = Drawing::new(Screen::unseen(&gpu, &layouts, size)?);
     let (mut state, engine) = start(&gpu, &layouts, options, early, (&sender, false))?;
     // A picture of an animated shader is that of time 0, as a command renders it, until a program starts or moves the clock.
-    state.playback.paused = true;
+    state.playback.await_start();
     sender.pass_on(control.asked());
     let mut session = Ending { state, engine, drawing, gpu };
     match run(&mut session, &messages) {

@@ -19,7 +19,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    fn add(&mut self, [name, short, note]: [&str; 3]) {
+    fn add(&mut self, [name, short]: [&str; 2]) {
         let join = |text: &mut String, more: &str| match (text.is_empty(), more.is_empty()) {
             (_, true) => {}
             (true, false) => more.clone_into(text),
@@ -27,7 +27,6 @@ impl Cell {
         };
         join(&mut self.name, name);
         join(&mut self.short, short);
-        join(&mut self.note, note);
     }
 }
 
@@ -59,8 +58,8 @@ pub fn swept(mut cells: Vec<Cell>, sweeps: &[Sweep], session: &Session) -> Resul
             for value in &values {
                 let mut cell = cell.clone();
                 sweep.apply(&mut cell.settings, value)?;
-                let [name, short, note] = sweep.label(value, session);
-                cell.add([&name, &short, &note]);
+                let [name, short] = sweep.label(value, session);
+                cell.add([&name, &short]);
                 all.push(cell);
             }
         }

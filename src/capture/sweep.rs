@@ -34,8 +34,6 @@ struct Takes {
     names: Vec<String>,
     range: Option<(f64, f64)>,
     is_whole: bool,
-    /// The valid values in words.
-    valid: String,
 }
 
 impl Sweep {
@@ -103,11 +101,11 @@ impl Sweep {
         settings.check()
     }
 
-    /// The caption of a picture: the setting with its value and unit, the value with its unit alone, and the valid values.
-    pub(super) fn label(&self, value: &str, session: &Session) -> [String; 3] {
+    /// The caption of a picture: the setting with its value and unit, and the value with its unit alone.
+    pub(super) fn label(&self, value: &str, session: &Session) -> [String; 2] {
         let takes = self.takes(session);
         let short = format!("{value}{}", takes.unit);
-        [format!("{} {short}", takes.title), short, takes.valid]
+        [format!("{} {short}", takes.title), short]
     }
 
     fn takes(&self, session: &Session) -> Takes {
@@ -123,7 +121,6 @@ impl Sweep {
             },
             range,
             is_whole: matches!(scalar, Scalar::Int | Scalar::Uint),
-            valid: range.map(|(low, high)| format!("{low} to {high}")).unwrap_or_default(),
         };
         match (constant, parameter, setting(&self.path)) {
             (Some(own), ..) => of_tree(&own.label, "", &own.choices, own.scalar, own.range),
@@ -156,7 +153,6 @@ fn of_setting(setting: &Setting, session: &Session) -> Takes {
         names,
         range: range.filter(|_| setting.takes.ends_with("number")),
         is_whole: setting.takes == "whole number",
-        valid: entry.valid.text(),
     }
 }
 

@@ -107,7 +107,7 @@ settings! {
         frames: u32 = 64, whole(1, 100_000) unit(FRAMES);
         /// Reflections of a random path after the first, in modes that trace the model. 0 leaves direct light.
         bounces: u32 = 4, whole(0, 64) unit(REFLECTIONS);
-        /// What the window checks while the picture rests. assertions: the `assert()` and `print()` of the shaders, if there are any;
+        /// Checks of the window while the picture rests. assertions: the `assert()` and `print()` of the shaders, if there are any;
         /// undefined: also operations whose result GLSL leaves open, such as division by 0; off: nothing. Pixels that fail are marked.
         checks: Checks, row("Checks") title("Checks of assertions and undefined operations");
         /// Memory that images and buffers of passes may take.

@@ -38,7 +38,7 @@ pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};
 pub use not_finite::FirstNotFinite;
 pub use pixel::PixelValue;
 pub use source::quarantine::text_hash;
-pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree, leads_out};
+pub use source::{BUILT_IN, Source, SourceError, TreePath, embedded, is_specula_tree, leads_out};
 pub use spirv::specialize;
 pub use trace::Site;
 pub use watch::{Batch, Watcher};

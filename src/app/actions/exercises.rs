@@ -79,9 +79,13 @@ pub(in crate::app) fn on_prepared(
     if let Err(message) = exercise.apply_settings(&mut settings) {
         return state.say(message);
     }
+    let own = state.session_state();
+    if state.learning.exercise.is_none() {
+        state.learning.before.get_or_insert(own);
+    }
+    find_tree(state, engine, &folder);
     state.session.settings = settings;
     state.select(Selected::Nothing);
-    find_tree(state, engine, &folder);
     let model = PathBuf::from(&exercise.model);
     let is_default = exercise.model == crate::scene::BUILT_IN[0] && state.model.requested.is_none();
     let is_alone = state.load_options.added.is_empty();

@@ -1,15 +1,14 @@
 //! Opens files: models, shader trees, and any file in the user's editor.
 
-use crate::app::actions::compare::change_tree;
-use crate::app::actions::watch::watch_tree;
+use crate::app::actions::work::keep_session;
 use crate::app::editor::{self, Place};
 use crate::app::engine::Engine;
-use crate::app::source_line::stop;
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
+use crate::app::state::recent::Kind;
 use crate::app::state::workspace::PanelRequest;
 use crate::settings::{AddedModel, Settings};
-use crate::shader::{Change, Source, TreePath};
+use crate::shader::{BUILT_IN, Change, TreePath};
 use crate::threads::Message;
 use std::path::Path;
 use std::path::PathBuf;
@@ -79,44 +78,25 @@ pub(in crate::app) fn reload(state: &mut State, engine: &mut Engine) {
 /// Shows the shaders of the tree at a path, once it is found to be one. If it is none, for example because a look names one that is
 /// gone, the present tree stays with its versions.
 pub(in crate::app) fn find_tree(state: &mut State, engine: &mut Engine, path: &Path) {
+    keep_session(state, engine);
     state.shader.compiling = true;
     engine.threads.worker.find_tree(path.to_owned());
 }
 
-/// Shows the shaders of the tree that was found, once they compile. `edits`: of [`crate::threads::worker::Worker::reloaded`].
-pub(in crate::app) fn on_tree_found(
-    state: &mut State,
-    engine: &mut Engine,
-    path: &Path,
-    tree: Result<Source, String>,
-    edits: u64,
-) {
-    let stops = std::mem::take(&mut state.edits.stops_watching);
-    let source = match tree {
-        Ok(source) => source,
-        Err(message) => {
-            state.waiting.tree_found(path, Err(&message));
-            return state.say(message);
-        }
-    };
-    state.waiting.tree_found(path, Ok(()));
-    if stops {
-        stop(&mut state.session.settings);
+/// Shows the tree of before, or the built-in one, if a single file is on screen, which draws no model.
+pub(in crate::app) fn leave_single_file(state: &mut State, engine: &mut Engine) {
+    if !state.shader.is_single_file {
+        return;
     }
-    // Versions of another tree must never be written into this one.
-    let tree = change_tree(state, engine, &source);
-    state.shader.log.forget();
-    state.source = source.clone();
-    state.picture.settled = None;
-    state.edits.forget_draft();
-    // Nor is the text of a file that of the same file in another tree.
-    state.traces.leave_tree();
-    watch_tree(state, engine, &source);
-    engine.threads.worker.open_tree(source, tree);
-    engine.threads.worker.reloaded(edits);
-    if state.has_window {
-        engine.find_exercise(&state.source);
-    }
+    let file = Path::new(&state.shader.tree).file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let tree = state.shader.last_tree.clone();
+    let shaders = tree.as_ref().map_or_else(
+        || "the built-in shaders".to_owned(),
+        |tree| format!("the shaders of {}", Kind::Tree.name_of(tree)),
+    );
+    state.say(format!("{file} draws no model. Back to {shaders}"));
+    state.edits.stops_watching = true;
+    find_tree(state, engine, tree.as_deref().unwrap_or(Path::new(BUILT_IN)));
 }
 
 /// Opens a file or folder in the user's editor. If there is none, the panel Source shows a file of the shaders.

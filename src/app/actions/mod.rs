@@ -13,4 +13,6 @@ pub(super) mod select;
 pub(super) mod sessions;
 pub(super) mod texts;
 pub(super) mod trace;
+pub(super) mod trees;
 pub(super) mod watch;
+pub(super) mod work;

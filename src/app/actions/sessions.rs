@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app::actions::files::{find_tree, load_model};
+use crate::app::actions::work::has_work;
 use crate::app::engine::Engine;
-use crate::app::state::{State, last_session};
+use crate::app::state::State;
+use crate::app::state::workspace::PanelRequest;
 use crate::events::{Event, emit};
 use crate::picture::Look;
 use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
+use crate::settings::Settings;
 
 /// Reports the loss that ended the previous process.
 pub(in crate::app) fn report_loss(state: &mut State, engine: &Engine) {
@@ -57,6 +60,7 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
 fn go_to(state: &mut State, engine: &mut Engine, SessionState { settings, model, scene, tree }: SessionState) {
     let now = state.session_state();
     if let Some(tree) = tree.filter(|tree| is_other(Some(tree), now.tree.as_deref())) {
+        state.learning.before = None;
         find_tree(state, engine, &full_path(&tree));
     }
     state.session.settings = Arc::unwrap_or_clone(settings);
@@ -75,16 +79,19 @@ pub(in crate::app) fn update_offer(state: &mut State) {
     state.offers_session = state.offers_session && state.last_sessions.here.is_some() && !has_work(state);
 }
 
-/// Whether the session differs from that of a plain start.
-fn has_work(state: &State) -> bool {
-    state.plain.as_ref().is_none_or(|plain| !state.session_state().is_alike(plain))
-}
-
-/// Remembers the session, if there is anything to go on with.
-pub(in crate::app) fn remember_session(state: &State) {
-    if has_work(state) {
-        last_session::remember(&state.session_state());
+/// Goes on with the session before the exercises: with its panels, and with its model unless another one was opened since.
+pub(in crate::app) fn leave_exercise(state: &mut State, engine: &mut Engine) {
+    let Some(before) = state.learning.before.take() else { return };
+    state.workspace.request(PanelRequest::ArrangeAsBefore);
+    let now = state.session_state();
+    let default = Path::new(BUILT_IN[0]);
+    let of_exercise = state.learning.exercise.as_ref().map(|exercise| Path::new(&exercise.model));
+    if of_exercise == Some(now.model.as_deref().unwrap_or(default)) {
+        return go_to(state, engine, SessionState { tree: None, ..before });
     }
+    let Settings { camera, scene, materials, model, animation, variant, added, .. } = Settings::clone(&now.settings);
+    let settings = Arc::unwrap_or_clone(before.settings);
+    state.session.settings = Settings { camera, scene, materials, model, animation, variant, added, ..settings };
 }
 
 /// A path in full, through symbolic links; the name of something built in as it is.

@@ -9,7 +9,7 @@ use super::models::show_models;
 use super::program::SAY;
 use super::shortcut::Shortcut;
 use super::spec::{Command, Outcome, Spec, Until};
-use crate::app::actions::files::{begin_reading, edit, find_tree, load_models, wanted_models};
+use crate::app::actions::files::{begin_reading, edit, find_tree, leave_single_file, load_models, wanted_models};
 use crate::app::actions::sessions::restore_session;
 use crate::app::dialog;
 use crate::app::editor::Place;
@@ -22,7 +22,7 @@ use crate::message::did_you_mean;
 use crate::picture::{may_hold_look, read_checked_look};
 use crate::scene::{BUILT_IN, Problem, find_model};
 use crate::settings::{AddedModel, MOST_ADDED};
-use crate::shader::Source;
+use crate::shader::{self, Source};
 use crate::threads::Message;
 
 /// A path and what to open it as.
@@ -79,6 +79,11 @@ pub(in crate::app) static CHOOSE_BESIDE: Spec<()> =
 pub(in crate::app) static CHOOSE_TREE: Spec<()> =
     Spec::fallible("choose-tree", |state, engine, ()| choose(state, engine, Dialog::Tree))
         .label("Open a shader tree", "folder")
+        .of_window();
+
+pub(in crate::app) static OPEN_BUILT_IN: Spec<()> =
+    Spec::fallible("open-built-in", |state, engine, ()| open(state, engine, Open::Tree(shader::BUILT_IN.into())))
+        .label("Open the built-in shaders", "tree default back")
         .of_window();
 
 /// Writes the built-in shaders to a folder, or to one that the user chooses, and opens them.
@@ -195,6 +200,7 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
         Open::Model(path) => {
             let (wanted, scene) = state.wanted_model();
             let scene = scene.filter(|_| wanted.as_ref() == Some(&path));
+            leave_single_file(state, engine);
             load_models(state, engine, (Some(path.clone()), scene), Vec::new());
             Until::Model(path)
         }
@@ -204,6 +210,7 @@ fn open(state: &mut State, engine: &mut Engine, what: Open) -> Outcome {
                 return Err(format!("{} models are shown already, and no more can be", MOST_ADDED + 1));
             }
             added.push(AddedModel::new(&path.display().to_string()));
+            leave_single_file(state, engine);
             return Ok(show_models(state, engine, first, added));
         }
         Open::Environment(path) => {

@@ -21,7 +21,7 @@ pub(in crate::app) struct PlaybackFields {
 
 pub(in crate::app) static PLAYBACK: Spec<PlaybackFields> = Spec::new("playback", play).takes(
     r#""paused"?: bool, "step"?: true, "restart"?: true, "time"?: s, "speed"?: factor"#,
-    "The clock of animated shaders and models, which begins again when another model or tree is opened. Result: time, paused, speed",
+    "The clock of animated shaders and models. When another model or tree is opened it begins at 0, and in a window it runs. Result: time, paused, speed",
 );
 
 fn play(state: &mut State, _: &mut Engine, asked: PlaybackFields) -> Outcome {

@@ -37,6 +37,7 @@ pub(in crate::app) static REGISTRY: &[&dyn Registered] = &[
     &models::REMOVE_MODEL,
     &models::SCENE,
     &file::CHOOSE_TREE,
+    &file::OPEN_BUILT_IN,
     &file::NEW_TREE,
     &file::OPEN_EDITOR,
     &camera::FRAME,

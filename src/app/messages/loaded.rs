@@ -73,9 +73,9 @@ pub(in crate::app) fn on_loaded(state: &mut State, engine: &mut Engine, loaded: 
             let is_next = is_other && state.session.model().is_some();
             state.session.set_model(model);
             if is_next && !state.shader.is_single_file {
-                state.playback.restart();
+                state.playback.begin();
             }
-            if is_next && state.shader.is_single_file {
+            if is_next && state.shader.is_single_file && !state.shader.compiling {
                 let file = Path::new(&state.shader.tree).file_name().unwrap_or_default().to_string_lossy().into_owned();
                 state.say(format!("{} is loaded, but {file} draws no model. Open a shader tree to see it", model.name));
             }

@@ -15,12 +15,12 @@ use crate::app::actions::compare::write::{on_files_written, on_version_written};
 use crate::app::actions::costs::{on_functions_timed, on_version_timed};
 use crate::app::actions::edits::{on_typed_written, on_written};
 use crate::app::actions::exercises::{on_checked, on_exercise, on_prepared};
-use crate::app::actions::files::on_tree_found;
 use crate::app::actions::guests::on_guest_traced;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
 use crate::app::actions::texts::on_text_written;
 use crate::app::actions::trace::on_traced;
+use crate::app::actions::trees::on_tree_found;
 use crate::app::actions::watch::watch_files;
 use crate::app::command::file::{OPEN, Open, all_chosen};
 use crate::app::command::{execute, on_asked};
@@ -89,6 +89,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         }
         Message::Look(Ok(look)) => {
             let model = show_look(state, engine, *look);
+            state.say("Opened the look");
             if model.is_none() {
                 check_names(state);
             }

@@ -24,6 +24,9 @@ pub(in crate::app) fn on_endless_loop(state: &mut State, engine: &mut Engine, wo
 }
 /// Shows the panels for a single file, which has no model, or those of before for a tree.
 pub(in crate::app) fn arrange_for(state: &mut State, is_single_file: bool) {
+    if !is_single_file && !state.learning.holds(state.shader.location.as_deref()) {
+        state.shader.last_tree.clone_from(&state.shader.location);
+    }
     let was_single_file = std::mem::replace(&mut state.shader.is_single_file, is_single_file);
     match (was_single_file, is_single_file) {
         (false, true) => state.workspace.request(PanelRequest::ArrangeTemporarily(Preset::Toy)),
@@ -120,7 +123,7 @@ pub(in crate::app) fn on_reload(state: &mut State, engine: &mut Engine, reload: 
             state.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
             tell_expression(state, &set.shaders);
             if state.session.shaders.as_ref().is_some_and(|before| before.tree != set.shaders.tree) {
-                state.playback.restart();
+                state.playback.begin();
             }
             state.session.shaders = Some(set.shaders.clone());
             engine.resources.set_pipelines(set);

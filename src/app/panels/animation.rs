@@ -64,8 +64,10 @@ fn clips(ui: &mut Ui, settings: &mut Settings, model: &Model) {
     let mut changed = false;
     for (index, weight) in weights.iter_mut().enumerate() {
         let key = model.clip_key(index);
+        // A clip without a name has its number as key.
+        let name = if key.parse::<usize>() == Ok(index) { format!("Clip {key}") } else { key.clone() };
         let row = Row {
-            name: &key,
+            name: &name,
             doc: "Whether the clip plays. It replaces the pose of those above it, or a part of it by its weight",
             option: rows::set_option("animation.clips", &key),
             is_changed: false,

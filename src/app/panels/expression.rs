@@ -300,7 +300,13 @@ fn suggestions(ui: &mut Ui, state: &State, own: &mut ExpressionState) {
     });
 }
 
-/// The first lines that a difference adds, by file.
+/// Whether a line may have something to watch: no directive, comment or declaration.
+fn has_expression(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default().trim();
+    !code.starts_with('#') && (code.contains('=') || code.contains("return") || code.ends_with(");"))
+}
+
+/// The first lines with expressions that a difference adds, by file.
 fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
     let mut out: BTreeMap<(String, u32), ()> = BTreeMap::new();
     let (mut file, mut line) = (String::new(), 1);
@@ -313,7 +319,7 @@ fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
             Kind::Removed => {}
             Kind::Same => line += 1,
             Kind::Added => {
-                if text[1..].trim().chars().any(char::is_alphanumeric) {
+                if has_expression(&text[1..]) {
                     out.insert((file.clone(), line), ());
                 }
                 line += 1;
@@ -382,7 +388,10 @@ mod tests {
     #[test]
     fn the_lines_of_an_edit_are_offered() {
         let tree = |text: &str| BTreeMap::from([(TreePath::from("brdf/a.glsl"), Arc::<str>::from(text))]);
-        let lines = difference(&tree("a;\nb;\nc;\nd;\n"), &tree("a;\nB;\nc;\n}\nd;\ne;\n"));
+        let lines = difference(
+            &tree("a;\nb = 1;\nc;\nd;\n"),
+            &tree("a;\nb = 2;\nc;\n}\nd;\nreturn e;\n#include \"f\"\n// g = 1\nuniform float h;\n"),
+        );
         assert_eq!(edited_lines(&lines), [("brdf/a.glsl".to_owned(), 2), ("brdf/a.glsl".to_owned(), 6)]);
     }
 }

@@ -28,16 +28,21 @@ type KeyRow = (String, &'static str);
 fn rows() -> Vec<(Group, KeyRow)> {
     let all = REGISTRY.iter().map(|command| command.about()).filter(|about| !about.keys_doc.is_empty());
     let mut rows: Vec<_> = all.map(|about| (about.group, (about.key_names(), about.keys_doc))).collect();
-    rows.extend(OTHER_KEYS.map(|(keys, doc)| (Group::Picture, (keys.to_owned(), doc))));
+    rows.extend(OTHER_KEYS.map(|(group, keys, doc)| (group, (keys.to_owned(), doc))));
     rows.extend(MOUSE.map(|(keys, doc)| (Group::Mouse, (keys.to_owned(), doc))));
     rows.sort_by_key(|(group, _)| *group);
     rows
 }
 
 /// Keys that are no shortcut of a command, and what they do.
-const OTHER_KEYS: [(&str, &str); 2] = [
-    ("letters", "the mode with this letter in the list, such as b base color or n normals; press it again to go back"),
-    ("hold Space", "show the picture before the last edit, or the other picture of a comparison"),
+const OTHER_KEYS: [(Group, &str, &str); 3] = [
+    (Group::Program, "Ctrl++, Ctrl+-, Ctrl+0", "larger or smaller letters, or their usual size"),
+    (
+        Group::Picture,
+        "letters",
+        "the mode with this letter in the list, such as b base color or n normals; press it again to go back",
+    ),
+    (Group::Picture, "hold Space", "show the picture before the last edit, or the other picture of a comparison"),
 ];
 
 /// Width of the list in points, and of the column with the keys.

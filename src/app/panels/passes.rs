@@ -76,13 +76,13 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
 /// The entries of the panel: the passes and switches that match the search, or whose parameters do.
 #[derive(Debug, Default)]
 struct FoundPasses<'a> {
-    /// Effects of the user.
+    /// Passes of the user, also those that only work for others, as the buffers of a toy.
     added: Vec<&'a GraphPass>,
     /// Constants that switch passes.
     switches: Vec<&'a Constant>,
     /// Effects that Specula comes with.
     shipped: Vec<&'a GraphPass>,
-    /// Internal passes.
+    /// Internal passes that Specula comes with.
     inside: Vec<&'a GraphPass>,
 }
 
@@ -103,7 +103,7 @@ impl<'a> FoundPasses<'a> {
             words.is_empty() || with([label, name, group, doc], of_switch(shaders, switch))
         };
         let (inside, effects): (Vec<_>, Vec<_>) =
-            own(shaders).filter(is_found).partition(|pass| names.contains(pass.name()));
+            own(shaders).filter(is_found).partition(|pass| names.contains(pass.name()) && is_shipped(pass));
         let (shipped, added) = effects.into_iter().partition(|pass| is_shipped(pass));
         Self { added, switches: switches(shaders).filter(is_switch).collect(), shipped, inside }
     }

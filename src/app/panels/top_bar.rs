@@ -2,7 +2,7 @@
 
 use egui::{Button, Checkbox, Label, RichText, ScrollArea, Ui, vec2};
 
-use crate::app::command::file::{CHOOSE, OPEN, Open, RESTORE_ALWAYS, RESTORE_SESSION, SHOW_GALLERY};
+use crate::app::command::file::{CHOOSE, OPEN, OPEN_BUILT_IN, Open, RESTORE_ALWAYS, RESTORE_SESSION, SHOW_GALLERY};
 use crate::app::command::spec::Command;
 use crate::app::layout::Layout;
 use crate::app::palette::Palette;
@@ -86,6 +86,9 @@ fn open(ui: &mut Ui, recent: &Recent, last_sessions: &LastSessions, commands: &m
         }
         if ui.button("Shader tree…").clicked() {
             commands.push(CHOOSE.with(Dialog::Tree));
+        }
+        if ui.button("Built-in shaders").on_hover_text("The shader tree of the program").clicked() {
+            commands.push(OPEN_BUILT_IN.with(()));
         }
         ui.separator();
         if let Some(session) = &last_sessions.here

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::shaders::difference::{Line, difference};
 use crate::learn::{Exercise, Finding, Progress};
+use crate::recovery::SessionState;
 use crate::shader::{ShaderSet, TreePath};
 
 /// Commands that the exercise panel sends.
@@ -47,6 +48,8 @@ pub(in crate::app) struct Learning {
     /// Folder of its tree.
     pub(in crate::app) folder: PathBuf,
     pub(in crate::app) progress: Progress,
+    /// The session before the first exercise, which goes on once another tree is opened.
+    pub(in crate::app) before: Option<SessionState>,
     pub(in crate::app) measured: Measured,
     /// Number of the request whose result is awaited.
     pub(in crate::app) checking: Option<u64>,
@@ -71,10 +74,15 @@ impl Learning {
         self.progress.folder.clone().unwrap_or_else(standard)
     }
 
+    /// Whether a tree lies where the exercises do.
+    pub(in crate::app) fn holds(&self, tree: Option<&Path>) -> bool {
+        tree.is_some_and(|tree| tree.parent() == Some(&self.parent()))
+    }
+
     /// Sets the exercise of a tree that has been opened.
     pub(in crate::app) fn open(&mut self, folder: &Path, exercise: Option<Arc<Exercise>>) {
-        let progress = std::mem::take(&mut self.progress);
-        *self = Self { exercise, folder: folder.to_owned(), progress, ..Self::default() };
+        let (progress, before) = (std::mem::take(&mut self.progress), self.before.take());
+        *self = Self { exercise, folder: folder.to_owned(), progress, before, ..Self::default() };
     }
 
     /// Notes that shaders of this generation are being measured, by the request with this number.

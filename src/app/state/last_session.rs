@@ -8,6 +8,7 @@ use chrono::{DateTime, Local};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::recent::Kind;
 use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
 use crate::state_folder;
@@ -44,7 +45,7 @@ impl LastSession {
         let settings = &self.work.settings;
         let mode = (settings.mode != "final").then(|| format!("mode {}", settings.mode));
         let environment = format!("environment {}", name(&PathBuf::from(&settings.environment.name)));
-        let tree = self.work.tree.as_ref().map(|tree| format!("shaders {}", name(tree)));
+        let tree = self.work.tree.as_ref().map(|tree| format!("shaders of {}", Kind::Tree.name_of(tree)));
         let at = DateTime::from_timestamp(self.at, 0).map(|at| at.with_timezone(&Local));
         let at = at.map(|at| at.format("%Y-%m-%d %H:%M").to_string());
         [Some(model), tree, mode, Some(environment), at].into_iter().flatten().collect::<Vec<_>>().join(", ")

@@ -23,6 +23,8 @@ pub(in crate::app) struct Playback {
     last: Option<Instant>,
     /// Whether the user has paused the clock.
     pub(in crate::app) paused: bool,
+    /// Whether the clock of every picture stands until a command starts it.
+    awaits_start: bool,
     /// Seconds of the clock per second of real time.
     pub(in crate::app) speed: f32,
     step: bool,
@@ -43,6 +45,7 @@ impl Default for Playback {
             clock: Clock::default(),
             last: None,
             paused: false,
+            awaits_start: false,
             speed: 1.0,
             step: false,
             restarted: false,
@@ -63,6 +66,19 @@ impl Playback {
     /// Advances the clock by one step in the next frame, and pauses it.
     pub(in crate::app) fn step(&mut self) {
         (self.paused, self.step) = (true, true);
+    }
+
+    /// Pauses the clock of this picture and of those that follow, for a session without a window.
+    pub(in crate::app) fn await_start(&mut self) {
+        (self.paused, self.awaits_start) = (true, true);
+    }
+
+    /// Begins the clock of another picture. In a window it runs: pause and speed were those of the picture before.
+    pub(in crate::app) fn begin(&mut self) {
+        self.restart();
+        if !self.awaits_start {
+            (self.paused, self.speed) = (false, 1.0);
+        }
     }
 
     /// Sets the clock back to 0.
@@ -273,6 +289,21 @@ mod tests {
             assert!(frames.playback.take_restart(), "passes begin again");
             assert!(!frames.playback.take_restart(), "they begin again once");
             assert_eq!(frames.animated().0, if paused { 0.0 } else { 0.25 });
+        }
+    }
+
+    #[test]
+    fn another_picture_runs_in_a_window_and_waits_without_one() {
+        for awaits_start in [false, true] {
+            let mut frames = Frames::new();
+            if awaits_start {
+                frames.playback.await_start();
+            }
+            (frames.playback.paused, frames.playback.speed) = (true, 0.0);
+            frames.playback.begin();
+            assert!(frames.playback.take_restart(), "passes begin again");
+            assert_eq!(frames.animated(), (0.0, 0));
+            assert_eq!(frames.animated().0, if awaits_start { 0.0 } else { 0.25 });
         }
     }
 

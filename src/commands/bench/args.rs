@@ -24,7 +24,7 @@ pub(super) enum What {
     /// CPU time of a frame of 10 to 100,000 primitives, of 10 to 10,000 materials, and of 10 to 10,000 joints; device time of 1 to 1,000 lights;
     /// upload time and memory of textures up to 4 GiB
     Scale,
-    /// What each function of a stage costs: the frame with and without it, drawn in turn until the difference is significant
+    /// Cost of each function of a stage: the frame with and without it, drawn in turn until the difference is significant
     Cost,
 }
 

@@ -314,8 +314,7 @@ pub fn example(name: &str) -> Result<Example, Failure> {
     })
 }
 
-/// The name of the built-in shader tree; `./built-in` is a folder.
-pub const BUILT_IN: &str = "built-in";
+pub use specula::shader::BUILT_IN;
 
 /// The shader tree in a folder, [`BUILT_IN`], or the example NAME in `examples:NAME`. Without a folder, the tree in ./shaders or else the
 /// built-in one.

@@ -254,7 +254,7 @@ impl<'a> CheckedStages<'a> {
     /// Tells of a broken rule, with the line of its file: an error, or a warning of what is printed.
     pub fn diagnostic(&self, broken: &Broken) -> Diagnostic {
         let path = TreePath::from(broken.file.as_str());
-        let text = self.shaders.texts.get(&path);
+        let text = self.shaders.author_text(&path);
         let line = text.and_then(|text| text.lines().nth((broken.line as usize).checked_sub(1)?));
         let (file, message) = (self.source.display_path(&path), broken.message());
         let told =

@@ -8,6 +8,7 @@ use super::hooks::other_parameters;
 use super::include::meant;
 use super::names::Names;
 use super::places::{StageFiles, is_unended, is_value};
+use super::types::with_types;
 use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
 use crate::shader::glsl::{Line, Token, TokenKind, assigns, code, find_word, includes, lines};
@@ -138,10 +139,16 @@ fn is_summary(row: &str) -> bool {
 
 /// After an unknown name, glslang assumes a `float` and reports errors about that `float`.
 fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
-    let unknown =
-        ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
+    let unknown = [
+        "undeclared identifier",
+        "no matching overloaded function found",
+        "no such field",
+        "out of range",
+        "swizzle selection",
+    ];
     let conversion = [
         "cannot convert from",
+        "cannot convert return value",
         "type does not match",
         "wrong operand type",
         "can't use function",
@@ -178,7 +185,7 @@ fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>, 
             None => diagnostic,
         };
     }
-    let shown = if token.is_empty() { said.to_owned() } else { format!("'{token}' : {said}") };
+    let shown = if token.is_empty() { with_types(said) } else { format!("'{token}' : {}", with_types(said)) };
     let diagnostic = Diagnostic::error(file, shown).on_line(line, source.map(|line| line.raw));
     match source.and_then(|line| locate(line, token, said)) {
         Some(bytes) => diagnostic.under(bytes),

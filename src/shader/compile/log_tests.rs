@@ -38,8 +38,7 @@ fn tokens_are_marked() {
         &format!("{head}/* ä\n * b */ void main() {{\r\n  /* é */ o = v;\r\n}}"),
         &[("m.frag:5:15: error: 'v' : undeclared identifier", "v")],
     );
-    let conversion = "cannot convert from ' const 3-component vector of float' to \
-                      'layout( location=0) out highp 4-component vector of float'";
+    let conversion = "cannot convert from 'vec3' to 'vec4'";
     expect(
         &format!("{head}void main() {{ if (1 == 1) o = vec3(1.0); }}"),
         &[(&format!("m.frag:3:29: error: 'assign' : {conversion}"), "=")],
@@ -48,6 +47,11 @@ fn tokens_are_marked() {
     expect(
         &format!("{head}void main() {{ o = vec4(foo, 1.0); }}"),
         &[("m.frag:3:24: error: 'foo' : undeclared identifier", "foo")],
+    );
+    // Neither is the whole struct that stands for an unknown member.
+    expect(
+        &format!("{head}struct S {{ vec3 normal; }};\nvoid main() {{ S s; s.nrmal = 0.1; o = vec4(s.normal, 1.0); }}"),
+        &[("m.frag:4:22: error: 'nrmal' : no such field in structure 's'", "nrmal")],
     );
     // The conversion of the made-up result is not reported a second time.
     expect(

@@ -6,9 +6,10 @@ mod hooks;
 pub mod include;
 pub mod log;
 pub mod module_cache;
-mod names;
+pub mod names;
 mod own;
 mod places;
+mod types;
 mod unbound;
 mod uniform;
 

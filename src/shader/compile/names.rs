@@ -33,6 +33,11 @@ impl Names {
         Self(files.map(|(path, text)| (path.clone(), Scanner::scan(&text))).collect())
     }
 
+    /// Whether one of the files declares this name outside of functions and structs.
+    pub fn has_global(&self, name: &str) -> bool {
+        self.all().any(|(_, declared)| declared.scope == Scope::Global && declared.name == name)
+    }
+
     /// The name nearest to an unknown one on a line of a file: of a variable, function, constant, macro or struct, or of what is
     /// built into GLSL. `None` if none is near, or if the name is declared.
     pub fn nearest(&self, unknown: &str, file: &TreePath, line: u32) -> Option<&str> {

@@ -23,6 +23,9 @@ use embedded::Example;
 use quarantine::Quarantine;
 use toy::Toy;
 
+/// The name of the tree in the program; `./built-in` is a folder.
+pub const BUILT_IN: &str = "built-in";
+
 pub use error::SourceError;
 pub use read::{is_specula_tree, leads_out};
 pub use tree::Tree;
@@ -73,11 +76,17 @@ impl Source {
         if Self::is_file(&path) { Tree::Toy(Toy::new(path)).into() } else { Self::disk(path) }
     }
 
-    /// As [`Source::open`] for a tree that is there. Its path does not change with the working directory.
+    /// As [`Source::open`] for a tree that is there, or for [`BUILT_IN`]. Its path does not change with the working directory. A file that
+    /// belongs to a toy stands for the toy.
     ///
     /// # Errors
     /// A message: the path is neither a folder with a Specula shader tree nor a single shader file, or the folder has too many files.
     pub fn find(path: &Path) -> Result<Self, String> {
+        if path == Path::new(BUILT_IN) {
+            return Ok(Self::embedded());
+        }
+        let whole = Toy::whole(path);
+        let path = whole.as_deref().unwrap_or(path);
         if is_specula_tree(path) || (Self::is_file(path) && path.exists()) {
             let source = Self::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
             return if source.is_bounded() { Ok(source) } else { Err(too_many_files(path)) };

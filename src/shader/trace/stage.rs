@@ -45,6 +45,12 @@ impl StageTexts {
         let known = self.shaders.texts.get(&path).cloned();
         known.or_else(|| self.source.read(&path).ok().map(Arc::from)).unwrap_or_default()
     }
+
+    /// The text of a file as its author wrote it, with the same lines.
+    fn author_text(&self, file: &str) -> Arc<str> {
+        let own = self.shaders.author_text(&TreePath::from(file)).cloned();
+        own.unwrap_or_else(|| self.text(file))
+    }
 }
 
 /// A stage that has compiled with a listener.
@@ -182,9 +188,9 @@ impl TracedStage {
         &self.traced.places[point.place]
     }
 
-    /// A line of a file of the tree, without the space around it; empty if there is none.
+    /// A line of a file of the tree, as its author wrote it, without the space around it; empty if there is none.
     pub(super) fn line(&self, file: &str, line: u32) -> String {
-        let text = self.texts.text(file);
+        let text = self.texts.author_text(file);
         let at = (line as usize).checked_sub(1);
         at.and_then(|at| text.lines().nth(at)).unwrap_or_default().trim().to_owned()
     }
@@ -194,7 +200,7 @@ impl TracedStage {
         let place = self.place(self.point(number)?);
         let (stage, snapshot) = (&self.texts.stage, self.texts.snapshot());
         let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
-        Some(statement::site(place, texts))
+        Some(statement::site(place, &self.texts.author_text(&place.file), texts))
     }
 }
 

@@ -23,8 +23,8 @@ pub struct Site {
     pub code: String,
 }
 
-/// The statement of a place; the declaration, if the place reads an input of the stage.
-pub(super) fn site(place: &Place, texts: Texts<'_>) -> Site {
+/// The statement of a place in the text of its file; the declaration, if the place reads an input of the stage.
+pub(super) fn site(place: &Place, text: &str, texts: Texts<'_>) -> Site {
     let file = TreePath::from(place.file.as_str());
     if let Purpose::Input(name) = &place.purpose {
         let found = texts.error(&[name.as_str(), "in"], String::new());
@@ -33,8 +33,7 @@ pub(super) fn site(place: &Place, texts: Texts<'_>) -> Site {
             return Site { file: found.file, line, column, code: spelled(&code(excerpt)) };
         }
     }
-    let text = texts.snapshot.read(&file).unwrap_or_default();
-    let (column, code) = statement(&text, place);
+    let (column, code) = statement(text, place);
     Site { file: texts.snapshot.display_path(&file), line: place.line, column, code }
 }
 

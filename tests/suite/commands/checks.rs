@@ -394,6 +394,11 @@ fn files_of_shadertoy_are_checked() {
     let lines =
         found.as_array().unwrap().iter().map(|of| (of["line"].as_u64().unwrap(), of["count"].as_u64().unwrap()));
     assert_eq!(lines.collect::<Vec<_>>(), [(2, 64 * 3), (3, 10 * 48)], "{found:#}");
+    // The line is shown as its author wrote it.
+    let own = "void mainImage(out vec4 color, in vec2 at) { color = vec4(sqrt(at.x - 1e3)); }";
+    std::fs::write(folder.path().join("short.glsl"), own).unwrap();
+    let checked = run(folder.path(), &[&["check", "--undefined", "short.glsl"], &size[..]].concat());
+    checked.expect(1, &["sqrt() of a negative number", &format!("1 | {own}")]);
     let rendered = run(folder.path(), &[&["render", "toy.glsl", "--out", "toy.png"], &size[..]].concat());
     rendered.expect(1, &["1 assertion failed", "low"]);
     assert!(folder.path().join("toy.png").exists());

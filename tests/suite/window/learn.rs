@@ -1,7 +1,7 @@
 //! The hint of the first start, and an exercise that is solved in an editor.
 
 use image::RgbaImage;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::controls::{ACCENT, count};
 use crate::support::Tree;
@@ -31,6 +31,38 @@ fn an_exercise_is_solved_by_an_edit() {
     let layout = viewer.tree.beside("state/specula/layout.json");
     viewer.until("the stored arrangement", |_| layout.is_file());
     assert!(!std::fs::read_to_string(&layout).unwrap().contains("Learn"), "the exercise's arrangement is stored");
+    viewer.quit();
+}
+
+/// The sliders and the model of a tree are there again after an exercise, which has its own, also for a later window.
+#[test]
+fn an_exercise_costs_no_setting_of_the_tree_before() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "set", "values": { "roughness_scale": 0.4, "view.ev": 1.5 } }));
+    let own = viewer.screenshot();
+    let learn = json!({ "command": "run", "entry": "Exercise 1: Square the roughness" });
+    viewer.running.done(learn.clone());
+    viewer.running.event("exercise");
+    let ev = |viewer: &mut Viewer| viewer.running.done(json!({ "command": "get", "path": "view.ev" }));
+    assert_ne!(ev(&mut viewer), json!(1.5), "the exercise has settings of its own");
+    let sessions = viewer.tree.beside("state/specula/sessions.json");
+    viewer.until("the stored session of the tree", |_| sessions.is_file());
+    let stored = std::fs::read_to_string(&sessions).unwrap();
+    assert!(stored.contains("roughness_scale") && !stored.contains("specula-learn"), "{stored}");
+    let tree = viewer.tree.beside("shaders");
+    viewer.running.done(json!({ "command": "open", "tree": tree }));
+    assert_eq!(ev(&mut viewer), json!(1.5));
+    viewer.until("the picture of before", |shot| *shot == own);
+    // A model that is opened over a single file after an exercise is not shown by the exercise.
+    viewer.running.done(learn);
+    viewer.running.event("exercise");
+    let toy = viewer.tree.beside("toy.glsl");
+    std::fs::write(&toy, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 1.0, 0.0, 1.0); }\n").unwrap();
+    viewer.running.done(json!({ "command": "open", "tree": toy }));
+    viewer.running.done(json!({ "command": "open", "model": "sphere-grid" }));
+    viewer.until("the model in its own tree", |shot| *shot == own);
+    viewer.running.end_input();
     viewer.quit();
 }
 

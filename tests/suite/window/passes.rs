@@ -103,9 +103,68 @@ fn a_single_file_is_a_tree() {
     viewer.until_screen("a picture without names", |screen| {
         screen.pixels().filter(|pixel| *pixel == blue.get_pixel(0, 0)).count() >= pixels
     });
-    // Another model changes nothing on screen, which is told.
-    let model = viewer.tree.beside("quad.glb");
+    // The file of the buffer stands for the whole.
+    viewer.running.done(json!({ "command": "open", "tree": path }));
+    viewer.shows(&blue, "the toy is opened again");
+    viewer.quit();
+}
+
+/// A model that is opened while a single file is on screen is shown by the shaders of before, or by the built-in ones.
+#[test]
+fn a_model_leaves_a_single_file_for_the_tree_of_before() {
+    let tree = Tree::new();
+    tree.write("user.glsl", &tree.edited("user.glsl", "    return radiance;\n}", "    return radiance.bgr;\n}"));
+    let (toy, model) = (tree.beside("toy.glsl"), tree.beside("quad.glb"));
+    std::fs::write(&toy, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 1.0, 0.0, 1.0); }\n").unwrap();
     std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    viewer.running.done(json!({ "command": "open", "file": model }));
-    assert!(viewer.quit().contains("is loaded, but toy.glsl draws no model"));
+    let mut viewer = Viewer::driven(tree, &["sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "open", "model": model }));
+    let of_tree = viewer.screenshot();
+    viewer.running.done(json!({ "command": "open", "tree": toy }));
+    viewer.until("the toy", |shot| shot.pixels().all(|pixel| pixel.0[..3] == [0, 255, 0]));
+    viewer.running.done(json!({ "command": "open", "model": model }));
+    viewer.shows(&of_tree, "the model in the tree of before");
+    viewer.running.done(json!({ "command": "run", "entry": "Open the built-in shaders" }));
+    viewer.until("the built-in shaders", |shot| *shot != of_tree);
+    let of_program = viewer.screenshot();
+    viewer.running.done(json!({ "command": "open", "tree": toy }));
+    viewer.until("the toy", |shot| shot.pixels().all(|pixel| pixel.0[..3] == [0, 255, 0]));
+    viewer.running.done(json!({ "command": "open", "model": model }));
+    viewer.shows(&of_program, "the model in the built-in shaders, which were the tree of before");
+    assert!(viewer.quit().contains("toy.glsl draws no model. Back to the shaders of"));
+}
+
+/// Files that belong to a toy, opened in the window.
+#[test]
+fn a_buffer_opens_the_toy_that_it_belongs_to() {
+    let tree = Tree::new();
+    let (image, buffer) = (tree.beside("image.glsl"), tree.beside("buffer_a.glsl"));
+    std::fs::write(&image, "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0).bgra; }\n")
+        .unwrap();
+    std::fs::write(&buffer, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0, 0.0, 0.0, 1.0); }\n").unwrap();
+    let mut viewer = Viewer::driven(tree, &["sphere-grid"]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "open", "file": buffer }));
+    viewer.until("the image", |shot| shot.pixels().all(|pixel| pixel.0[..3] == [0, 0, 255]));
+    viewer.quit();
+}
+
+/// The pause and the speed were those of the toy before.
+#[test]
+fn a_toy_that_is_opened_after_a_pause_runs() {
+    let tree = Tree::new();
+    let (first, second) = (tree.beside("first.glsl"), tree.beside("second.glsl"));
+    std::fs::write(&first, "void mainImage(out vec4 c, in vec2 p) { c = vec4(fract(iTime), 0.0, 0.0, 1.0); }\n")
+        .unwrap();
+    std::fs::write(&second, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, step(0.001, iTime), 0.0, 1.0); }\n")
+        .unwrap();
+    let mut viewer = Viewer::driven(tree, &["sphere-grid", "--shaders", first.to_str().unwrap()]);
+    viewer.running.event("ready");
+    viewer.running.done(json!({ "command": "playback", "paused": true, "speed": 0 }));
+    viewer.running.done(json!({ "command": "open", "tree": second }));
+    viewer.until("the second toy at a later time", |shot| shot.get_pixel(0, 0).0[..3] == [0, 255, 0]);
+    let clock = viewer.running.done(json!({ "command": "playback" }));
+    assert_eq!((&clock["paused"], &clock["speed"]), (&json!(false), &json!(1.0)), "{clock}");
+    viewer.quit();
 }

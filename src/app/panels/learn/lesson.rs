@@ -21,8 +21,8 @@ pub(super) enum Results {
     Broken,
 }
 
-/// Height of a panel below which the goals scroll with the text, points.
-const LOW: f32 = 260.0;
+/// Height of a panel below which the text scrolls with the goals, points.
+const LOW: f32 = 110.0;
 /// Largest part of the panel's height that the goals take.
 const PART: f32 = 0.55;
 
@@ -52,9 +52,9 @@ fn lesson(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Result
     let scroll = |id: &str| ScrollArea::vertical().id_salt((id, &exercise.name)).auto_shrink(false);
     if ui.available_height() < LOW {
         scroll("text").show(ui, |ui| {
-            about(ui, learning, exercise, commands);
-            ui.separator();
             goals(ui, learning, exercise, results, commands);
+            ui.separator();
+            about(ui, learning, exercise, commands);
         });
         return;
     }
@@ -92,11 +92,6 @@ fn about(ui: &mut Ui, learning: &Learning, exercise: &Exercise, commands: &mut V
     text(ui, &exercise.text);
     ui.label(RichText::new(format!("Source: {}", exercise.source)).small().color(QUIET));
     ui.add_space(6.0);
-    let hover =
-        format!("{}\nOpens the file at the line to look at", learning.folder.join(&exercise.open.file).display());
-    if ui.button(format!("Open {}", exercise.open.file)).on_hover_text(hover).clicked() {
-        ask(LearnCommand::Edit);
-    }
     for (index, hint) in exercise.hints.iter().take(learning.progress.of(exercise).hints).enumerate() {
         ui.add_space(2.0);
         ui.label(RichText::new(format!("Hint {}: {hint}", index + 1)).color(WARNING));
@@ -116,11 +111,16 @@ fn asked_id() -> Id {
     Id::new("a hint or the solution was asked for")
 }
 
-/// The buttons for hints, the solution and the start.
+/// The buttons for the file, hints, the solution and the start.
 fn buttons(ui: &mut Ui, learning: &Learning, exercise: &Exercise, commands: &mut Vec<Command>) {
     let mut ask = |command| commands.push(LEARN.with(command));
     let record = learning.progress.of(exercise);
     ui.horizontal_wrapped(|ui| {
+        let place = learning.folder.join(&exercise.open.file);
+        let hover = format!("{}\nOpens the file at the line to look at", place.display());
+        if ui.button(format!("Open {}", exercise.open.file)).on_hover_text(hover).clicked() {
+            ask(LearnCommand::Edit);
+        }
         let most = exercise.hints.len();
         let is_left = record.hints < most;
         let text = if is_left { format!("Hint ({} of {most})", record.hints + 1) } else { "No more hints".to_owned() };
@@ -183,14 +183,14 @@ fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// The goals, gray before they are measured and while an edit is being measured, else green or red, each with what was found; and what can be
-/// done next.
+/// The verdict with the way to the next exercise, and the goals: gray before they are measured and while an edit is being measured, else green
+/// or red, each with what was found.
 fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results, commands: &mut Vec<Command>) {
     let findings: &[Finding] = match &learning.measured {
         Measured::Findings(findings) if results != Results::Broken => findings,
         _ => &[],
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(if exercise.goals.len() == 1 { "Goal" } else { "Goals" }).strong());
         let state = match (&learning.measured, results) {
             (_, Results::Broken) => "your edit does not compile yet",
@@ -202,6 +202,13 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results
         ui.label(RichText::new(state).small().color(QUIET)).on_hover_text(
             "Specula measures your shaders in the background after every save. The picture does not wait for it",
         );
+        if learning.is_solved() && results == Results::New {
+            ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
+            let has_next = (1..exercises().len()).contains(&exercise.number);
+            if has_next && ui.button("Next").on_hover_text("Open the next exercise").clicked() {
+                commands.push(LEARN.with(LearnCommand::Open(exercise.number + 1)));
+            }
+        }
     });
     for (index, goal) in exercise.goals.iter().enumerate() {
         let finding = findings.get(index);
@@ -219,15 +226,6 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, results: Results
     }
     if let Measured::Failed(message) = &learning.measured {
         ui.add(Label::new(RichText::new(message).small().color(ERROR)).wrap());
-    }
-    if learning.is_solved() && results == Results::New {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
-            let has_next = (1..exercises().len()).contains(&exercise.number);
-            if has_next && ui.button("Next").on_hover_text("Open the next exercise").clicked() {
-                commands.push(LEARN.with(LearnCommand::Open(exercise.number + 1)));
-            }
-        });
     }
 }
 
@@ -270,7 +268,9 @@ mod tests {
     /// The panel at 720p.
     const SIZE: egui::Vec2 = egui::vec2(400.0, 480.0);
 
-    /// The panel at 720p with larger letters, where all texts scroll.
+    /// The panel at 720p with letters of 1.5 times the size.
+    const LARGER: egui::Vec2 = egui::vec2(370.0, 240.0);
+
     #[test]
     fn the_buttons_are_whole_in_a_low_and_narrow_panel() {
         for size in [SIZE, egui::vec2(400.0, 230.0), egui::vec2(230.0, 300.0)] {
@@ -298,21 +298,27 @@ mod tests {
         let found =
             |goal: &crate::learn::Goal| Finding { goal: goal.says.clone(), passed: true, found: "right".into() };
         learning.measured = Measured::Findings(exercise.goals.iter().map(found).collect());
-        let harness = |results| {
+        let harness = |size, results| {
             let learning = &learning;
             let mut harness = Harness::builder()
-                .with_size(SIZE)
+                .with_size(size)
                 .build_ui(move |ui| show(ui, learning, learning.exercise.as_ref().unwrap(), results, &mut Vec::new()));
             harness.run();
             harness
         };
-        let new = harness(Results::New);
-        let last = exercise.goals.last().unwrap();
-        for text in [last.says.as_str(), "Solved. Well done!", "Start over"] {
+        let new = harness(SIZE, Results::New);
+        let (first, last) = (&exercise.goals[0].says, &exercise.goals.last().unwrap().says);
+        let file = format!("Open {}", exercise.open.file);
+        for text in [last, "Solved. Well done!", "Start over", &file] {
             let rect = new.get_by_label(text).rect();
             assert!(rect.min.y > 0.0 && rect.max.y <= SIZE.y, "`{text}` is at {rect:?}");
         }
-        let old = harness(Results::Old);
+        let larger = harness(LARGER, Results::New);
+        for text in [first, "Solved. Well done!", "Start over", &file] {
+            let rect = larger.get_by_label(text).rect();
+            assert!(rect.min.y > 0.0 && rect.max.y <= LARGER.y, "`{text}` is at {rect:?} with larger letters");
+        }
+        let old = harness(SIZE, Results::Old);
         assert!(old.query_by_label("Solved. Well done!").is_none());
         old.get_by_label("measuring; these results are of the edit before");
     }

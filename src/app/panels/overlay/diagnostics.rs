@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, Id, Rect, RichText, Ui};
+use egui::scroll_area::ScrollBarVisibility;
+use egui::{Align2, Id, Rect, RichText, ScrollArea, Ui};
 
 use super::card::{area, card};
 use crate::app::command::file::OPEN_EDITOR;
@@ -70,7 +71,11 @@ pub(super) fn show(
             ui.spacing_mut().scroll.fade.strength = 0.0;
             // A bar that is in sight tells that there is more.
             ui.spacing_mut().scroll.dormant_handle_opacity = 0.6;
-            egui::ScrollArea::vertical().max_height((picture.height() * PART).max(40.0)).show(ui, |ui| {
+            let fits_id = id.with("fits");
+            let fits = ui.data(|data| data.get_temp(fits_id)).unwrap_or(true);
+            let bar = if fits { ScrollBarVisibility::AlwaysHidden } else { ScrollBarVisibility::VisibleWhenNeeded };
+            let scroll = ScrollArea::vertical().scroll_bar_visibility(bar);
+            let shown = scroll.max_height((picture.height() * PART).max(40.0)).show(ui, |ui| {
                 for diagnostic in diagnostics {
                     one(ui, diagnostic, files.is_file(&diagnostic.file), commands);
                 }
@@ -83,6 +88,9 @@ pub(super) fn show(
                     ui.add_space(4.0);
                 }
             });
+            // The room of an area is rounded, and less than a line is no reason to scroll.
+            let fits = shown.content_size.y < shown.inner_rect.height() + 8.0;
+            ui.data_mut(|data| data.insert_temp(fits_id, fits));
         });
     });
     (response.response.rect, hide)

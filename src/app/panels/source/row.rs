@@ -13,7 +13,7 @@ use super::look::Look;
 use super::model::{CodeLine, CodeModel, Shown};
 use super::number::NumberDrag;
 use super::tail::Tail;
-use super::values::{GAP, Values};
+use super::values::{GAP, Values, are_old};
 use crate::app::command::source::SHOW_FILE;
 use crate::app::commands::Commands;
 use crate::app::state::State;
@@ -105,7 +105,7 @@ fn show_line(
     let code_end = left + galley.size().x;
     let tail = Tail::new(ui, state, (path, line));
     let least = MOST_VALUES * sight.width() - tail.width;
-    let values = Values::new(ui, line, (sight, code_end + tail.width), least);
+    let values = Values::new(ui, (line, are_old(state)), (sight, code_end + tail.width), least);
     // Code and values never overlap: the end of the code is left out.
     let end = code_end.min(values.start - GAP - tail.width);
     let whole = ui.clip_rect();
@@ -188,7 +188,7 @@ pub(super) fn beside(
             ui.painter().galley(at, galley, color);
         }
         // A line that is being typed is never cut.
-        None => Values::new(ui, line, (sight, end), 0.0).show(ui, of, (line, sight), commands),
+        None => Values::new(ui, (line, are_old(of.0)), (sight, end), 0.0).show(ui, of, (line, sight), commands),
     }
     let behind = background.map_or(Shape::Noop, |color| Shape::rect_filled(sight, 0.0, color));
     Shape::Vec(vec![behind, found(line, find, (left, sight), look)])

@@ -18,7 +18,7 @@ use crate::app::gallery::Thumbnails;
 use crate::app::panels::panel_ui::PanelUi as _;
 use crate::app::readings::Readings;
 use crate::app::state::State;
-use crate::app::state::trace::sample;
+use crate::app::state::trace::{Progress, sample};
 use crate::app::widgets::theme;
 use crate::render::BakeReport;
 use crate::settings::Settings;
@@ -222,4 +222,26 @@ fn each_trace_shows_its_own_values() {
         harness.run();
         harness.get_by_label(&format!("a = {number}"));
     }
+}
+
+/// While the trace of an edit is under way, the values of before do not look as if they were those of the text beside them.
+#[test]
+fn values_of_the_version_before_are_dim() {
+    let color = |harness: &Harness<'_, Window>| {
+        let of = |shape: &egui::Shape| match shape {
+            egui::Shape::Text(text) if text.galley.job.text.starts_with("a = ") => {
+                text.galley.job.sections.last().map(|section| section.format.color)
+            }
+            _ => None,
+        };
+        harness.output().shapes.iter().find_map(|clipped| of(&clipped.shape)).expect("no value of `a`")
+    };
+    let mut harness = window(TEXT, events(2.0), &[2, 3, 4, 6]);
+    harness.run();
+    assert_eq!(color(&harness), theme::CODE_VALUE.color());
+    let traces = &mut harness.state_mut().state.traces;
+    traces.progress = Progress::UnderWay(2);
+    harness.state_mut().state.session.shaders = Some(shaders(2, &TEXT.replace("2.0", "4.0")));
+    harness.run();
+    assert_eq!(color(&harness), theme::QUIET.color());
 }

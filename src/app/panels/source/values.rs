@@ -11,6 +11,7 @@ use super::model::CodeLine;
 use crate::app::commands::Commands;
 use crate::app::source_line::watch;
 use crate::app::state::State;
+use crate::app::state::trace::Progress;
 use crate::app::state::trace::rows::Note;
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, QUIET, small_mono_font};
@@ -35,8 +36,13 @@ pub(super) struct Values<'a> {
 
 impl<'a> Values<'a> {
     /// Lays out the values of a line, in the part of its row that is in sight: as many as there is room for behind the code, or else in
-    /// `least` points.
-    pub(super) fn new(ui: &Ui, line: &'a CodeLine, (sight, code_end): (Rect, f32), least: f32) -> Self {
+    /// `least` points. `is_old`: they are of a version before the shown text.
+    pub(super) fn new(
+        ui: &Ui,
+        (line, is_old): (&'a CodeLine, bool),
+        (sight, code_end): (Rect, f32),
+        least: f32,
+    ) -> Self {
         let right = sight.right() - MARGIN;
         let most = (right - code_end - GAP).max(least);
         let (mut laid_out, mut total) = (Vec::new(), 0.0);
@@ -48,7 +54,7 @@ impl<'a> Values<'a> {
             }
             let bar = bar::value(note);
             let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
-            let mut job = job_of(note);
+            let mut job = job_of(note, is_old);
             job.wrap = TextWrapping::truncate_at_width(room - of_bar);
             let galley = ui.painter().layout_job(job);
             total += gap + of_bar + galley.size().x;
@@ -106,7 +112,14 @@ fn expression(note: &Note) -> Option<String> {
     }
 }
 
-fn job_of(note: &Note) -> LayoutJob {
+/// Whether the values are of a version before the shaders in use, which is being traced.
+pub(super) fn are_old(state: &State) -> bool {
+    let traced = state.traces.newest().map(|newest| newest.of.picture.shaders.generation);
+    let is_done = state.traces.progress == Progress::Done;
+    !is_done && state.session.shaders.as_ref().is_some_and(|now| traced.is_some_and(|traced| traced != now.generation))
+}
+
+fn job_of(note: &Note, is_old: bool) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut add = |text: &str, color: Color32| {
         let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
@@ -124,6 +137,6 @@ fn job_of(note: &Note) -> LayoutJob {
         (.., true) => CODE_KEYWORD,
         _ => CODE_VALUE,
     };
-    add(&note.values, color.color());
+    add(&note.values, if is_old { QUIET.color() } else { color.color() });
     job
 }

@@ -35,8 +35,8 @@ pub(in crate::app) fn reached(reload: &ReloadEvent) -> String {
     let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
     let changed: Vec<String> = reload.changed.iter().map(name).collect();
     match (changed.as_slice(), reload.stages.as_slice()) {
-        // A save that repairs a failed one compiles nothing if it restores the last good text.
-        ([], []) => "repaired: back to the last version that compiled".to_owned(),
+        // A save that restores the last good text compiles nothing, nor does the end of a watched expression.
+        ([], []) => "back to the shaders of before".to_owned(),
         ([], stages) => format!("start -> {}", in_short(stages)),
         (changed, stages) => format!("{} -> {}", changed.join(" "), in_short(stages)),
     }

@@ -16,6 +16,8 @@ pub(in crate::app) struct ShaderStatus {
     pub(in crate::app) location: Option<PathBuf>,
     /// Folder or file of the tree whose shaders are in use. A tree that was opened since may still be compiled, or not compile.
     pub(in crate::app) in_use: Option<PathBuf>,
+    /// Folder of the last tree that was no single file and no exercise; `None` is a built-in one.
+    pub(in crate::app) last_tree: Option<PathBuf>,
     /// Whether the tree is a single file of another playground.
     pub(in crate::app) is_single_file: bool,
     /// Whether a compile is under way.

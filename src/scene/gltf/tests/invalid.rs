@@ -135,7 +135,7 @@ fn files_that_are_not_gltf() {
     assert!(message(b"glTF").contains("damaged GLB"));
     let missing = load("/nonexistent/model.glb".as_ref(), &LoadOptions::default()).unwrap_err();
     assert!(missing.to_string().contains("/nonexistent/model.glb: cannot be read"));
-    assert!(load(std::env::temp_dir().as_path(), &LoadOptions::default()).is_err());
+    assert!(load(tempfile::tempdir().unwrap().path(), &LoadOptions::default()).is_err());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What a file takes is limited in all, whichever of its parts claim it.
+//! The memory of a file is limited in all, whichever of its parts claim it.
 
 use std::time::Instant;
 

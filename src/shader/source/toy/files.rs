@@ -1,7 +1,7 @@
 //! The files beside a toy that belong to it.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::adapt::{COMMON, named_files};
 use super::drawing::BUFFERS;
@@ -24,6 +24,23 @@ impl Toy {
         names.sort();
         names.dedup();
         names.iter().map(|name| self.folder().join(name)).collect()
+    }
+
+    /// The file of the toy to which a buffer or shared code belongs, if it is beside it: `image.glsl` for `buffer_a.glsl`, `t.glsl` for
+    /// `t.buffer_a.glsl`.
+    pub fn whole(path: &Path) -> Option<PathBuf> {
+        let name = path.file_stem()?.to_str()?;
+        let part = name.rsplit('.').next()?.to_ascii_lowercase().replace(' ', "_");
+        if part != COMMON && !BUFFERS.contains(&part.as_str()) {
+            return None;
+        }
+        let stems: &[&str] = match name.rsplit_once('.') {
+            Some((stem, _)) => &[stem],
+            None => &["image", "Image"],
+        };
+        let ending = path.extension()?.to_str()?;
+        let mut files = stems.iter().map(|stem| path.with_file_name(format!("{stem}.{ending}")));
+        files.find(|file| Self::is_toy(file) && file.is_file())
     }
 
     /// The files that a name with a `*` stands for: those that exist, and the faces of a cube map, which may not exist yet.

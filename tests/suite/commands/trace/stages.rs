@@ -168,6 +168,11 @@ fn toys_are_traced_with_the_frames_before() {
     let uv = vector(&json!([values(&found, file, 3, "uv")[0][0], values(&found, file, 3, "uv")[0][1], 0]));
     assert!(near(uv[0], 24.5 / 96.0, 1e-6) && near(uv[1], (64.0 - 15.5) / 64.0, 1e-6), "{uv:?}");
     assert_eq!(values(&found, file, 4, "count"), [json!(4.0)]);
+    // The code is the author's, without what is compiled beside it.
+    for line in found["lines"].as_array().unwrap() {
+        let own = image.lines().nth(line["line"].as_u64().unwrap() as usize - 1).unwrap();
+        assert_eq!(line["code"].as_str(), Some(own.trim()), "{line}");
+    }
     // Of the stage around it, nothing. An assertion needs no path.
     assert!(found["lines"].as_array().unwrap().iter().all(|line| line["file"] == file), "{found}");
     let asserted = ["toy.glsl", "--at", "24,15", "--frames", "4", "--assert", "toy.glsl:4 count > 3"];
