@@ -236,6 +236,7 @@ mod tests {
 
     /// As libFuzzer would, but without looking for new paths. More files are damaged beside their readers.
     #[test]
+    #[expect(clippy::print_stdout, reason = "long runs are watched")]
     fn damaged_files_cause_no_panic_in_any_target() {
         for (name, target, few, mut files) in targets() {
             let start = std::time::Instant::now();
