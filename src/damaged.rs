@@ -5,14 +5,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Damaged files by hand.
 const MANY: usize = 10_000;
 
-/// Calls `read` with damaged copies of `files`, in turn: `few` in each run.
+/// Calls `read` with damaged copies of `files`, in turn: `few` in each run. Returns how many.
 ///
 /// # Panics
 /// If `read` does. The damaged file is kept, and named.
-pub(crate) fn each(few: usize, files: &[&[u8]], read: impl Fn(&[u8])) {
+pub(crate) fn each(few: usize, files: &[&[u8]], read: impl Fn(&[u8])) -> usize {
     let is_long = std::env::var_os("SPECULA_LONG").is_some_and(|value| value == "1");
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    for number in 0..if is_long { MANY } else { few } {
+    let count = if is_long { MANY } else { few };
+    for number in 0..count {
         let bytes = random.damaged(files[number % files.len()]);
         if catch_unwind(AssertUnwindSafe(|| read(&bytes))).is_err() {
             let (_, path) = tempfile::NamedTempFile::new().unwrap().keep().unwrap();
@@ -20,6 +21,7 @@ pub(crate) fn each(few: usize, files: &[&[u8]], read: impl Fn(&[u8])) {
             panic!("the damaged file {number} of {} bytes is kept as {}", bytes.len(), path.display());
         }
     }
+    count
 }
 
 /// A xorshift generator (Marsaglia 2003), the same in each run.

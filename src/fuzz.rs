@@ -226,13 +226,25 @@ mod tests {
         ]
     }
 
+    /// The files in the folder of a target below `SPECULA_SEEDS`, in the order of their names.
+    fn seeds(target: &str) -> Vec<Vec<u8>> {
+        let Some(folder) = std::env::var_os("SPECULA_SEEDS") else { return Vec::new() };
+        let files = std::fs::read_dir(Path::new(&folder).join(target)).into_iter().flatten();
+        let paths: BTreeSet<_> = files.map(|file| file.unwrap().path()).collect();
+        paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
+    }
+
     /// As libFuzzer would, but without looking for new paths. More files are damaged beside their readers.
     #[test]
+    #[expect(clippy::print_stdout, reason = "long runs are watched")]
     fn damaged_files_cause_no_panic_in_any_target() {
-        for (_, target, few, files) in targets() {
+        for (name, target, few, mut files) in targets() {
+            let start = std::time::Instant::now();
+            files.extend(seeds(name));
             let files: Vec<&[u8]> = files.iter().map(Vec::as_slice).collect();
             files.iter().for_each(|file| target(file));
-            damaged::each(few, &files, target);
+            let count = damaged::each(few, &files, target);
+            println!("{name}: {count} damaged of {} files in {:.1} s", files.len(), start.elapsed().as_secs_f64());
         }
     }
 

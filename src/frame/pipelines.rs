@@ -166,6 +166,7 @@ impl PipelineRequest {
         if !draws_model {
             passes = active(false);
         }
+        let deforms = scene.is_some_and(|scene| scene.pose().deforms());
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         let request = Self {
             mode: mode.map_or(0, |m| m.id),
@@ -185,12 +186,13 @@ impl PipelineRequest {
             traces: mode.is_some_and(|m| m.traces),
             moves_vertices: shaders.moves_vertices(&stage),
             keeps_vertices: shaders.keeps_vertices(&stage)
-                && (!selection.through || shaders.keeps_vertices(&model_stage(shaders))),
+                && (!selection.through || shaders.keeps_vertices(&model_stage(shaders)))
+                && (!deforms || shaders.is_as_shipped(DEFORM)),
             draws_by_index: scene.is_some_and(|scene| draws_by_index(scene.loaded())),
             through: selection.through,
             stage,
             passes,
-            deforms: scene.is_some_and(|scene| scene.pose().deforms()),
+            deforms,
             draws_model,
             wireframe: wireframe(settings, shaders),
             wireframe_stage: wireframe_stage(settings, shaders).unwrap_or_default(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Headless, HeadlessError, NotFinitePictures};
 use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image};
-use crate::render::{BoundFrame, Capture, ProvideError, Redraw, View};
+use crate::render::{BoundFrame, Capture, ProvideError, Readback, Redraw, View};
 use crate::shader::{Diagnostic, Severity};
 
 /// Progress of rendering or of a readout.
@@ -20,6 +20,12 @@ pub struct Step {
 }
 
 impl Headless {
+    /// Sets whether [`Headless::render`] frees all that its picture does not need, before and after it is drawn, since no other picture
+    /// follows. A picture that follows all the same is only slower.
+    pub fn set_last_picture(&mut self, is_last: bool) {
+        self.is_last_picture = is_last;
+    }
+
     /// Paths per pixel that [`Headless::render`] traces; `None` if the mode does not accumulate.
     ///
     /// # Errors
@@ -56,7 +62,10 @@ impl Headless {
         }
         self.clock = self.sequence.clock(last);
         self.offscreen.view.restart_mean();
-        let frame = self.bind()?;
+        let mut frame = self.bind()?;
+        if self.is_last_picture {
+            self.resources.free_unread(&mut frame);
+        }
         if frame.state.pipelines.accumulates {
             let (samples, paths) = (self.session.settings.view.frames, frame.state.pipelines.paths_per_frame());
             let [of, paths] = [u64::from(samples) * u64::from(paths), u64::from(paths)];
@@ -65,7 +74,7 @@ impl Headless {
                 progress(&Step { done: u64::from(sample) * paths, of, unit: "paths per pixel" });
             }
         }
-        self.read_frame(&frame)
+        if self.is_last_picture { self.read_last_frame(&frame) } else { self.read_frame(&frame) }
     }
 
     /// Renders the first frame with its model in parts of so many rows, each submitted alone, as a window does between frames. In an
@@ -95,6 +104,20 @@ impl Headless {
         if frame.state.display.is_measured() {
             readback = self.draw_frame(frame, Redraw::ToneMap, View::read_back)?;
         }
+        self.capture_of(readback)
+    }
+
+    /// [`Self::read_frame`] with as little memory as possible: on a software device, what frames need is most of it.
+    fn read_last_frame(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
+        self.draw_frame(frame, Redraw::Always, |_, _, _| Ok(()))?;
+        if frame.state.display.is_measured() {
+            self.draw_frame(frame, Redraw::ToneMap, |_, _, _| Ok(()))?;
+        }
+        let readback = self.offscreen.read_back_last()?;
+        self.capture_of(readback)
+    }
+
+    fn capture_of(&mut self, readback: Option<Readback>) -> Result<Capture, HeadlessError> {
         let readback = readback.ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))?;
         let capture = readback.finish();
         self.not_finite.add(&capture, &self.session.settings.mode);

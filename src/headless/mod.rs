@@ -66,6 +66,7 @@ pub struct Headless {
     clock: Clock,
     sequence: Sequence,
     is_linear: bool,
+    is_last_picture: bool,
     upload_ms: f64,
     /// See [`Headless::take_cut_short`].
     cut_short: Vec<Diagnostic>,
@@ -181,6 +182,7 @@ impl Headless {
             clock: Clock::default(),
             sequence: Sequence::default(),
             is_linear: false,
+            is_last_picture: false,
             upload_ms: 0.0,
             cut_short: Vec::new(),
             not_finite: NotFinitePictures::default(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::HeadlessError;
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, SetLayouts, Use};
-use crate::render::{BoundFrame, Output, Redraw, View};
+use crate::render::{BoundFrame, Output, Readback, Redraw, View};
 
 /// A view and the image that it draws to.
 pub struct OffscreenView {
@@ -55,6 +55,23 @@ impl OffscreenView {
         self.frames.wait()?;
         self.view.take_range_sample(slot);
         Ok(result)
+    }
+
+    /// Reads back the last frame, after all that was only needed to draw it is freed, and frees the targets. On a software device they are
+    /// most of the memory.
+    ///
+    /// # Errors
+    /// A device error.
+    pub fn read_back_last(&mut self) -> Result<Option<Readback>, HeadlessError> {
+        let Some(image) = self.output.take() else { return Ok(None) };
+        self.view.free_samples();
+        let mut encoder = self.frames.begin()?;
+        let recorded = self.view.read_back(&mut encoder, &image);
+        let result = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
+        // SYNC: this thread reads the picture.
+        let waited = result.and_then(|result| self.frames.wait().map(|()| result));
+        self.view.free_targets();
+        Ok(waited?)
     }
 
     /// Draws the model of the next picture of a frame in parts of so many rows, and waits for each.

@@ -1,6 +1,8 @@
 //! All device objects that frames are drawn with, found by the keys of a [`FrameState`]. They can be dropped and created
 //! again from the session.
 
+mod last_good;
+
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
@@ -16,6 +18,7 @@ use super::paths::{PathTracing, PathTracingError, PathTracingKey, PathTracingReq
 use super::scene::{GpuModel, GpuScene};
 use crate::frame::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
 use crate::pipeline::{BoundPipelines, PipelineSet};
+use last_good::LastGood;
 
 /// The resources that a state needs and that [`Resources`] does not have yet.
 #[derive(Clone, Debug, Default)]
@@ -37,52 +40,6 @@ impl Missing {
     pub fn is_empty(&self) -> bool {
         let Self { pipelines, tables, environment, measured, path_tracing } = self;
         !pipelines && tables.is_none() && environment.is_none() && measured.is_none() && path_tracing.is_none()
-    }
-}
-
-/// The last good resource with its key, and the key of the last failure.
-struct LastGood<K, T> {
-    made: Option<(K, Arc<T>)>,
-    failed: Option<K>,
-    /// The resource of a state without a key, and the fallback after a failure before the first success.
-    none: Arc<T>,
-}
-
-impl<K: PartialEq, T> LastGood<K, T> {
-    fn new(none: Arc<T>) -> Self {
-        Self { made: None, failed: None, none }
-    }
-
-    /// The resource of `key`, or the last good one if `key` has failed. `None` if `key` has not been tried yet.
-    fn get(&self, key: Option<&K>) -> Option<&Arc<T>> {
-        let Some(key) = key else { return Some(&self.none) };
-        match &self.made {
-            Some((made, resource)) if made == key => Some(resource),
-            _ if self.failed.as_ref() == Some(key) => Some(self.last_good()),
-            _ => None,
-        }
-    }
-
-    fn last_good(&self) -> &Arc<T> {
-        self.made.as_ref().map_or(&self.none, |(_, resource)| resource)
-    }
-
-    /// The last good resource, if it differs from the requested one only by an edit.
-    fn before_edit(&self, is_edit: impl Fn(&K) -> bool) -> Option<&Arc<T>> {
-        self.made.as_ref().filter(|(key, _)| is_edit(key)).map(|(_, resource)| resource)
-    }
-
-    fn set(&mut self, key: K, resource: Option<Arc<T>>) {
-        match resource {
-            Some(resource) => (self.made, self.failed) = (Some((key, resource)), None),
-            None => self.failed = Some(key),
-        }
-    }
-}
-
-impl<K: Clone, T> Clone for LastGood<K, T> {
-    fn clone(&self) -> Self {
-        Self { made: self.made.clone(), failed: self.failed.clone(), none: self.none.clone() }
     }
 }
 
@@ -187,9 +144,24 @@ impl Resources {
         // An edit of the bake stages appears at once, in the light that the previous shaders baked.
         let is_edit =
             |key: &Arc<EnvironmentKey>| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
-        let made = self.environment.get(state.environment.as_ref());
+        let made = self.whole_environment(state.environment.as_ref());
         let made = made.or_else(|| self.environment.before_edit(is_edit));
         made.or_else(|| is_first.then(|| self.environment.last_good()))
+    }
+
+    /// The environment of `key`, unless [`Resources::free_unread`] has freed a part of it.
+    fn whole_environment(&self, key: Option<&Arc<EnvironmentKey>>) -> Option<&Arc<GpuEnvironment>> {
+        self.environment.get(key).filter(|environment| environment.radiance.has_cube)
+    }
+
+    /// Frees what the pipelines of a frame do not read. No other frame can be bound before this light is provided again.
+    pub fn free_unread(&mut self, frame: &mut BoundFrame) {
+        let Some((_, made)) = &mut self.environment.made else { return };
+        let reads_cube = frame.pipelines.read_cube || frame.state.pipelines.follows_paths();
+        if !reads_cube && Arc::ptr_eq(made, &frame.environment) {
+            *made = Arc::new(made.without_cube(&self.environment.none));
+            frame.environment = made.clone();
+        }
     }
 
     /// Identifies the path-tracing resources of `state`; `None` for a mode without path tracing.
@@ -213,7 +185,7 @@ impl Resources {
             }),
             pipelines: pipelines.is_none(),
             tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
-            environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
+            environment: environment.filter(|key| self.whole_environment(Some(key)).is_none()).cloned(),
             measured: measured.filter(|key| self.measured.get(Some(key)).is_none()).cloned(),
         }
     }
@@ -265,7 +237,7 @@ impl Resources {
     ) -> Result<Option<BoundFrame>, GpuError> {
         let Some(pipelines) = set.bind(&state.pipelines) else { return Ok(None) };
         let of_like = like.filter(|like| like.state.environment == state.environment).map(|like| &like.environment);
-        let environment = of_like.or_else(|| self.environment.get(state.environment.as_ref())).cloned();
+        let environment = of_like.or_else(|| self.whole_environment(state.environment.as_ref())).cloned();
         let of_like = like.filter(|like| like.state.tables == state.tables).map(|like| &like.tables);
         let tables = of_like.or_else(|| self.tables.get(Some(&state.tables))).cloned();
         self.bind_in(pipelines, state, tables.zip(environment))

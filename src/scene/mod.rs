@@ -53,7 +53,7 @@ pub use load_options::{Caller, Canceled, LoadOptions};
 pub use measured::{MeasuredBrdf, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use members::{Member, Places};
 pub use model::*;
-pub use motion::{Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Skin, Target};
+pub use motion::{Clip, Curve, Deformation, Displacement, Influence, Motion, Playing, Pose, Reach, Skin, Target};
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};

@@ -10,6 +10,7 @@ mod files;
 mod learn;
 mod lsp;
 mod mcp;
+mod memory;
 mod probe;
 mod python;
 mod readme;

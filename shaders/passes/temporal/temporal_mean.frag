@@ -10,10 +10,13 @@
 // 1.25 standard deviations of the 3 x 3 pixels around it, in YCoCg, is probably another surface, so it is pulled back to that
 // range (Karis 2014, "High-Quality Temporal Supersampling"; Salvi 2016, "An Excursion in Temporal Supersampling").
 //
-// Limits: a surface that moves by itself, by a pose or by user_vertex, is looked for where it is now. Reflections move with their surface.
+// The depth says where a still surface was, exactly; own_motion.frag says it of one that a pose has moved, once a pixel.
+//
+// Limits: a surface that user_vertex moves is looked for where it is now. Reflections move with their surface.
 
 uniform sampler2D picture;
 uniform sampler2D depth;
+uniform sampler2D own_motion;
 uniform sampler2D before_temporal_mean;
 
 uniform Temporal {
@@ -78,6 +81,8 @@ void main() {
     vec2 ndc = 2.0 * (gl_FragCoord.xy + nearest.xy - jitter_px()) / pass.size_px - 1.0;
     vec4 before = frame.clip_from_world_before * (frame.world_from_clip * vec4(ndc, nearest.z, 1.0));
     vec2 motion_px = 0.5 * pass.size_px * (before.xy / before.w - ndc);
+    vec4 own = texelFetch(own_motion, clamp(pixel + ivec2(nearest.xy), ivec2(0), last), 0);
+    if (own.a == 1.0) motion_px = -own.rg * pass.size_px;
     vec2 before_px = gl_FragCoord.xy + motion_px;
 
     // Alpha is 0 in an image that was never drawn.

@@ -351,6 +351,7 @@ fn write(headless: &mut Headless, args: &Args, modes: &Modes) -> Result<(), Fail
     if *modes == Modes::One {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
+        headless.set_last_picture(!args.watch);
         let capture = capture(headless, args, &Progress::new(!args.common.emits()), (0, 1))?;
         if let Some(why) = headless.unseen_model(&capture)? {
             message::tell(format_args!("note: nothing of the model is in the picture: {why}"));

@@ -168,9 +168,18 @@ impl PipelineRequest {
         })
     }
 
+    /// Whether a pass resolves the samples of each pixel. Otherwise the device averages them.
+    pub(crate) fn resolves_samples(&self) -> bool {
+        self.resolve_pass().is_some()
+    }
+
+    fn resolve_pass(&self) -> Option<&Arc<GraphPass>> {
+        self.pass_of(|pass| pass.phase == RenderPhase::Resolve)
+    }
+
     /// The pipeline that resolves a pixel's samples, unless their plain average is used.
     pub(crate) fn resolve_key(&self) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.phase == RenderPhase::Resolve)?;
+        let pass = self.resolve_pass()?;
         let specialization = [&[(SPEC_SAMPLES, self.target.samples)], &*self.constants].concat();
         Some(self.triangle_key(pass, Raster::Solid, self.target.color, specialization))
     }

@@ -110,7 +110,7 @@ pub struct Image {
     pub(in crate::gpu) level_views: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     owned: bool,
-    /// The image that has the memory, if this is another view of it.
+    /// The image that has the memory, if this is another view of it or another image in it.
     _of: Option<Arc<Image>>,
     desc: ImageDesc,
 }
@@ -121,6 +121,46 @@ impl Image {
     /// # Errors
     /// The device is out of memory ([`GpuError::OutOfMemory`]) or lacks the format.
     pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
+        let mut image = Self::without_memory(gpu, name, desc)?;
+        let allocation = image.allocation.insert(allocate(
+            gpu,
+            &Resource {
+                name,
+                action: &format!("creating the image {}", description(name, &desc)),
+                requirements: image.requirements(),
+                location: MemoryLocation::GpuOnly,
+                linear: false,
+                limit: "image-bytes",
+            },
+        )?);
+        // SAFETY: the memory was allocated for this image.
+        let (memory, offset) = unsafe { (allocation.memory(), allocation.offset()) };
+        image.bind(name, memory, offset)?;
+        Ok(Arc::new(image))
+    }
+
+    /// Creates an image in the memory of this one. What is written to one of them makes the content of the other undefined, so each begins
+    /// as [`Use::Undefined`](crate::gpu::Use::Undefined). `None` if the memory of this image is too small, or of a kind for other formats.
+    ///
+    /// # Errors
+    /// As [`Image::new`].
+    pub fn in_same_memory(self: &Arc<Self>, name: &str, desc: ImageDesc) -> Result<Option<Arc<Self>>, GpuError> {
+        let Some(allocation) = &self.allocation else { return Ok(None) };
+        let mut image = Self::without_memory(&self.gpu, name, desc)?;
+        let (own, needed) = (self.requirements(), image.requirements());
+        let fits = needed.size <= own.size && allocation.offset().is_multiple_of(needed.alignment);
+        if !fits || own.memory_type_bits & !needed.memory_type_bits != 0 {
+            return Ok(None);
+        }
+        // SAFETY: the memory lives as long as `self`, which the new image holds.
+        let (memory, offset) = unsafe { (allocation.memory(), allocation.offset()) };
+        image.bind(name, memory, offset)?;
+        image._of = Some(self.clone());
+        Ok(Some(Arc::new(image)))
+    }
+
+    /// The image alone. Its `Drop` frees what is already there when a later step fails.
+    fn without_memory(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Self, GpuError> {
         let is_cube = desc.view == vk::ImageViewType::CUBE;
         let flags = if is_cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { vk::ImageCreateFlags::empty() };
         let is_volume = desc.view == vk::ImageViewType::TYPE_3D;
@@ -133,47 +173,35 @@ impl Image {
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::from_raw(desc.samples))
             .usage(desc.usage);
-        let samples = if desc.samples > 1 { format!(", {} samples", desc.samples) } else { String::new() };
-        let what = format!("`{name}` ({} x {}{samples})", desc.width, desc.height);
         // SAFETY: the device is live.
-        let raw = unsafe { gpu.device.create_image(&info, None) }.context_of("creating the image", &what)?;
-        // From here on, `Drop` frees what is already there when a later step fails.
-        let mut image = Self {
-            gpu: gpu.clone(),
-            raw,
-            view: vk::ImageView::null(),
-            level_views: Vec::new(),
-            allocation: None,
-            owned: true,
-            _of: None,
-            desc,
-        };
+        let raw = unsafe { gpu.device.create_image(&info, None) }
+            .context_of("creating the image", &description(name, &desc))?;
         gpu.name(raw, name);
-        let allocation = image.allocation.insert(allocate(
-            gpu,
-            &Resource {
-                name,
-                action: &format!("creating the image {what}"),
-                // SAFETY: `raw` belongs to this device.
-                requirements: unsafe { gpu.device.get_image_memory_requirements(raw) },
-                location: MemoryLocation::GpuOnly,
-                linear: false,
-                limit: "image-bytes",
-            },
-        )?);
-        // SAFETY: the memory was allocated for this image and is bound once.
-        unsafe { gpu.device.bind_image_memory(raw, allocation.memory(), allocation.offset()) }
-            .context_of("binding memory to the image", &what)?;
-        image.view = create_view(gpu, raw, &desc)?;
-        gpu.name(image.view, name);
+        let (view, level_views) = (vk::ImageView::null(), Vec::new());
+        Ok(Self { gpu: gpu.clone(), raw, view, level_views, allocation: None, owned: true, _of: None, desc })
+    }
+
+    fn requirements(&self) -> vk::MemoryRequirements {
+        // SAFETY: the image belongs to this device.
+        unsafe { self.gpu.device.get_image_memory_requirements(self.raw) }
+    }
+
+    /// Binds the memory, once, and creates the views.
+    fn bind(&mut self, name: &str, memory: vk::DeviceMemory, offset: u64) -> Result<(), GpuError> {
+        let Self { gpu, raw, desc, .. } = self;
+        // SAFETY: the memory has the size, the alignment and the kind that the image requires.
+        unsafe { gpu.device.bind_image_memory(*raw, memory, offset) }
+            .context_of("binding memory to the image", &description(name, desc))?;
+        self.view = create_view(gpu, *raw, desc)?;
+        gpu.name(self.view, name);
         if desc.usage.contains(vk::ImageUsageFlags::STORAGE) {
             for level in 0..desc.mips {
-                let view = create_level_view(gpu, raw, &desc, level)?;
+                let view = create_level_view(gpu, *raw, desc, level)?;
                 gpu.name(view, &format!("{name} level {level}"));
-                image.level_views.push(view);
+                self.level_views.push(view);
             }
         }
-        Ok(Arc::new(image))
+        Ok(())
     }
 
     /// Wraps an image that a swapchain owns.
@@ -229,6 +257,12 @@ impl Image {
     pub(in crate::gpu) fn aspect(&self) -> vk::ImageAspectFlags {
         aspect(self.desc.format)
     }
+}
+
+/// An image in messages, as "`depth` (1280 x 720, 4 samples)".
+fn description(name: &str, desc: &ImageDesc) -> String {
+    let samples = if desc.samples > 1 { format!(", {} samples", desc.samples) } else { String::new() };
+    format!("`{name}` ({} x {}{samples})", desc.width, desc.height)
 }
 
 fn aspect(format: vk::Format) -> vk::ImageAspectFlags {

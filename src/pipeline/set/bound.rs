@@ -6,7 +6,7 @@ use std::sync::{Arc, Weak};
 
 use crate::frame::{PipelineKey, PipelineRequest};
 use crate::gpu::{ComputePipeline, Pipeline, ResourceUsage};
-use crate::interface::{CLOCK, KEYS, MOTION};
+use crate::interface::{BINDING_ENVIRONMENT, CLOCK, KEYS, MOTION};
 use crate::pipeline::textures::PassTextures;
 
 /// The pipelines of one [`PipelineRequest`], and the textures of its passes.
@@ -21,6 +21,8 @@ pub(crate) struct BoundPipelines {
     pub(crate) read_keys: bool,
     /// Whether a stage reads how the camera has moved since the frame before.
     pub(crate) read_motion: bool,
+    /// Whether a stage reads the environment's cube map.
+    pub(crate) read_cube: bool,
 }
 
 impl BoundPipelines {
@@ -34,7 +36,8 @@ impl BoundPipelines {
         let uses: Vec<&ResourceUsage> = uses.collect();
         let read = |bytes: &[Range<usize>]| uses.iter().any(|uses| uses.reads_frame(bytes));
         let (read_clock, read_keys, read_motion) = (read(&CLOCK), read(&[KEYS]), read(&[MOTION]));
-        Self { pipelines, computes, textures, read_clock, read_keys, read_motion }
+        let read_cube = uses.iter().any(|uses| uses.frame_bindings.contains(&BINDING_ENVIRONMENT));
+        Self { pipelines, computes, textures, read_clock, read_keys, read_motion, read_cube }
     }
 
     pub(crate) fn get(&self, key: &PipelineKey) -> Option<&Arc<Pipeline>> {

@@ -82,6 +82,7 @@ impl GpuEnvironment {
     ) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();
         key.resolve();
+        let before = before.filter(|(_, made)| made.radiance.has_cube);
         if let Some((_, same)) = before.filter(|(old, _)| **old == *key) {
             return Ok(same.clone());
         }
@@ -229,8 +230,8 @@ impl Bake<'_> {
             self.fill(&images, images_part)?;
             let (lights, scale) = rest.split_at(rest.len() - 4);
             let (suns, small_lights) = (suns_of(lights), Some(small_lights(self.gpu, lights)?));
-            let scale = bytemuck::pod_read_unaligned(scale);
-            return Ok(Arc::new(Radiance { cube, irradiance, scale, suns, small_lights, map: file.fingerprint }));
+            let (scale, map) = (bytemuck::pod_read_unaligned(scale), file.fingerprint);
+            return Ok(Arc::new(Radiance { cube, has_cube: true, irradiance, scale, suns, small_lights, map }));
         }
         self.report.decode_ms = ms(time);
         // The pipelines are created while another thread decodes.
@@ -282,7 +283,8 @@ impl Bake<'_> {
             disk_cache::store(&key, &entry);
         }
         self.storing_ms += ms(time);
-        Ok(Arc::new(Radiance { cube, irradiance, scale, suns, small_lights: Some(lights), map: file.fingerprint }))
+        let (small_lights, map) = (Some(lights), file.fingerprint);
+        Ok(Arc::new(Radiance { cube, has_cube: true, irradiance, scale, suns, small_lights, map }))
     }
 
     /// The levels of the specular lobe.

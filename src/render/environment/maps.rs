@@ -26,6 +26,8 @@ pub struct GpuEnvironment {
 /// The part of an environment that depends on its map alone; images in [`Use::Sampled`](crate::gpu::Use::Sampled).
 pub(crate) struct Radiance {
     pub(crate) cube: Arc<Image>,
+    /// Whether `cube` holds the map: see [`GpuEnvironment::without_cube`].
+    pub(crate) has_cube: bool,
     /// An octahedral map (ibl/maps/octahedral.glsl).
     pub(crate) irradiance: Arc<Image>,
     /// The images hold radiance times this factor.
@@ -65,9 +67,30 @@ impl GpuEnvironment {
         let (levels, irradiance) = (image("uniform levels", flat)?, image("uniform irradiance", flat)?);
         let (sheen, cube) = (image("uniform sheen", cube)?, image("uniform cube", cube)?);
         let prefiltered = Arc::new(Prefiltered { levels, wrong: false });
-        let radiance =
-            Arc::new(Radiance { cube, irradiance, scale: 1.0, suns: Vec::new(), small_lights: None, map: 0 });
+        let (scale, suns, small_lights) = (1.0, Vec::new(), None);
+        let radiance = Arc::new(Radiance { cube, has_cube: true, irradiance, scale, suns, small_lights, map: 0 });
         Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
+    }
+
+    /// The same light for a frame that does not read the cube map, which is 16 MiB. That of `other` takes its place.
+    pub(crate) fn without_cube(&self, other: &Self) -> Self {
+        let Radiance { irradiance, scale, suns, small_lights, map, .. } = &*self.radiance;
+        let radiance = Radiance {
+            cube: other.radiance.cube.clone(),
+            has_cube: false,
+            irradiance: irradiance.clone(),
+            scale: *scale,
+            suns: suns.clone(),
+            small_lights: small_lights.clone(),
+            map: *map,
+        };
+        Self {
+            radiance: Arc::new(radiance),
+            prefiltered: self.prefiltered.clone(),
+            sheen: self.sheen.clone(),
+            sampler: self.sampler.clone(),
+            report: self.report.clone(),
+        }
     }
 
     pub(super) fn of(

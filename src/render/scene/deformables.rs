@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use glam::Mat4;
+use rayon::prelude::*;
 
 use super::upload::{Deformers, Range};
 use crate::gpu::Buffer;
 use crate::interface::{Deformation, Displacement, Influence, Vertex};
-use crate::scene::{Instance, Model, Pose};
+use crate::scene::{Bounds, Instance, Model, Pose, Primitive, Reach};
 
 /// Most vertices of a primitive that can move: 65,535 workgroups of 64, which every device can start.
 const MOST_VERTICES: usize = 65_535 * 64;
@@ -34,17 +35,7 @@ struct Part {
     joints: std::ops::Range<usize>,
     /// Its weights in `Pose::weights`.
     weights: std::ops::Range<usize>,
-    /// Influences of its first vertex, which stand for the whole.
-    anchor: Vec<Influence>,
-}
-
-/// An instance in a pose.
-#[derive(Clone, Copy)]
-pub(crate) struct Moved {
-    /// The place of its first vertex among the moved ones, bytes.
-    pub(crate) offset: u64,
-    /// The matrix by which the skin moves a vertex of the instance, if it has a skin.
-    pub(crate) skin: Option<Mat4>,
+    reach: Arc<Reach>,
 }
 
 impl Deformables {
@@ -70,14 +61,21 @@ impl Deformables {
                 attributes: primitive.attributes,
                 ..Deformation::default()
             };
-            records.push(deformation.filter(|_| count <= MOST_VERTICES).map(of));
+            records.push(deformation.filter(|_| count <= MOST_VERTICES).map(|from| (of(from), primitive)));
             at_influence += (per_vertex * count * size_of::<Influence>()) as u64;
             at_displacement += (targets * count * size_of::<Displacement>()) as u64;
         }
+        let reach = |(_, primitive): &(Deformation, &Primitive)| {
+            let deformation = primitive.deformation.as_deref()?;
+            Some(Arc::new(Reach::new(&primitive.vertices, deformation)))
+        };
+        let reaches: Vec<Option<Arc<Reach>>> = records.par_iter().map(|moved| reach(moved.as_ref()?)).collect();
         let (mut parts, mut first_vertex) = (Vec::new(), 0);
         for (index, instance) in model.instances.iter().enumerate() {
-            let Some(record) = records[instance.primitive] else { continue };
-            if let Some(part) = Part::new(model, (index, instance), record, first_vertex) {
+            let (Some((record, _)), Some(reach)) = (records[instance.primitive], &reaches[instance.primitive]) else {
+                continue;
+            };
+            if let Some(part) = Part::new(model, (index, instance), (record, reach), first_vertex) {
                 first_vertex += u64::from(part.record.vertex_count);
                 parts.push(part);
             }
@@ -114,14 +112,19 @@ impl Deformables {
         self.parts.iter().map(record).collect()
     }
 
-    /// An instance in a pose that [`Deformables::fits`]; `None` if its vertices do not move.
-    pub(crate) fn of_instance(&self, instance: usize, pose: &Pose) -> Option<Moved> {
-        let part = self.parts.binary_search_by_key(&instance, |part| part.instance).ok()?;
-        let part = &self.parts[part];
-        let joints = &pose.joints[part.joints.clone()];
-        let weighted = |influence: &Influence| joints[influence.joint as usize] * influence.weight;
-        let skin = (!part.anchor.is_empty()).then(|| part.anchor.iter().map(weighted).fold(Mat4::ZERO, |a, b| a + b));
-        Some(Moved { offset: part.offset(), skin })
+    /// The place of the first vertex of an instance among the moved ones, bytes; `None` if its vertices do not move.
+    pub(crate) fn offset(&self, instance: usize) -> Option<u64> {
+        self.of_instance(instance).map(Part::offset)
+    }
+
+    /// Bounds of the moved vertices of an instance in a pose that [`Deformables::fits`]; `None` if its vertices do not move.
+    pub(crate) fn bounds(&self, instance: usize, pose: &Pose) -> Option<Bounds> {
+        let part = self.of_instance(instance)?;
+        Some(part.reach.bounds(&pose.joints[part.joints.clone()], &pose.weights[part.weights.clone()]))
+    }
+
+    fn of_instance(&self, instance: usize) -> Option<&Part> {
+        self.parts.binary_search_by_key(&instance, |part| part.instance).ok().map(|part| &self.parts[part])
     }
 }
 
@@ -130,7 +133,7 @@ impl Part {
     fn new(
         model: &Model,
         (index, instance): (usize, &Instance),
-        record: Deformation,
+        (record, reach): (Deformation, &Arc<Reach>),
         first_vertex: u64,
     ) -> Option<Self> {
         let deformation = model.primitives[instance.primitive].deformation.as_deref()?;
@@ -147,7 +150,7 @@ impl Part {
             first_vertex,
             joints: from(first_joint)..from(first_joint) + joints,
             weights: from(first_weight)..from(first_weight) + weights as usize,
-            anchor: of_skin.iter().take(influences_per_vertex as usize).copied().collect(),
+            reach: reach.clone(),
         })
     }
 

@@ -7,7 +7,7 @@ use glam::{Mat3, Mat4, Vec3};
 use rayon::prelude::*;
 
 use super::GpuScene;
-use super::deformables::Moved;
+use super::deformables::Deformables;
 use super::draw_list::DrawLists;
 use super::frustum::Spheres;
 use super::gpu_draw::GpuDraw;
@@ -61,15 +61,15 @@ impl Posed {
         self.model.instances.get(draw.instance).map_or(Mat4::IDENTITY, |instance| instance.world_from_object)
     }
 
-    /// The moved vertices of a draw; `None` if it has none.
-    fn moved(&self, scene: &GpuScene, draw: &GpuDraw) -> Option<Moved> {
-        self.vertices.as_ref().and(scene.deformables.as_ref())?.of_instance(draw.instance, &self.model.pose)
+    /// The instances whose vertices the pose moves.
+    fn deformables<'a>(&self, scene: &'a GpuScene) -> Option<&'a Deformables> {
+        self.vertices.as_ref().and(scene.deformables.as_deref())
     }
 
     fn place(&self, scene: &GpuScene, draw: &GpuDraw, address: Option<u64>) -> Before {
-        let moved = address.zip(self.moved(scene, draw));
+        let moved = address.zip(self.deformables(scene).and_then(|all| all.offset(draw.instance)));
         Before {
-            vertices: moved.map_or(draw.push.vertices, |(address, moved)| address + moved.offset),
+            vertices: moved.map_or(draw.push.vertices, |(address, offset)| address + offset),
             world_from_object: self.world(draw).to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),
         }
     }
@@ -77,17 +77,16 @@ impl Posed {
     fn placement(&self, scene: &GpuScene, draw: &GpuDraw, address: Option<u64>) -> Placement {
         let (Before { vertices, world_from_object }, world) = (self.place(scene, draw, address), self.world(draw));
         let linear = Mat3::from_mat4(world);
-        let moved = self.moved(scene, draw);
-        // Nothing bounds vertices that joints and morph targets move.
-        let radius = if moved.is_some() { f32::INFINITY } else { (abs(linear) * draw.half_size).length() };
-        let center = moved.and_then(|moved| moved.skin).map_or(draw.center, |skin| skin.transform_point3(draw.center));
+        let moved = self.deformables(scene).and_then(|all| all.bounds(draw.instance, &self.model.pose));
+        let (center, half_size) =
+            moved.map_or((draw.center, draw.half_size), |bounds| (bounds.center(), bounds.max - bounds.center()));
         let normal_ws_from_object = normals_from(linear).to_cols_array_2d();
         Placement {
             push: Draw { vertices, world_from_object, normal_ws_from_object, ..draw.push },
             // A transform that mirrors flips the winding.
             is_mirrored: linear.determinant() < 0.0,
             center_ws: world.transform_point3(center),
-            radius,
+            radius: (abs(linear) * half_size).length(),
         }
     }
 

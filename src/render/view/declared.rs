@@ -219,8 +219,13 @@ impl DeclaredPasses {
 
     /// Drops the cached sets, which keep images alive that were replaced.
     pub(super) fn targets_replaced(&mut self) {
-        self.sets.clear();
+        self.drop_sets();
         self.picture = None;
+    }
+
+    /// [`Self::targets_replaced`], where the picture is still to be read.
+    pub(super) fn drop_sets(&mut self) {
+        self.sets.clear();
     }
 
     /// The sets of the pipelines of `keys`, which draw to the HDR target. They read the current images of passes.

@@ -194,6 +194,8 @@ impl View {
             transmission: request.has_transmission(),
             accumulates: request.accumulates,
             peels: request.peel_pass().is_some(),
+            // Several modes at once are resolved by their last draw.
+            resolves_last: request.resolves_samples() && request.modes.is_empty(),
             reads_depth: request.passes.iter().any(|pass| pass.inputs.values().any(|input| *input == Input::Depth)),
         };
         if self.targets.as_ref().is_none_or(|targets| targets.desc != desc) {

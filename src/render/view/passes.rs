@@ -65,7 +65,9 @@ impl Passes<'_> {
             true => (Use::Undefined, Use::Undefined),
             false => (Use::Color, Use::Depth),
         };
-        encoder.transition(&targets.color, color, Use::Color);
+        if !targets.color_replaces_depth {
+            encoder.transition(&targets.color, color, Use::Color);
+        }
         encoder.transition(&targets.depth, depth, Use::Depth);
         if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, color, Use::Color);
@@ -157,6 +159,9 @@ impl Passes<'_> {
         }
         if let (Some(pipeline), Some(samples)) = (weigh, &targets.multisampled) {
             encoder.transition(samples, Use::Color, Use::Sampled);
+            if targets.color_replaces_depth {
+                encoder.transition(&targets.color, Use::Undefined, Use::Color);
+            }
             self.weigh(encoder, pipeline);
         }
         if let Some(depth) = targets.read_depth() {

@@ -109,6 +109,7 @@ impl PixelModes {
             transmission: false,
             accumulates: false,
             reads_depth: false,
+            resolves_last: false,
             peels: request.peel_pass().is_some(),
         };
         let targets = match self.targets.take().filter(|targets| targets.desc == desc) {

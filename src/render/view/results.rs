@@ -51,6 +51,22 @@ impl View {
         Ok(Some(readback))
     }
 
+    /// Frees the images that the picture needed only while it was drawn, before it is read back. The next frame needs
+    /// [`View::prepare`]. SYNC: after the fence of the last submission.
+    pub fn free_samples(&mut self) {
+        if let Some(targets) = &mut self.targets {
+            targets.multisampled = None;
+            self.declared.drop_sets();
+        }
+    }
+
+    /// Frees the targets. The next frame needs [`View::prepare`]. SYNC: after the fence of the last submission.
+    pub fn free_targets(&mut self) {
+        self.targets = None;
+        self.forget();
+        self.declared.targets_replaced();
+    }
+
     /// Creates an output image that can be read back.
     ///
     /// # Errors

@@ -1,4 +1,7 @@
 //! The render targets of a view: HDR color, multisampled color, depth, the copy behind transmissive surfaces, and the mean.
+//!
+//! Where a pass resolves the samples and nothing reads the depth afterwards, the resolved color is in the memory of the depth: at four samples
+//! and full floats, both have 16 bytes a pixel.
 
 use std::sync::Arc;
 
@@ -35,6 +38,15 @@ pub(super) struct TargetDesc {
     pub(super) reads_depth: bool,
     /// Whether blended surfaces are sorted in each pixel.
     pub(super) peels: bool,
+    /// Whether a pass resolves the samples of the whole model, after its last draw.
+    pub(super) resolves_last: bool,
+}
+
+impl TargetDesc {
+    /// Whether nothing needs the depth once something is written to the resolved color.
+    fn ends_depth_before_color(&self) -> bool {
+        self.resolves_last && self.format.samples > 1 && !self.transmission && !self.reads_depth && !self.peels
+    }
 }
 
 /// The images of one [`TargetDesc`], replaced as a whole. Frames in flight keep the old ones alive.
@@ -42,6 +54,8 @@ pub(super) struct Targets {
     pub(super) desc: TargetDesc,
     /// Resolved HDR color.
     pub(super) color: Arc<Image>,
+    /// Whether `color` is in the memory of `depth`, so that its content begins with the resolve.
+    pub(super) color_replaces_depth: bool,
     /// Multisampled color, if there is more than one sample per pixel.
     pub(super) multisampled: Option<Arc<Image>>,
     /// Depth.
@@ -63,7 +77,6 @@ impl Targets {
         let image = |name: &str, desc: ImageDesc| Image::new(gpu, name, desc);
         let drawn = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let multi = |format, usage| ImageDesc { samples, ..ImageDesc::new(width, height, format, usage) };
-        let color = image("hdr color", ImageDesc::new(width, height, format, drawn))?;
         let multisampled = match samples {
             1 => None,
             _ => Some(image("multisampled color", multi(format, Usage::COLOR_ATTACHMENT | Usage::SAMPLED))?),
@@ -72,6 +85,13 @@ impl Targets {
         let read = attached | Usage::SAMPLED;
         let is_read = (desc.reads_depth && samples == 1) || desc.peels;
         let depth = image("depth", multi(depth_format, if is_read { read } else { attached }))?;
+        let color = ImageDesc::new(width, height, format, drawn);
+        let in_depth = match desc.ends_depth_before_color() {
+            true => depth.in_same_memory("hdr color", color)?,
+            false => None,
+        };
+        let color_replaces_depth = in_depth.is_some();
+        let color = in_depth.map_or_else(|| image("hdr color", color), Ok)?;
         let peeled = || image("depth of a layer", multi(depth_format, read));
         let peeled = if desc.peels { Some([peeled()?, peeled()?]) } else { None };
         let resolved_depth = match desc.reads_depth && samples > 1 {
@@ -88,7 +108,7 @@ impl Targets {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
-        Ok(Self { desc, color, multisampled, depth, resolved_depth, peeled, opaque_scene, mean })
+        Ok(Self { desc, color, color_replaces_depth, multisampled, depth, resolved_depth, peeled, opaque_scene, mean })
     }
 
     /// Another color target of the same size and format.

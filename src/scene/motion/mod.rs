@@ -8,6 +8,7 @@ mod extent;
 mod hidden;
 mod pose;
 mod property;
+mod reach;
 mod rig;
 mod transform;
 
@@ -18,5 +19,6 @@ pub use extent::Extent;
 pub use hidden::Hidden;
 pub use pose::{Motion, Playing, Pose};
 pub use property::{Property, Values};
+pub use reach::Reach;
 pub use rig::{Placement, Rig, RigNode, Skin};
 pub use transform::{Transform, slerp};

@@ -134,15 +134,20 @@ impl ShaderSet {
         let vertex = pass.pre_rasterization.vertex.as_str();
         let is_own =
             vertex.strip_suffix(".vert").is_some_and(|name| model.desc.stage.strip_suffix(".frag") == Some(name));
+        is_own
+            && pass.pre_rasterization.stages().eq([vertex])
+            && !self.moves_vertices(fragment)
+            && self.is_as_shipped(vertex)
+    }
+
+    /// Whether a stage and what it includes are as they were shipped, up to the author's own files.
+    pub fn is_as_shipped(&self, stage: &str) -> bool {
         let is_shipped = |path: &TreePath| {
             // A file that could not be included has no text.
             let text = self.texts.get(path).map(|text| text.as_bytes());
             path.as_str().starts_with(OWN) || text.is_none_or(|text| embedded::read(None, path) == Some(text))
         };
-        is_own
-            && pass.pre_rasterization.stages().eq([vertex])
-            && !self.moves_vertices(fragment)
-            && self.stages.get(vertex).is_some_and(|stage| stage.dependencies.iter().all(is_shipped))
+        self.stages.get(stage).is_some_and(|stage| stage.dependencies.iter().all(is_shipped))
     }
 }
 

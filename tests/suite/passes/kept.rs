@@ -164,6 +164,65 @@ fn temporal_antialiasing_smooths_edges_and_follows_the_camera() {
     assert_validated();
 }
 
+/// The model, whose sphere rests for 47 frames of a second of 30, and then rises by 0.04 m in each of 8.
+fn rising() -> specula::scene::Model {
+    let matte = serde_json::json!({"pbrMetallicRoughness": {
+        "baseColorFactor": [0.3, 0.3, 0.3, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}});
+    let slab = glb::cuboid([-2.0, -1.4, -2.0], [2.0, -1.1, 2.0], true);
+    let (mut json, mut bin) = glb::parts(&glb::scene(&[(glb::sphere(24, 48), matte.clone()), (slab, matte)]));
+    let times = [0.0, 47.0 / 30.0, 55.0 / 30.0, 3.0_f32];
+    let numbers = times.into_iter().chain([0.0, 0.0, 0.32, 0.32].into_iter().flat_map(|y| [0.0, y, 0.0]));
+    let (at, first) = (bin.len(), json["accessors"].as_array().unwrap().len());
+    bin.extend(numbers.flat_map(f32::to_le_bytes));
+    let view = json["bufferViews"].as_array().unwrap().len();
+    for (offset, bytes) in [(0, 16), (16, 48)] {
+        let view = serde_json::json!({"buffer": 0, "byteOffset": at + offset, "byteLength": bytes});
+        json["bufferViews"].as_array_mut().unwrap().push(view);
+    }
+    for (number, kind) in ["SCALAR", "VEC3"].iter().enumerate() {
+        let accessor =
+            serde_json::json!({"bufferView": view + number, "componentType": 5126, "count": 4, "type": kind});
+        json["accessors"].as_array_mut().unwrap().push(accessor);
+    }
+    json["animations"] = serde_json::json!([{
+        "samplers": [{"input": first, "output": first + 1}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+    }]);
+    json["buffers"][0]["byteLength"] = serde_json::json!(bin.len());
+    load(&glb::container(&json, &bin))
+}
+
+#[test]
+fn temporal_antialiasing_follows_a_pose() {
+    let plain = ["view.msaa=4", "environment.name=furnace", "view.background=#000000", "camera.eye=[0, 0.4, 4]"];
+    let mut session = Session::new(rising(), settings(&[&plain[..], &["camera.target=[0, 0, 0]"]].concat()));
+    let end = Sequence { frames: 1, start_s: 55.0 / 30.0, fps: 30.0, ..Sequence::default() };
+    session.headless.set_sequence(end);
+    let smooth = session.render();
+    session.set("view.msaa=1");
+    let jagged = session.render();
+    session.headless.set_sequence(Sequence { start_s: 0.0, ..end });
+    assert_differ(&jagged, &session.render(), "the sphere rises");
+    session.set("TEMPORAL_ANTIALIASING=true");
+    session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0, ..Sequence::default() });
+    let last = |session: &mut Session| {
+        let mut last = session.render();
+        for _ in 0..8 {
+            last = session.headless.render_next().unwrap();
+        }
+        last
+    };
+    let (with, without) = (error(&last(&mut session), &smooth), error(&jagged, &smooth));
+    println!("while rising: {with:.2} of {without:.2} levels");
+    assert!(with < 0.8 * without, "while rising: {with} of {without}");
+    // Without its motion, the mean of the sphere is looked for where it is now.
+    ready(&session.edit("passes/temporal/temporal_mean.frag", "if (own.a == 1.0)", "if (false)"));
+    let lagging = error(&last(&mut session), &smooth);
+    println!("without its motion: {lagging:.2} levels");
+    assert!(lagging > 1.2 * with, "{lagging} of {with}");
+    assert_validated();
+}
+
 #[test]
 fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
     let mut session = Session::new(model(), settings(&["view.msaa=1", "environment.name=sky", "view.frames=256"]));

@@ -239,3 +239,39 @@ fn velocity_follows_matrices_joints_and_morph_targets() {
     }
     assert_validated();
 }
+
+#[test]
+fn moved_surfaces_are_left_out_beyond_the_frame_alone() {
+    let mesh = glb::sphere(24, 48);
+    let mut document = Document::new(&mesh);
+    document.morph(&mesh);
+    document.skin(&mesh);
+    document.clip(&[(2, "translation", "VEC3", vec![0.0, 0.2, 0.1, 9.0, 0.2, 0.1])]);
+    let mut session = Session::new(document.load(), settings(&PLAIN));
+    let look = |session: &mut Session| {
+        let mut seen = Vec::new();
+        for start_s in [0.0, 4.0, 9.0] {
+            session.headless.set_sequence(Sequence { frames: 1, start_s, ..Sequence::default() });
+            for x in [-7.0, -4.5, 0.0, 3.0, 6.0, 9.0, 14.0] {
+                session.set(&format!("camera.eye=[{x}, 0, 8]"));
+                session.set(&format!("camera.target=[{x}, 0, 0]"));
+                let picture = session.render();
+                seen.push((picture, session.headless.draw_counts().draws));
+            }
+        }
+        seen
+    };
+    let seen = look(&mut session);
+    // Nothing is known about the vertices of a stage that was edited.
+    ready(&session.edit("deform.comp", "if (weight == 0.0) continue;", ""));
+    let whole = look(&mut session);
+    let most = whole.iter().map(|(_, draws)| *draws).max().unwrap();
+    for ((picture, draws), (all, of)) in seen.iter().zip(&whole) {
+        assert_same(picture, all, &format!("{draws} of {of} draws"));
+        let is_empty = all.raw.iter().all(|pixel| pixel[3] == 0.0);
+        assert!(*of == most && (is_empty || *draws == most), "{draws} of {of} draws");
+    }
+    let left_out = seen.iter().filter(|(_, draws)| *draws < most).count();
+    assert!((6..=14).contains(&left_out), "{left_out} of {} pictures", seen.len());
+    assert_validated();
+}
