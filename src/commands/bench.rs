@@ -1,4 +1,4 @@
-//! `specula bench reload|frame|load|bake|thumbnails|passes|scale|cost`: measures times on this machine, and prints them with the device's name.
+//! `specula bench reload|frame|load|bake|thumbnails|passes|scale|trace|cost`: measures times on this machine, and prints them with the device's name.
 
 mod args;
 mod context;
@@ -8,6 +8,7 @@ mod folder;
 mod passes;
 mod samples;
 mod scale;
+mod trace;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -48,6 +49,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Passes => passes::passes(&bench)?,
         What::Thumbnails => thumbnails(&bench)?,
         What::Scale => scale::scale(&bench)?,
+        What::Trace => trace::trace(&bench)?,
         What::Cost => cost::cost(&bench)?,
     };
     if matches!(args.what, What::Scale) {
