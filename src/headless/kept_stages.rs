@@ -3,11 +3,11 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use super::{HeadlessError, TraceTools};
+use super::HeadlessError;
 use crate::frame::PipelineRequest;
 use crate::pipeline::PipelineSet;
 use crate::shader::trace::{LoggingStage, TracedStage};
-use crate::shader::{ShaderSet, StageKind};
+use crate::shader::{Compiler, ShaderSet, Source, StageKind};
 
 /// Stages that are kept: two of the newest version of the shaders, and of the one before.
 const MOST_STAGES: usize = 4;
@@ -47,7 +47,7 @@ impl KeptStages {
         &mut self,
         shaders: &Arc<ShaderSet>,
         stage: &str,
-        tools: &TraceTools<'_>,
+        tools: (&Compiler, &Source),
     ) -> Result<&mut KeptStage, HeadlessError> {
         let is_it = |kept: &KeptStage| Arc::ptr_eq(&kept.shaders, shaders) && kept.stage == *stage;
         let kept = match self.kept.iter().position(is_it).and_then(|at| self.kept.remove(at)) {
@@ -59,7 +59,7 @@ impl KeptStages {
                     return Err(HeadlessError::Settings(message.to_owned()));
                 }
                 tracing::debug!("{stage}: compiled with a log");
-                let logging = LoggingStage::new(shaders, stage, (tools.compiler, tools.source), self.address);
+                let logging = LoggingStage::new(shaders, stage, tools, self.address);
                 let logging = logging.map_err(HeadlessError::Settings)?;
                 let (shaders, stage) = (shaders.clone(), stage.to_owned());
                 KeptStage { shaders, stage, logging, files: Vec::new(), groups: VecDeque::new() }

@@ -222,7 +222,7 @@ impl PixelTracer {
         plan: &TracePlan<'_>,
         tools: &TraceTools<'_>,
     ) -> Result<&mut KeptStage, HeadlessError> {
-        self.stages.stage(&plan.pixel.whole.shaders, plan.stage(), tools)
+        self.stages.stage(&plan.pixel.whole.shaders, plan.stage(), (tools.compiler, tools.source))
     }
 
     /// Draws the pixel with a log of these files.
@@ -233,7 +233,7 @@ impl PixelTracer {
         files: &BTreeSet<String>,
         shown: &PixelValue,
     ) -> Result<Trace, HeadlessError> {
-        let kept = self.stages.stage(&plan.pixel.whole.shaders, plan.stage(), tools)?;
+        let kept = self.stage(plan, tools)?;
         let request = |shaders: &Arc<ShaderSet>| plan.state(plan.pixel.clock, shaders).pipelines.clone();
         let (group, built) = kept.group(files, plan.pixel.set, request)?;
         let (stage, set) = (group.stage.clone(), group.set.clone());

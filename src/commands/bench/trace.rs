@@ -8,9 +8,9 @@ use specula::pipeline::Outcome;
 use specula::shader::{Mode, Source};
 
 use super::context::Bench;
+use super::edited::{edited, finish};
 use super::folder::{TempFolder, copy_tree};
 use super::samples::{ms, summary};
-use super::{edited, finish};
 use crate::commands::Failure;
 use crate::commands::common::check_mode;
 
