@@ -14,7 +14,7 @@ const MOST_STAGES: usize = 4;
 /// Files of a stage whose pipelines are kept.
 const MOST_FILES: usize = 4;
 /// Lists of constants for which the files of a stage are kept.
-const MOST_CONSTANTS: usize = 16;
+const MOST_CONSTANTS: usize = 64;
 
 /// Lists of constants with which a stage is specialized.
 pub(super) type Constants = BTreeSet<Vec<(u32, u32)>>;
@@ -62,7 +62,7 @@ impl KeptStages {
                 let logging = LoggingStage::new(shaders, stage, tools, self.address);
                 let logging = logging.map_err(HeadlessError::Settings)?;
                 let (shaders, stage) = (shaders.clone(), stage.to_owned());
-                KeptStage { shaders, stage, logging, files: Vec::new(), groups: VecDeque::new() }
+                KeptStage { shaders, stage, logging, files: VecDeque::new(), groups: VecDeque::new() }
             }
         };
         self.kept.push_front(kept);
@@ -71,13 +71,16 @@ impl KeptStages {
     }
 }
 
+/// A list of constants, and the files whose statements a stage keeps with them.
+type FilesOf = (Vec<(u32, u32)>, Vec<String>);
+
 /// A stage that logs, and the statements of groups of its files.
 pub(super) struct KeptStage {
     shaders: Arc<ShaderSet>,
     stage: String,
     logging: LoggingStage,
-    /// The files whose statements the stage keeps, by the constants.
-    files: Vec<(Constants, Vec<String>)>,
+    /// The files whose statements the stage keeps, by a list of constants.
+    files: VecDeque<FilesOf>,
     groups: VecDeque<Group>,
 }
 
@@ -91,14 +94,16 @@ pub(super) struct Group {
 
 impl KeptStage {
     /// The files whose statements the stage keeps with these constants.
-    pub(super) fn files_of(&mut self, constants: Constants) -> Vec<String> {
-        if let Some((_, files)) = self.files.iter().find(|(of, _)| *of == constants) {
-            return files.clone();
+    pub(super) fn files_of(&mut self, constants: &Constants) -> Vec<String> {
+        let mut all = BTreeSet::new();
+        for list in constants {
+            if !self.files.iter().any(|(of, _)| of == list) {
+                self.files.push_front((list.clone(), self.logging.files(&[list])));
+            }
+            all.extend(self.files.iter().filter(|(of, _)| of == list).flat_map(|(_, files)| files.clone()));
         }
-        let files = self.logging.files(&constants.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        self.files.truncate(MOST_CONSTANTS - 1);
-        self.files.insert(0, (constants, files.clone()));
-        files
+        self.files.truncate(MOST_CONSTANTS);
+        all.into_iter().collect()
     }
 
     /// Groups of these files that a module each can log. Without files, all are logged that the stage keeps with these constants.

@@ -168,7 +168,7 @@ impl PixelTracer {
     /// # Errors
     /// The stage does not compile with a log.
     pub fn files(&mut self, plan: &TracePlan<'_>, tools: &TraceTools<'_>) -> Result<Vec<String>, HeadlessError> {
-        Ok(self.stage(plan, tools)?.files_of(plan.constants()))
+        Ok(self.stage(plan, tools)?.files_of(&plan.constants()))
     }
 
     /// The value of the pixel in the picture, or in the image of the traced pass.

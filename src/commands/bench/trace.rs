@@ -100,6 +100,6 @@ impl Clicks {
 
     /// Milliseconds until a click finds what it needs.
     fn prepare(&mut self, at: (u32, u32)) -> Result<f64, Failure> {
-        self.time(at, |headless, request| headless.prepare_trace(request, 1))
+        self.time(at, |headless, request| headless.prepare_trace(request, usize::MAX))
     }
 }
