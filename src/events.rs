@@ -166,6 +166,23 @@ pub enum Event<'a> {
         equal: Option<bool>,
         /// Why there is no trace.
         error: Option<&'a str>,
+        /// How many pipelines were built for it. None are if it was prepared.
+        built: usize,
+        /// How long it took.
+        ms: f64,
+    },
+    /// What traces of the shown file need was compiled before a pixel is clicked, for the panel Source.
+    Prepared {
+        /// Shader generation.
+        generation: u64,
+        /// The stage; nothing if it cannot be traced.
+        stage: Option<&'a str>,
+        /// The file, as the tree names it.
+        file: Option<&'a str>,
+        /// How many pipelines were missing.
+        built: usize,
+        /// Why it cannot be traced.
+        error: Option<&'a str>,
         /// How long it took.
         ms: f64,
     },

@@ -1,13 +1,15 @@
-//! `specula bench reload|frame|load|bake|thumbnails|passes|scale|cost`: measures times on this machine, and prints them with the device's name.
+//! `specula bench reload|frame|load|bake|thumbnails|passes|scale|trace|cost`: measures times on this machine, and prints them with the device's name.
 
 mod args;
 mod context;
 mod cost;
+mod edited;
 mod edits;
 mod folder;
 mod passes;
 mod samples;
 mod scale;
+mod trace;
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -25,6 +27,7 @@ use super::{Failure, print_json};
 pub use args::Args;
 use args::What;
 use context::Bench;
+use edited::{edited, finish};
 use samples::{ms, round, summary};
 
 /// Width and height of a thumbnail, pixels.
@@ -48,6 +51,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Passes => passes::passes(&bench)?,
         What::Thumbnails => thumbnails(&bench)?,
         What::Scale => scale::scale(&bench)?,
+        What::Trace => trace::trace(&bench)?,
         What::Cost => cost::cost(&bench)?,
     };
     if matches!(args.what, What::Scale) {
@@ -108,17 +112,6 @@ fn reload(bench: &Bench<'_>) -> Result<Value, Failure> {
     }
     let table = names.iter().zip(samples).map(|(name, list)| ((*name).to_owned(), summary(list)));
     Ok(Value::Object(table.collect()))
-}
-
-/// The text of a shader file with an edit that does not change the picture: a stage discards fragments with a negative x, of
-/// which there are none, and a library gets a function that nothing calls.
-fn edited(text: &str, number: u32) -> String {
-    const MAIN: &str = "void main() {";
-    if text.contains(MAIN) {
-        return text.replacen(MAIN, &format!("{MAIN}\n    if (gl_FragCoord.x < -{number}.0) discard;"), 1);
-    }
-    let end = text.rfind("#endif").unwrap_or(text.len());
-    format!("{}float bench_edit(float x) {{ return x + {number}.0; }}\n{}", &text[..end], &text[end..])
 }
 
 /// Times frames of the selected mode, the CPU time of frames that do not change, and the first and second frame of every mode but
@@ -266,14 +259,6 @@ fn load(bench: &Bench<'_>, start: Instant) -> Result<Value, Failure> {
     result["start_to_device_ms"] = json!(round(device_ms));
     result["start_to_first_frame_ms"] = json!(round(cold_ms));
     Ok(result)
-}
-
-/// Compiles what the frame did not need.
-fn finish(headless: &mut Headless) -> Result<(), Failure> {
-    match headless.finish().map(|reload| reload.outcome) {
-        Some(Outcome::Failed(diagnostics)) => Err(Failure::Shaders(diagnostics)),
-        _ => Ok(()),
-    }
 }
 
 /// Bakes the selected environment repeatedly. The first bake includes the creation of its pipelines.

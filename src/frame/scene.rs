@@ -248,6 +248,13 @@ impl Scene {
         if both { Sides::Both } else { Sides::Front }
     }
 
+    /// The first instance that is drawn with a kind of material.
+    pub(crate) fn instance_with(&self, material: MaterialVariant) -> Option<usize> {
+        let replacement = self.replacement();
+        let is_it = |instance: &Instance| self.appearance(instance, replacement.as_ref()).variant == material;
+        self.wanted_instances().find(|(_, instance)| is_it(instance)).map(|(index, _)| index)
+    }
+
     /// Index into `Model::materials` of the material that an instance has in the selected variant.
     pub fn material_of(&self, instance: &Instance) -> usize {
         self.model.primitives[instance.primitive].material_in(self.look.variant)

@@ -24,6 +24,8 @@
 //! - `closing-panic:1`, `closing-delay-ms:N`, `closing-limit-ms:N`: closing the window panics, takes so much longer, or may take so long.
 //! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
 //!
+//! `headless` knows `trace-delay-ms:N`: every draw of a trace takes so much longer; and `trace-loss:N`: the Nth one loses the device.
+//!
 //! `frame` knows `draws-by-index:N`: models of `N` and more draws are drawn by index.
 //!
 //! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer; and `plain-textures:1`: textures are RGBA8, or half
@@ -74,7 +76,7 @@ pub fn delay(name: &str) {
     }
 }
 
-/// Whether the fault `by-name` has triggered.
+/// Whether a fault has lost the device.
 static LOST: AtomicBool = AtomicBool::new(false);
 
 /// Carries out the fault `by-name` for a new shader module.
@@ -93,7 +95,14 @@ pub(crate) fn take_module(spirv: &[u32]) {
     }
 }
 
-/// Fails once the fault `by-name` has triggered. `action` continues "the device was lost while".
+/// Loses the device at call number N of the process for a fault `name:N`.
+pub fn lose_at(name: &str) {
+    if strikes(name) {
+        LOST.store(true, Ordering::SeqCst);
+    }
+}
+
+/// Fails once a fault has lost the device. `action` continues "the device was lost while".
 pub(super) fn lose(action: &'static str) -> Result<(), GpuError> {
     if LOST.load(Ordering::SeqCst) { Err(GpuError::DeviceLost(action)) } else { Ok(()) }
 }

@@ -259,7 +259,7 @@ fn bound(
         return Err(HeadlessError::Canceled);
     }
     let state = (request.state)(shaders);
-    let set = request.set.variant(shaders.clone(), &state.pipelines)?;
+    let (set, _) = request.set.variant(shaders.clone(), &state.pipelines)?;
     let frame = tools.resources.bind_variant(&set, &state)?;
     let frame = frame.ok_or_else(|| HeadlessError::Settings("the light of the picture is being baked".to_owned()))?;
     Ok((set, frame))

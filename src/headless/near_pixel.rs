@@ -1,14 +1,16 @@
 //! The part of a frame that one of its pixels needs.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::stage_plan::Extent;
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat};
+use crate::frame::{Clock, FrameInputs, FrameState, MaterialVariant, Revisions, Scene, TargetFormat};
 use crate::scene;
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet};
 
 /// A frame of which one pixel is read.
+#[derive(Clone)]
 pub(super) struct NearPixel {
     whole: Arc<FrameState>,
     all: Scene,
@@ -35,6 +37,11 @@ impl NearPixel {
         let part = if shows_more { all.clone() } else { part };
         let target = whole.pipelines.target;
         Some(Self { whole: whole.clone(), all, part, settings: settings.clone(), revisions, target })
+    }
+
+    /// The kinds of material near the pixel.
+    pub(super) fn materials(&self) -> &BTreeSet<MaterialVariant> {
+        self.part.materials()
     }
 
     /// The frame in a mode with these shaders. Only the instances near the pixel are drawn, unless a pass may need the others.

@@ -53,7 +53,7 @@ pub fn first_not_finite(
     let check = || if (search.is_canceled)() { Err("canceled") } else { Ok(()) };
     check()?;
     let state = Arc::new(FrameState::of_modes(&inputs(&traced.shaders), &[mode]));
-    let set = set.variant(traced.shaders.clone(), &state.pipelines).map_err(|error| error.to_string())?;
+    let (set, _) = set.variant(traced.shaders.clone(), &state.pipelines).map_err(|error| error.to_string())?;
     check()?;
     let bound = resources.bind_variant(&set, &state).map_err(|error| error.to_string())?;
     let frame = bound.ok_or("the light of the picture is being baked")?;

@@ -156,7 +156,7 @@ impl PictureChecker {
             let state = (request.state)(shaders, index);
             let set = match &variant {
                 Some(set) => set,
-                None => variant.insert(request.set.variant(shaders.clone(), &state.pipelines)?),
+                None => variant.insert(request.set.variant(shaders.clone(), &state.pipelines)?.0),
             };
             // A later frame may draw what the first one does not.
             set.build_aside(&state.pipelines)?;

@@ -1,28 +1,21 @@
-//! Draws single pixels with a stage that logs what its statements do. What was compiled for a version of the shaders is kept for the next
-//! pixel.
+//! Draws single pixels with a stage that logs what its statements do.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::HeadlessError;
+use super::kept_stages::{Constants, KeptStage, KeptStages, constants_of};
 use super::near_pixel::NearPixel;
 use super::offscreen_view::OffscreenView;
 use super::stage_plan::{self, StagePlan};
 use super::traced_lights::traced_lights;
 use crate::frame::{Clock, FrameState, Revisions};
-use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, vk};
+use crate::gpu::{Buffer, Gpu, Memory, SetLayouts, fault, vk};
 use crate::pipeline::{PipelineSet, Reloader};
 use crate::render::{BoundFrame, Redraw, Resources};
 use crate::settings::Settings;
-use crate::shader::trace::{Invocations, LoggingStage, Target, Trace, TraceableStage, TracedStage, log};
-use crate::shader::{Compiler, Mode, PixelValue, ShaderSet, Source, StageKind};
-
-/// Stages that are kept: two of the newest version of the shaders, and of the one before.
-const MOST_STAGES: usize = 4;
-/// Files of a stage whose pipelines are kept.
-const MOST_FILES: usize = 4;
-/// Lists of constants for which the files of a stage are kept.
-const MOST_CONSTANTS: usize = 16;
+use crate::shader::trace::{Invocations, Target, Trace, TraceableStage, log};
+use crate::shader::{Compiler, Mode, PixelValue, ShaderSet, Source};
 
 /// A pixel of a frame.
 #[derive(Clone, Copy)]
@@ -71,39 +64,6 @@ impl<'a> TraceTools<'a> {
     }
 }
 
-/// Lists of constants with which a stage is specialized.
-type Constants = BTreeSet<Vec<(u32, u32)>>;
-
-/// A stage that logs, and the statements of a group of its files.
-struct Kept {
-    shaders: Arc<ShaderSet>,
-    stage: String,
-    logging: LoggingStage,
-    /// The files whose statements the stage keeps, by the constants.
-    files: Vec<(Constants, Vec<String>)>,
-    groups: VecDeque<Group>,
-}
-
-impl Kept {
-    /// The files whose statements the stage keeps with these constants.
-    fn files_of(&mut self, constants: Constants) -> Vec<String> {
-        if let Some((_, files)) = self.files.iter().find(|(of, _)| *of == constants) {
-            return files.clone();
-        }
-        let files = self.logging.files(&constants.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        self.files.truncate(MOST_CONSTANTS - 1);
-        self.files.insert(0, (constants, files.clone()));
-        files
-    }
-}
-
-struct Group {
-    files: BTreeSet<String>,
-    stage: TracedStage,
-    /// The pipelines of the frame, with this stage.
-    set: Option<Arc<PipelineSet>>,
-}
-
 /// A pixel, and how the frame draws it.
 pub struct TracePlan<'a> {
     pixel: &'a TracedPixel<'a>,
@@ -123,14 +83,19 @@ impl<'a> TracePlan<'a> {
             return Err(HeadlessError::Settings(format!("the pixel {x},{y} is outside of the picture")));
         }
         let near = NearPixel::new(pixel.whole, pixel.settings, pixel.revisions, pixel.at);
-        let mut near = near.ok_or_else(|| HeadlessError::Settings("there is no picture to trace".to_owned()))?;
+        let near = near.ok_or_else(no_picture)?;
         let all = near.state_of(stage_plan::Extent::All, pixel.mode, pixel.clock, &pixel.whole.shaders);
         let stage = stage_plan::choose(&all, pixel.stage, files)?;
         let stage = stage_plan::plan(&all, &stage, pixel.at, pixel.invocation)?;
+        Ok(Self::of(pixel, near, stage))
+    }
+
+    /// The plan to run a stage.
+    pub(super) fn of(pixel: &'a TracedPixel<'a>, mut near: NearPixel, stage: StagePlan) -> Self {
         // Where a pixel has several samples, their plain mean is compared, which keeps the bits of equal ones.
         near.target.weighs &= stage.samples == 1;
         let state = near.state_of(stage.extent, pixel.mode, pixel.clock, &pixel.whole.shaders);
-        Ok(Self { pixel, near, stage, state })
+        Self { pixel, near, stage, state }
     }
 
     /// Whether the stage draws a pixel without the rest of the picture.
@@ -159,25 +124,19 @@ impl<'a> TracePlan<'a> {
     }
 
     /// The constants with which the frame specializes the stage.
-    fn constants(&self) -> Constants {
-        let (request, stage) = (&self.state.pipelines, self.stage());
-        let keys = request.keys().filter(|key| key.stages().any(|of| of == stage));
-        let mut constants: Constants = keys.map(|key| key.specialization.to_vec()).collect();
-        if request.compute_stages().any(|of| of == stage) {
-            constants.insert(request.pass_constants().to_vec());
-        }
-        constants
+    pub(super) fn constants(&self) -> Constants {
+        constants_of(&self.state.pipelines, self.stage())
     }
 }
 
 /// Draws pixels with logs. It has a view and a log of its own, so the picture and its history stay as they are.
 pub struct PixelTracer {
     own: OffscreenView,
-    traces_vertices: bool,
+    stages: KeptStages,
     log: Arc<Buffer>,
     /// The words of a loop that did not end in the picture of the pixel.
     endless_loop: Option<[u32; 2]>,
-    kept: VecDeque<Kept>,
+    built: usize,
 }
 
 impl PixelTracer {
@@ -195,8 +154,13 @@ impl PixelTracer {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
         let log = Buffer::new(gpu, "trace", log::SIZE, usage, Memory::Readback)?;
-        let (own, endless_loop, kept) = (OffscreenView::new(gpu, layouts)?, None, VecDeque::new());
-        Ok(Self { own, traces_vertices, log, endless_loop, kept })
+        let stages = KeptStages::new(log.address(), traces_vertices);
+        Ok(Self { own: OffscreenView::new(gpu, layouts)?, stages, log, endless_loop: None, built: 0 })
+    }
+
+    /// How many pipelines with a log were built for traces so far. One that was prepared is not.
+    pub fn built(&self) -> usize {
+        self.built
     }
 
     /// The files whose statements the stage of a plan has at its pixel.
@@ -204,7 +168,7 @@ impl PixelTracer {
     /// # Errors
     /// The stage does not compile with a log.
     pub fn files(&mut self, plan: &TracePlan<'_>, tools: &TraceTools<'_>) -> Result<Vec<String>, HeadlessError> {
-        Ok(self.stage(plan, tools)?.files_of(plan.constants()))
+        Ok(self.stage(plan, tools)?.files_of(&plan.constants()))
     }
 
     /// The value of the pixel in the picture, or in the image of the traced pass.
@@ -230,17 +194,12 @@ impl PixelTracer {
         shown: &PixelValue,
     ) -> Result<Trace, HeadlessError> {
         let constants = plan.constants();
-        let constants: Vec<&[(u32, u32)]> = constants.iter().map(Vec::as_slice).collect();
-        let kept = self.stage(plan, tools)?;
         let mut trace: Option<Trace> = None;
-        for group in kept.logging.groups(files, &constants).map_err(HeadlessError::Settings)? {
+        for files in self.stage(plan, tools)?.groups(files, &constants)? {
             if (tools.is_canceled)() {
                 return Err(HeadlessError::Canceled);
             }
-            let (words, redrawn) = self.draw(plan, tools, &group)?;
-            let Some(traced) = self.kept.front().and_then(|kept| kept.groups.front()) else { break };
-            let of = (plan.stage.of, plan.stage.target.clone(), plan.stage.samples);
-            let of_group = Trace::new(&traced.stage, of, &words, shown, &redrawn);
+            let of_group = self.draw(plan, tools, &files, shown)?;
             if of_group.fragments.is_empty() {
                 break;
             }
@@ -257,69 +216,45 @@ impl PixelTracer {
         Ok(trace)
     }
 
-    /// The stage of a frame with a log, the first of those that are kept.
-    fn stage(&mut self, plan: &TracePlan<'_>, tools: &TraceTools<'_>) -> Result<&mut Kept, HeadlessError> {
-        let (shaders, stage) = (&plan.pixel.whole.shaders, plan.stage());
-        let is_it = |kept: &Kept| Arc::ptr_eq(&kept.shaders, shaders) && kept.stage == *stage;
-        let kept = match self.kept.iter().position(is_it).and_then(|at| self.kept.remove(at)) {
-            Some(kept) => kept,
-            None => {
-                let is_vertex = shaders.stages.get(stage).is_some_and(|stage| stage.kind == StageKind::Vertex);
-                if is_vertex && !self.traces_vertices {
-                    let message = "this device cannot write buffers from vertex stages, which a trace of them needs";
-                    return Err(HeadlessError::Settings(message.to_owned()));
-                }
-                let logging = LoggingStage::new(shaders, stage, (tools.compiler, tools.source), self.log.address());
-                let logging = logging.map_err(HeadlessError::Settings)?;
-                let (shaders, stage) = (shaders.clone(), stage.to_owned());
-                Kept { shaders, stage, logging, files: Vec::new(), groups: VecDeque::new() }
-            }
-        };
-        self.kept.push_front(kept);
-        self.kept.truncate(MOST_STAGES);
-        Ok(&mut self.kept[0])
+    /// The stage of a plan with a log.
+    pub(super) fn stage(
+        &mut self,
+        plan: &TracePlan<'_>,
+        tools: &TraceTools<'_>,
+    ) -> Result<&mut KeptStage, HeadlessError> {
+        self.stages.stage(&plan.pixel.whole.shaders, plan.stage(), (tools.compiler, tools.source))
     }
 
-    /// Draws the pixel with a log of these files. Returns the words of the log, and the value of the pixel. The group is then the first of
-    /// the first stage.
-    fn draw(
+    /// Draws the pixel with a log of these files.
+    pub(super) fn draw(
         &mut self,
         plan: &TracePlan<'_>,
         tools: &mut TraceTools<'_>,
         files: &BTreeSet<String>,
-    ) -> Result<(Vec<u32>, PixelValue), HeadlessError> {
-        let kept = self.kept.front_mut().ok_or_else(changed)?;
-        let known = kept.groups.iter().position(|group| group.files == *files);
-        let mut group = match known.and_then(|at| kept.groups.remove(at)) {
-            Some(group) => group,
-            None => {
-                let stage = kept.logging.of(files).map_err(HeadlessError::Settings)?;
-                Group { files: files.clone(), stage, set: None }
-            }
-        };
-        let set = match group.set.take() {
-            Some(set) => set,
-            None => {
-                let state = plan.state(plan.pixel.clock, &group.stage.shaders);
-                plan.pixel.set.variant(group.stage.shaders.clone(), &state.pipelines)?
-            }
-        };
-        group.set = Some(set.clone());
-        let layout = group.stage.layout();
-        kept.groups.push_front(group);
-        kept.groups.truncate(MOST_FILES);
+        shown: &PixelValue,
+    ) -> Result<Trace, HeadlessError> {
+        let kept = self.stage(plan, tools)?;
+        let request = |shaders: &Arc<ShaderSet>| plan.state(plan.pixel.clock, shaders).pipelines.clone();
+        let (group, built) = kept.group(files, plan.pixel.set, request)?;
+        let (stage, set) = (group.stage.clone(), group.set.clone());
+        let layout = stage.layout();
+        self.built += built;
+        fault::delay("trace-delay-ms");
+        fault::lose_at("trace-loss");
         for (offset, length) in layout.cleared() {
             self.log.fill(offset, length, |bytes| bytes.fill(0));
         }
         let empty: Vec<u8> = log::empty(plan.stage.of).iter().flat_map(|word| word.to_le_bytes()).collect();
         self.log.write(0, &empty);
-        let value = self.draw_pixel(plan, tools, &set, true)?;
+        let redrawn = self.draw_pixel(plan, tools, &set, true)?;
         let words = |length: u64| -> Vec<u32> {
             let bytes = self.log.read_part(0, length);
             bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
         };
         let invocations = words(layout.used(0)).first().copied().unwrap_or(0);
-        Ok((words(layout.used(invocations)), value))
+        let words = words(layout.used(invocations));
+        let of = (plan.stage.of, plan.stage.target.clone(), plan.stage.samples);
+        Ok(Trace::new(&stage, of, &words, shown, &redrawn))
     }
 
     /// Draws a pixel with the pipelines of `set`, after the frames before it, and returns its value. A loop that did not end was cut in the
@@ -393,6 +328,7 @@ fn displayed((width, _, rgba8): (u32, u32, Vec<u8>), (x, y): (u32, u32)) -> Pixe
     PixelValue { value: std::array::from_fn(|at| f32::from(bytes[at]) / 255.0), ..PixelValue::default() }
 }
 
-fn changed() -> HeadlessError {
-    HeadlessError::Settings("the shaders have changed".to_owned())
+/// The error of a frame without a scene.
+pub(super) fn no_picture() -> HeadlessError {
+    HeadlessError::Settings("there is no picture to trace".to_owned())
 }

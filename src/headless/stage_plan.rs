@@ -174,9 +174,8 @@ pub(super) fn plan(
     if invocation.is_some() && kind != Some(StageKind::Compute) {
         return fails(format!("{stage} is no compute stage, so it has no invocation to choose"));
     }
-    let is_models = request.draws_model && request.stage == stage && pass.is_none_or(|pass| pass.desc.is_built_in());
     match kind {
-        Some(StageKind::Fragment) if is_models => {
+        Some(StageKind::Fragment) if draws_surfaces(state, stage) => {
             let extent = if request.follows_paths() { Extent::All } else { Extent::Near };
             Ok(make(Invocations::Pixel(at.0, at.1), Target::Picture, extent, false))
         }
@@ -201,6 +200,45 @@ pub(super) fn plan(
         }
         _ => fails(format!("{stage} is not traced. {UNTRACED}")),
     }
+}
+
+/// The plan to run a stage of [`traceable`] for one instance, which logs no invocation. `None`: for the whole frame, as at a pixel.
+///
+/// # Errors
+/// The stage runs for no pixel.
+pub(super) fn without_log(
+    state: &FrameState,
+    stage: &str,
+    at: (u32, u32),
+    instance: Option<usize>,
+) -> Result<StagePlan, HeadlessError> {
+    const NONE: u32 = u32::MAX;
+    let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
+    let of = match kind {
+        Some(StageKind::Vertex) => Some(Invocations::Triangle([NONE; 3])),
+        Some(StageKind::Fragment) if draws_surfaces(state, stage) => Some(Invocations::Pixel(NONE, NONE)),
+        _ => None,
+    };
+    let Some(of) = of else {
+        return plan(state, stage, at, None);
+    };
+    let extent = instance.map_or(Extent::All, Extent::Instance);
+    let (stage, samples) = (stage.to_owned(), state.pipelines.target.samples);
+    Ok(StagePlan { stage, of, target: Target::Picture, extent, is_whole: false, samples })
+}
+
+/// Whether a stage draws the surfaces of the model, each for itself: no pass and no path reads others.
+pub(super) fn draws_instances(state: &FrameState, stage: &str) -> bool {
+    let is_vertex = state.shaders.stages.get(stage).is_some_and(|stage| stage.kind == StageKind::Vertex);
+    let request = &state.pipelines;
+    is_vertex || draws_surfaces(state, stage) && request.is_local() && !request.follows_paths()
+}
+
+/// Whether a stage is the fragment stage of the model.
+fn draws_surfaces(state: &FrameState, stage: &str) -> bool {
+    let request = &state.pipelines;
+    let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
+    request.draws_model && request.stage == stage && pass.is_none_or(|pass| pass.desc.is_built_in())
 }
 
 /// The instance whose triangle is nearest at a pixel, and the indices of its vertices.

@@ -1,11 +1,15 @@
 //! Draws a pixel of the picture with a stage that logs what its statements do.
 
 use super::pixel_tracer::{PixelTracer, TracePlan, TraceTools, TracedPixel};
-use super::{Headless, HeadlessError};
+use super::{Headless, HeadlessError, Prepared};
 use crate::frame::Clock;
 use crate::gpu::GpuError;
+use crate::scene::pick;
 use crate::shader::trace::{Neighborhood, Trace};
 use crate::shader::{Diagnostic, Mode};
+
+/// Columns and rows of the pixels in [`Headless::pixels_of_model`].
+const GRID: u32 = 24;
 
 /// The question of a trace.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +38,34 @@ impl Headless {
             let shown = tracer.value(&plan, tools)?;
             tracer.trace(&plan, tools, request.files, &shown)
         })
+    }
+
+    /// Compiles what [`Headless::trace`] needs for the request's first file at any pixel: for this many kinds of material, those at the
+    /// request's pixel first.
+    ///
+    /// # Errors
+    /// As [`Headless::trace`].
+    pub fn prepare_trace(&mut self, request: &TraceRequest<'_>, most: usize) -> Result<Prepared, HeadlessError> {
+        let file = request.files.first().copied();
+        self.with_pixel(request, |pixel, tracer, tools| tracer.prepare(pixel, tools, file, most))
+    }
+
+    /// Some pixels of the picture that the model covers, those in the middle first.
+    ///
+    /// # Errors
+    /// There is no frame yet.
+    pub fn pixels_of_model(&self) -> Result<Vec<(u32, u32)>, HeadlessError> {
+        let state = self.frame_state()?;
+        let Some(scene) = &state.scene else { return Ok(Vec::new()) };
+        let (width, height) = state.size;
+        let steps = |size: u32| (1..GRID).map(move |step| size * step / GRID);
+        let mut all: Vec<(u32, u32)> = steps(width).flat_map(|x| steps(height).map(move |y| (x, y))).collect();
+        all.sort_by_key(|(x, y)| x.abs_diff(width / 2) + y.abs_diff(height / 2));
+        let is_covered = |at: &(u32, u32)| {
+            pick(scene.model(), &state.camera, state.size, *at, |instance| scene.sides(instance)).is_some()
+        };
+        all.retain(is_covered);
+        Ok(all)
     }
 
     /// The values of the statements of the request's first file at a square of pixels around the pixel.

@@ -115,12 +115,12 @@ impl PipelineSet {
         Ok((Arc::new(set), built))
     }
 
-    /// A set of the same generation with another module for a stage, and with the pipelines of `request`.
+    /// A set of the same generation with another module for a stage, and with the pipelines of `request`. Also how many of them are new.
     ///
     /// # Errors
     /// As [`PipelineSet::new`].
-    pub fn variant(&self, shaders: Arc<ShaderSet>, request: &PipelineRequest) -> Result<Arc<Self>, GpuError> {
-        Self::new(&self.gpu, &self.layouts, shaders, self.textures.clone(), request, Some(self)).map(|(set, _)| set)
+    pub fn variant(&self, shaders: Arc<ShaderSet>, request: &PipelineRequest) -> Result<(Arc<Self>, usize), GpuError> {
+        Self::new(&self.gpu, &self.layouts, shaders, self.textures.clone(), request, Some(self))
     }
 
     /// The textures of this generation.

@@ -42,6 +42,7 @@
 //! on top of one that has not settled is set back with it.
 
 mod files;
+mod paths;
 mod recorder;
 mod typed;
 
@@ -80,11 +81,13 @@ pub struct SessionState {
     #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::deserialize")]
     pub settings: Arc<Settings>,
     /// The model's file; `None` is the built-in one.
+    #[serde(default, with = "paths::optional")]
     pub model: Option<PathBuf>,
     /// The scene of the model's file (`--scene`); `None` is the file's own.
     #[serde(default)]
     pub scene: Option<usize>,
     /// The shader tree's folder or file; `None` is the tree in the program.
+    #[serde(default, with = "paths::optional")]
     pub tree: Option<PathBuf>,
 }
 
@@ -250,6 +253,7 @@ impl RecoveryState {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GoodTexts {
     /// The tree's folder or file.
+    #[serde(default, with = "paths::optional")]
     pub tree: Option<PathBuf>,
     /// Texts by path.
     pub texts: BTreeMap<String, String>,

@@ -103,6 +103,31 @@ fn records_are_read_by_the_next_process() {
     assert!(!folder.path().exists());
 }
 
+/// Folders of old archives have names in other encodings.
+#[cfg(unix)]
+#[test]
+fn paths_that_are_not_utf_8_are_recorded() {
+    use std::os::unix::ffi::OsStringExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let odd = || Some(PathBuf::from(std::ffi::OsString::from_vec(b"/tmp/\xe9t\xe9".to_vec())));
+    let work = SessionState { model: odd(), tree: odd(), ..SessionState::default() };
+    let recorder = Recorder::new(Some(folder.path().to_owned()), RecoveryState::default(), GoodTexts::default());
+    recorder.begin(&work, || Geometry { size: (640, 480), at: None });
+    assert_eq!(RecoveryState::read(folder.path()).work, Some(work));
+    let good = GoodTexts { tree: odd(), ..GoodTexts::default() };
+    good.write(folder.path()).unwrap();
+    assert_eq!(GoodTexts::read(folder.path(), None), good);
+    let typed = TypedText {
+        root: odd().unwrap(),
+        file: "a.glsl".into(),
+        path: "a.glsl".into(),
+        base: String::new(),
+        text: "text".to_owned(),
+    };
+    typed::write(folder.path(), std::slice::from_ref(&typed)).unwrap();
+    assert_eq!(typed::read(folder.path()), [typed]);
+}
+
 #[test]
 fn typed_texts_are_kept_beside_those_of_before() {
     let (folder, state) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

@@ -16,6 +16,7 @@ pub(super) const TYPED: &str = "typed.json";
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TypedText {
     /// The folder of the file's tree.
+    #[serde(with = "super::paths::one")]
     pub root: PathBuf,
     /// The file below it.
     pub file: TreePath,

@@ -13,7 +13,7 @@ use super::results::{BakeMessage, Checked, Loaded, MeasuredCurves, SecondTreeMes
 use crate::control::Asked;
 use crate::file_kind::Listed;
 use crate::frame::{MeasuredKey, TablesKey};
-use crate::headless::{CheckedPicture, StageCosts};
+use crate::headless::{CheckedPicture, Prepared, StageCosts};
 use crate::learn::Exercise;
 use crate::message::{panic_text, warn};
 use crate::picture::Look;
@@ -81,6 +81,8 @@ pub(crate) enum Message {
     TracedBefore(u64, Option<Box<(Arc<ShaderSet>, Trace)>>),
     /// The values around the pinned pixel, or why there are none, for the request with this number.
     TracedAround(u64, Box<Result<Neighborhood, String>>),
+    /// What a trace of a file needs was compiled, after a request of this number; how long it took, in milliseconds.
+    TracePrepared(u64, Box<Result<Prepared, String>>, f64),
     /// A trace for another program, for the request with this number.
     GuestTraced(u64, Box<Traced>),
     /// The findings of the checks of the picture, for the request with this number.

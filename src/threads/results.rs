@@ -104,12 +104,14 @@ pub(crate) struct Traced {
     pub(crate) place: TracedPlace,
     /// The trace, or the reason why there is none.
     pub(crate) trace: Result<Trace, String>,
+    /// Pipelines with a log that were built for it.
+    pub(crate) built: usize,
     pub(crate) ms: f64,
 }
 
 impl Default for Traced {
     fn default() -> Self {
-        Self { place: TracedPlace::default(), trace: Err("the trace has not begun".to_owned()), ms: 0.0 }
+        Self { place: TracedPlace::default(), trace: Err("the trace has not begun".to_owned()), built: 0, ms: 0.0 }
     }
 }
 

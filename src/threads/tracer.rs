@@ -8,7 +8,7 @@ use super::newest::{Newest, Turn};
 use super::results::Traced;
 use crate::frame::{Clock, TargetFormat};
 use crate::gpu::Gpu;
-use crate::headless::{HeadlessError, PixelTracer, TracePlan, TraceTools, TracedPixel};
+use crate::headless::{HeadlessError, PixelTracer, Prepared, TracePlan, TraceTools, TracedPixel};
 use crate::pipeline::PipelineSet;
 use crate::render::{BoundFrame, Resources, View};
 use crate::session::Session;
@@ -44,6 +44,8 @@ enum Asked {
     Trace(Box<TraceRequest>, Option<OlderVersion>),
     /// The pixels around one.
     Around(Box<TraceRequest>),
+    /// The modules that a click would need, for at most this many kinds of material.
+    Prepare(Box<TraceRequest>, usize),
     /// The panel is closed: the memory is free for other things.
     Release,
 }
@@ -80,6 +82,13 @@ impl Tracer {
         self.ask(Asked::Around(Box::new(request)))
     }
 
+    /// Compiles what a trace of the request's file needs at any pixel, for at most this many kinds of material, and drops the previous request.
+    /// Returns the number of the request.
+    pub(crate) fn prepare(&mut self, request: TraceRequest, most: usize) -> u64 {
+        self.is_used = true;
+        self.ask(Asked::Prepare(Box::new(request), most))
+    }
+
     /// Ends what is under way, and releases the memory.
     pub(crate) fn release(&mut self) {
         if std::mem::take(&mut self.is_used) {
@@ -96,6 +105,15 @@ impl Tracer {
                     let around = around(&gpu, &mut tracer, &mut request, turn).map_err(|error| error.to_string());
                     if !turn.is_superseded() {
                         sender.send(Message::TracedAround(turn.number, Box::new(around)));
+                    }
+                }
+                Asked::Prepare(mut request, most) => {
+                    let start = Instant::now();
+                    let result = prepare(&gpu, &mut tracer, &mut request, most, turn);
+                    if !turn.is_superseded() {
+                        let (result, ms) =
+                            (result.map_err(|error| error.to_string()), start.elapsed().as_secs_f64() * 1e3);
+                        sender.send(Message::TracePrepared(turn.number, Box::new(result), ms));
                     }
                 }
                 Asked::Trace(mut request, before) => {
@@ -145,6 +163,20 @@ fn around(
     with_pixel(gpu, tracer, request, None, turn, |pixel, tracer, tools| tracer.neighborhood(pixel, tools, &file))
 }
 
+/// Compiles what a trace of the request's file needs at any pixel.
+fn prepare(
+    gpu: &Arc<Gpu>,
+    tracer: &mut Option<PixelTracer>,
+    request: &mut TraceRequest,
+    most: usize,
+    turn: &Turn<'_>,
+) -> Result<Prepared, HeadlessError> {
+    let file = request.file.clone();
+    with_pixel(gpu, tracer, request, None, turn, |pixel, tracer, tools| {
+        tracer.prepare(pixel, tools, file.as_deref(), most)
+    })
+}
+
 /// Writes what is known before the trace to `traced`.
 fn run(
     gpu: &Arc<Gpu>,
@@ -166,7 +198,10 @@ fn run(
         end_if_superseded()?;
         let shown = tracer.value(&plan, tools)?;
         end_if_superseded()?;
-        tracer.trace(&plan, tools, &[&file], &shown)
+        let before = tracer.built();
+        let trace = tracer.trace(&plan, tools, &[&file], &shown);
+        traced.built = tracer.built() - before;
+        trace
     })
 }
 

@@ -52,7 +52,7 @@ function pixel(text) {
 // The file in the editor, if it is one of shaders.
 function activeUri() {
     const document = vscode.window.activeTextEditor?.document;
-    return document?.languageId === 'glsl' ? [client.code2ProtocolConverter.asUri(document.uri)] : [];
+    return document?.languageId === 'glsl' ? [document.uri.toString()] : [];
 }
 
 async function askPixel() {
@@ -70,6 +70,8 @@ async function askPixel() {
 }
 
 async function execute(command, args) {
+    // A server that is being restarted answers once it runs.
+    await last;
     if (!client?.isRunning()) throw new Error('the language server is not running');
     return client.sendRequest('workspace/executeCommand', { command, arguments: args });
 }

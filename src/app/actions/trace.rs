@@ -8,8 +8,10 @@ use crate::app::frames::progress::{awaits_edit, is_settled, lacks_nothing, moves
 use crate::app::state::State;
 use crate::app::state::picture_subject::PictureSubject;
 use crate::app::state::trace::Progress;
+use crate::app::state::trace::preparation::Preparation;
 use crate::app::state::trace::subject::Subject;
 use crate::events::{Event, emit};
+use crate::headless::Prepared;
 use crate::identity::Identity;
 use crate::settings::{ExpressionSettings, Settings};
 use crate::shader::{Severity, TreePath, expression};
@@ -20,6 +22,10 @@ use crate::threads::{Message, Traced};
 pub(in crate::app) const REST: Duration = Duration::from_millis(150);
 /// The same on a software device, whose frames a trace holds up.
 pub(in crate::app) const REST_ON_CPU: Duration = Duration::from_millis(400);
+
+/// Kinds of material for which modules are compiled before a click. A software device takes a second for each.
+const MOST_PREPARED: usize = 32;
+const MOST_PREPARED_ON_CPU: usize = 4;
 
 /// Asks for a trace if that of the picture is missing. Returns the time until it is to be looked at again.
 pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_safe_mode: bool) -> Option<Duration> {
@@ -35,11 +41,11 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     read_saved(state, engine);
     let Some(at) = state.inspection.pin else {
         state.traces.progress = Progress::NoPixel;
-        return None;
+        return prepare(state, engine);
     };
     if state.shown().is_some_and(|shown| at[0] >= shown.size.0 || at[1] >= shown.size.1) {
         state.traces.progress = Progress::Outside;
-        return None;
+        return prepare(state, engine);
     }
     let Some(subject) = subject(state, engine, at) else {
         state.traces.progress = Progress::Waits;
@@ -48,7 +54,7 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     if state.traces.asked() == Some(&subject) {
         state.traces.resume();
         ask_around(state, engine);
-        return None;
+        return prepare(state, engine);
     }
     let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
     if let Some(left) = state.traces.rest_left(&subject, rest) {
@@ -67,12 +73,51 @@ pub(in crate::app) fn update_trace(state: &mut State, engine: &mut Engine, is_sa
     None
 }
 
+/// Has what the next click needs compiled, if the thread is free. Returns the time until it is to be looked at again.
+fn prepare(state: &mut State, engine: &mut Engine) -> Option<Duration> {
+    // Each number that is dragged is a generation of its own.
+    if !state.workspace.sight.source || state.traces.is_under_way() || state.edits.draft.is_some() {
+        return None;
+    }
+    let size = state.shown()?.size;
+    let at = state.inspection.pin.filter(|at| at[0] < size.0 && at[1] < size.1).unwrap_or([size.0 / 2, size.1 / 2]);
+    let Subject { picture, at, stage, file } = subject(state, engine, at)?;
+    let pipelines = state.shown()?.pipelines.clone();
+    let next = Preparation { generation: picture.shaders.generation, pipelines, stage, file };
+    let rest = if engine.gpu_is_fast() { REST } else { REST_ON_CPU };
+    let left = state.traces.preparations.left(&next, rest)?;
+    if !left.is_zero() {
+        return Some(left);
+    }
+    let most = if engine.gpu_is_fast() { MOST_PREPARED } else { MOST_PREPARED_ON_CPU };
+    let request = request_of(state, engine, &picture, at, (next.stage.clone(), next.file.as_ref()));
+    let number = engine.threads.tracer.prepare(request, most);
+    state.traces.preparations.ask(next, number);
+    None
+}
+
+/// Tells programs that a click finds what it needs.
+pub(in crate::app) fn on_trace_prepared(state: &mut State, number: u64, prepared: Result<Prepared, String>, ms: f64) {
+    let Some(preparation) = state.traces.preparations.take(number) else { return };
+    let found = prepared.as_ref().ok();
+    let event = Event::Prepared {
+        generation: preparation.generation,
+        stage: found.map(|found| found.stage.as_str()),
+        file: found.map(|found| found.file.as_str()),
+        built: found.map_or(0, |found| found.built),
+        error: prepared.as_ref().err().map(String::as_str),
+        ms,
+    };
+    emit(&state.events, &event);
+}
+
 /// Asks for the values around the pixel, once the mouse rests on one of its values.
 fn ask_around(state: &mut State, engine: &mut Engine) {
     let Some(newest) = state.traces.lacks_around().filter(|_| state.workspace.sight.around) else { return };
     let place = (Some(newest.stage.clone()), Some(&newest.file));
     let request = request_of(state, engine, &newest.of.picture, newest.of.at, place);
     let number = engine.threads.tracer.trace_around(request);
+    state.traces.preparations.interrupt();
     state.traces.around.ask(&newest, number);
 }
 
@@ -202,7 +247,7 @@ pub(in crate::app) fn version_of(state: &State, engine: &Engine, number: u64) ->
 
 /// Takes the result of a trace.
 pub(in crate::app) fn on_traced(state: &mut State, number: u64, traced: Traced) {
-    let Traced { place, trace, ms } = traced;
+    let Traced { place, trace, built, ms } = traced;
     if !state.traces.take(number, place, trace) {
         return;
     }
@@ -216,6 +261,7 @@ pub(in crate::app) fn on_traced(state: &mut State, number: u64, traced: Traced) 
         file: newest.file.as_str(),
         equal: fragment.map(|(trace, fragment)| trace.is_proven(fragment)),
         error: newest.trace.as_ref().err().map(String::as_str),
+        built,
         ms,
     };
     emit(&state.events, &event);

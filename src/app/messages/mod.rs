@@ -19,7 +19,7 @@ use crate::app::actions::guests::on_guest_traced;
 use crate::app::actions::inspect::{on_curves, on_not_finite};
 use crate::app::actions::sessions::show_look;
 use crate::app::actions::texts::on_text_written;
-use crate::app::actions::trace::on_traced;
+use crate::app::actions::trace::{on_trace_prepared, on_traced};
 use crate::app::actions::trees::on_tree_found;
 use crate::app::actions::watch::watch_files;
 use crate::app::command::file::{OPEN, Open, all_chosen};
@@ -78,6 +78,7 @@ pub(in crate::app) fn on_message(state: &mut State, engine: &mut Engine, message
         Message::VersionTimed(number, result) => on_version_timed(state, number, result),
         Message::GuestTraced(number, traced) => on_guest_traced(state, number, *traced),
         Message::TracedBefore(number, before) => state.traces.take_before(number, before.map(|before| *before)),
+        Message::TracePrepared(number, prepared, ms) => on_trace_prepared(state, number, *prepared, ms),
         Message::TracedAround(number, around) => state.traces.around.take(number, *around),
         Message::TypedWritten(file, typed, written) => on_typed_written(state, file, typed, written),
         Message::TextWritten(number, written) => on_text_written(state, engine, number, written),

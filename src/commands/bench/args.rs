@@ -24,6 +24,9 @@ pub(super) enum What {
     /// CPU time of a frame of 10 to 100,000 primitives, of 10 to 10,000 materials, and of 10 to 10,000 joints; device time of 1 to 1,000 lights;
     /// upload time and memory of textures up to 4 GiB
     Scale,
+    /// Time from a click to the values of --file beside its code: the first click (cold), the compilation that the panel Source does before it
+    /// (prepare), the click after that (prepared), and the next one (warm)
+    Trace,
     /// Cost of each function of a stage: the frame with and without it, drawn in turn until the difference is significant
     Cost,
 }
@@ -60,6 +63,9 @@ pub struct Args {
     /// Stage of the picture for cost, as tonemap.frag [default: the one that draws the picture]
     #[arg(long, value_name = "STAGE")]
     pub(super) stage: Option<String>,
+    /// File of the tree whose values trace shows, as brdf/ndf.glsl [default: the stage that draws the mode]
+    #[arg(long, value_name = "FILE")]
+    pub(super) file: Option<String>,
     /// Measure this function alone for cost, as d_ggx or 'd_ggx(float, float, float)'; may be repeated
     #[arg(long, value_name = "NAME")]
     pub(super) function: Vec<String>,

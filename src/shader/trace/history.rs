@@ -97,13 +97,11 @@ impl Trace {
         }
     }
 
-    /// How the color of a fragment compares with the picture's, in words.
+    /// How the color of a fragment compares with the picture's, in words that begin with the result.
     pub fn proof_text(&self, fragment: usize) -> String {
         let compared = self.compared(fragment);
         match self.begins_anew {
-            true => {
-                format!("{compared}, if both begin without earlier frames; the ones on screen cannot be drawn again")
-            }
+            true => format!("not proven: earlier frames on screen cannot be drawn again. Without them, {compared}"),
             false => compared,
         }
     }
@@ -112,9 +110,9 @@ impl Trace {
         let with = self.target.name();
         if !self.has_color() {
             return match self.redrawn == self.picture {
-                true => "the picture is the same with the traced stage".to_owned(),
+                true => "equal picture with the traced stage".to_owned(),
                 false => format!(
-                    "with the traced stage, {with} differs by {} ulp: passes read earlier frames, or the driver computes in another order",
+                    "{} ulp from {with} with the traced stage: passes read earlier frames, or the driver computes in another order",
                     ulps(self.redrawn, self.picture)
                 ),
             };
@@ -136,16 +134,18 @@ impl Trace {
             Some(FragmentState::Shares) => "shares the pixel",
             _ => "hidden, or blended over",
         };
-        let all = match self.samples {
-            1 => "together".to_owned(),
-            samples => format!("whose {samples} samples together are"),
-        };
-        match self.together(fragment).map(|color| ulps(color, self.picture)) {
-            Some(0) => return format!("{is}, {all} equal to {with}"),
-            Some(ulp) if ulp <= MOST_ULP => {
-                return format!("{is}, {all} {ulp} ulp from {with}: the device rounds where it blends");
-            }
-            _ => {}
+        if let Some(ulp) = self.together(fragment).map(|color| ulps(color, self.picture)).filter(|ulp| *ulp <= MOST_ULP)
+        {
+            let by = if self.samples > 1 { format!(" by {} samples", self.samples) } else { String::new() };
+            let part = match self.state(fragment) {
+                // The samples tell.
+                Some(FragmentState::Shares) => String::new(),
+                _ => format!(", {is}"),
+            };
+            return match ulp {
+                0 => format!("equal to {with}{by}{part}"),
+                _ => format!("{ulp} ulp from {with}{by}{part}: the device rounds where it blends"),
+            };
         }
         if self.visible() != Some(fragment) {
             return is.to_owned();
@@ -230,20 +230,21 @@ mod tests {
         assert_eq!(states(&all), [Discarded, Blended, Blended, BlendedOver, Covered(3), Covered(3)]);
         assert_eq!(all.visible(), Some(1));
         let texts: Vec<String> = (0..6).map(|at| all.proof_text(at)).collect();
-        let together = "blended with what is behind it, together equal to the picture";
+        let together = "equal to the picture, blended with what is behind it";
         assert_eq!(texts[..2], ["discarded", together]);
-        assert_eq!(texts[3..5], ["blended over, together equal to the picture", "covered by fragment 3"]);
+        assert_eq!(texts[3..5], ["equal to the picture, blended over", "covered by fragment 3"]);
         assert!((1..4).all(|at| all.is_proven(at)) && !all.is_proven(4));
         assert_eq!(all.name_of(4), "Fragment 4: covered by 3, depth 0.4000");
         // What is on screen has earlier frames, too, so nothing is proven of it.
         let anew = Trace { begins_anew: true, ..all.clone() };
-        assert!(!anew.is_proven(1) && anew.proof_text(1).starts_with(&format!("{together}, if both begin")));
+        assert!(
+            !anew.is_proven(1)
+                && anew.proof_text(1).starts_with("not proven: ")
+                && anew.proof_text(1).ends_with(together)
+        );
         // Another device rounds.
         let other = of(&[(0.8, half), (0.5, red)], [0.5 + f32::EPSILON, 0.5, 0.0, 1.0]);
-        assert_eq!(
-            other.proof_text(1),
-            "blended over, together 2 ulp from the picture: the device rounds where it blends"
-        );
+        assert_eq!(other.proof_text(1), "2 ulp from the picture, blended over: the device rounds where it blends");
         // Nothing is known of the picture behind all of them.
         let none = of(&[(0.8, half), (0.5, half)], [0.1, 0.75, 0.9, 1.0]);
         assert_eq!((states(&none), none.is_proven(0)), (vec![Blended, Blended], false));

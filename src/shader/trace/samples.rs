@@ -134,7 +134,7 @@ mod tests {
             (edge.visible(), edge.is_proven(0), edge.is_proven(1), edge.is_proven(2)),
             (Some(1), true, true, false)
         );
-        assert_eq!(edge.proof_text(1), "shares the pixel, whose 4 samples together are equal to the picture");
+        assert_eq!(edge.proof_text(1), "equal to the picture by 4 samples");
         let texts = [edge.coverage_text(0), edge.coverage_text(1)];
         assert_eq!(texts, ["covers sample 0 of 4 · primitive 1,234", "covers all 4 samples · primitive 1,234"]);
         assert_eq!(of(&[(0.9, 0b0101, RED)], RED).coverage_text(0), "covers samples 0, 2 of 4 · primitive 1,234");

@@ -33,3 +33,16 @@ fn bench_scale_prints_the_growth_from_step_to_step() {
     let reason = textures[1]["skipped"].as_str().unwrap();
     assert!(reason.contains("out of graphics memory") && reason.contains("MiB"), "{reason}");
 }
+
+#[test]
+fn bench_trace_tells_what_a_click_costs_with_and_without_preparation() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["bench", "trace", "shader-ball", "--samples", "1", "--size", "96x64", "--env", "none", "--file"];
+    let run = |more: &[&str]| finish(specula(folder.path()).args(args).args(more));
+    let told = run(&["brdf/ndf.glsl", "--json"]).expect(0, &[]).json();
+    assert_eq!((&told["file"], &told["mode"]), (&"brdf/ndf.glsl".into(), &"final".into()), "{told}");
+    let least = |name: &str| told[name]["min"].as_f64().unwrap_or_else(|| panic!("{told}"));
+    assert!(least("cold_ms") > least("prepared_ms"), "what was prepared is compiled again: {told}");
+    assert!(least("prepare_ms") > least("warm_ms") && least("warm_ms") > 0.0, "{told}");
+    run(&["brdf/ndff.glsl"]).expect(2, &["no statement of brdf/ndff.glsl is in the stage"]);
+}

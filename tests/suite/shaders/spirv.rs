@@ -12,7 +12,7 @@ use specula::shader::spirv::loops::Bounds;
 use specula::shader::spirv::{behavior_hash, finish, specialize, specialize_several, validate};
 use specula::shader::{Change, Library, ShaderSet, Source, Stage, StageKind, Update};
 
-use crate::support::{compiler, is_long, lines};
+use crate::support::{Tree, compiler, is_long, lines};
 
 /// How many modes share a stage (thumbnails).
 const SEVERAL: usize = 8;
@@ -117,4 +117,31 @@ fn stages_of_examples_are_valid() {
         assert!(!own.is_empty(), "{name}");
         own.par_iter().for_each(|stage| assert_finished(stage, specialize(&stage.spirv, &[]), name));
     }
+}
+
+/// Without checks, assertions and prints leave no word in what a driver gets of any stage.
+#[test]
+fn assertions_that_are_off_cost_nothing() {
+    const HOOK: &str = "void user_surface(inout Surface s, Fragment f, vec3 v) {";
+    let bounds = Bounds { rounds: 1 << 18, rounds_after: 256, report: None, mark: None };
+    let of_driver = |stage: &Stage| finish(specialize(&stage.spirv, &[]), &stage.spirv, &bounds, false).words;
+    let stages = |more: &str| {
+        let tree = Tree::new();
+        tree.write("user.glsl", &tree.edited("user.glsl", HOOK, &format!("{HOOK}\n{more}")));
+        set(Source::disk(tree.root()))
+    };
+    let plain = stages("");
+    let checked = stages(
+        "    assert(s.roughness >= 0.0 && s.metallic <= 1.0, \"a material\");\n    assert(s.roughness < 2.0);\n    \
+         print(\"roughness\", s.roughness);",
+    );
+    let differs = |(path, stage): &(&String, &Arc<Stage>)| checked.stages[*path].spirv != stage.spirv;
+    let differing: Vec<_> = plain.stages.iter().filter(differs).collect();
+    assert!(differing.iter().any(|(path, _)| *path == "pbr.frag"), "checks have nothing to find");
+    differing.into_par_iter().for_each(|(path, stage)| {
+        let [without, with] = [stage, &checked.stages[path]].map(|stage| of_driver(stage).len());
+        assert_eq!(with, without, "words of {path} with assertions and without");
+    });
+    let other = of_driver(&stages("    s.roughness += 0.001 * s.metallic;").stages["pbr.frag"]).len();
+    assert_ne!(other, of_driver(&plain.stages["pbr.frag"]).len(), "a statement would be seen");
 }

@@ -150,6 +150,15 @@ impl Viewer {
         viewer
     }
 
+    /// [`Self::driven`] with the lines on stderr that developers read.
+    pub fn driven_with_log(tree: Tree, more: &[&str]) -> Self {
+        dismiss_hint(&tree);
+        let mut viewer = Self::spawn(tree, more, &[("SPECULA_LOG", "debug")], Stdio::piped());
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// A window whose picture no option chooses: what `specula` without a model shows, in the folder of the tree.
     pub fn plain(tree: Tree, more: &[&str]) -> Self {
         dismiss_hint(&tree);

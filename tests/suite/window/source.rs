@@ -302,3 +302,142 @@ fn a_click_traces_the_moment_of_the_picture() {
     assert!(!found.contains("opened/"), "{found}");
     viewer.quit();
 }
+
+/// What a click needs is compiled before it: after the panel has opened, after a save, and for another file. A pinned pixel is traced at once.
+#[test]
+fn a_click_finds_what_was_compiled_before_a_pixel_was_pinned() {
+    let mut viewer = Viewer::driven(Tree::new(), &["--size", "900x700", "shader-ball"]);
+    viewer.running.event("ready");
+    let ask = |file: &str| json!({ "command": "source", "file": file });
+    viewer.running.refused(ask(NDF));
+    let prepared = viewer.running.event("prepared");
+    assert_eq!((&prepared["stage"], &prepared["file"]), (&"pbr.frag".into(), &NDF.into()), "{prepared}");
+    assert!(prepared["error"].is_null() && prepared["built"].as_u64().unwrap() > 0, "{prepared}");
+    let edit = viewer.tree.edited(NDF, "float a2 = alpha * alpha;", "float a2 = 0.5 * alpha * alpha;");
+    viewer.tree.write(NDF, &edit);
+    viewer.running.reload(true);
+    let is_edit = |event: &Value| event["event"] == "prepared" && event["generation"] == 2;
+    let prepared = viewer.running.until("the preparation of the edit", is_edit);
+    assert!(prepared["built"].as_u64().unwrap() > 0, "{prepared}");
+
+    let (width, height) = viewer.screenshot().dimensions();
+    viewer.running.say(&json!({ "command": "source", "at": [width / 2, height / 2] }).to_string());
+    let traced = viewer.running.event("traced");
+    assert_eq!((&traced["generation"], &traced["equal"]), (&2.into(), &true.into()), "{traced}");
+    assert_eq!(traced["built"], 0, "the click compiles what was prepared: {traced}");
+    // Another file is compiled for the pinned pixel.
+    viewer.running.say(&ask("brdf/visibility.glsl").to_string());
+    let traced = viewer.running.event("traced");
+    assert_eq!((&traced["file"], &traced["equal"]), (&"brdf/visibility.glsl".into(), &true.into()), "{traced}");
+    assert!(traced["built"].as_u64().unwrap() > 0, "{traced}");
+    viewer.quit();
+}
+
+/// While the panel is closed, a pinned pixel and saves compile and draw nothing for traces.
+#[test]
+fn a_closed_panel_compiles_and_traces_nothing() {
+    let mut viewer = Viewer::driven_with_log(Tree::new(), &["--size", "900x700", "shader-ball"]);
+    viewer.running.event("ready");
+    let (width, height) = viewer.screenshot().dimensions();
+    viewer.running.done(json!({ "command": "pick", "at": [width / 2, height / 2] }));
+    assert_eq!(viewer.running.done(json!({ "command": "pinned" }))["pixel"], json!([width / 2, height / 2]));
+    let mut edits = 0..;
+    let mut save = |viewer: &mut Viewer| {
+        let factor = 1.0 + 0.5 * f64::from(edits.next().unwrap_or_default());
+        let ndf = viewer.tree.read(NDF).replacen("float a2 = ", &format!("float a2 = {factor:?} * "), 1);
+        viewer.tree.write(NDF, &ndf);
+        let reload = viewer.running.reload(true);
+        viewer.running.settled(&reload);
+    };
+    save(&mut viewer);
+    save(&mut viewer);
+    viewer.rests();
+    let with_log = |viewer: &Viewer| viewer.running.stderr().matches("compiled with a log").count();
+    assert_eq!(with_log(&viewer), 0, "a closed panel compiles");
+    // The same edit with the panel open: the line is one that is told.
+    viewer.running.done(json!({ "command": "source", "file": NDF }));
+    let open = with_log(&viewer);
+    assert!(open > 0);
+    // Closed again, saves cost nothing once more.
+    viewer.key("h");
+    viewer.rests();
+    let closed = with_log(&viewer);
+    save(&mut viewer);
+    viewer.rests();
+    assert_eq!(with_log(&viewer), closed, "a panel that was closed compiles");
+    viewer.quit();
+}
+
+/// The trace of the text before takes longer than the save: its values never stand beside the new one. Functions that nothing calls have none.
+#[test]
+fn a_save_during_a_trace_shows_the_values_of_the_new_text() {
+    let args = ["--size", "900x700", "shader-ball"];
+    let mut viewer = Viewer::driven_with_fault(Tree::new(), &args, "trace-delay-ms:4000");
+    viewer.running.event("ready");
+    viewer.running.refused(json!({ "command": "source", "file": NDF }));
+    let (width, height) = viewer.screenshot().dimensions();
+    viewer.running.say(&json!({ "command": "source", "file": NDF, "at": [width / 2, height / 2] }).to_string());
+    let uncalled = "float never_called(float x) {\n    float y = 3.0 * x;\n    return y;\n}\n";
+    let edit = viewer.tree.edited(NDF, "float a2 = alpha * alpha;", "float a2 = 4.0 * alpha * alpha;");
+    let begin = line_of(&edit, "float d_ggx(");
+    let edit = edit.replacen("float d_ggx(", &format!("{uncalled}float d_ggx("), 1);
+    viewer.tree.write(NDF, &edit);
+    viewer.running.reload(true);
+    // Whatever comes after the picture is of its text.
+    let traced = viewer.running.event("traced");
+    assert_eq!((&traced["generation"], &traced["equal"]), (&2.into(), &true.into()), "{traced}");
+    let found = viewer.running.done(json!({ "command": "source" }));
+    let lines = found["lines"].as_array().unwrap();
+    let place = line_of(&edit, "float a2 = 4.0 * alpha * alpha;");
+    let line = lines.iter().find(|line| line["line"] == place).unwrap_or_else(|| panic!("{found}"));
+    assert_eq!(line["done"][0]["name"], "a2", "{found}");
+    let is_uncalled = |line: &Value| (begin..begin + 4).any(|number| *line == number);
+    assert!(!lines.iter().any(|line| is_uncalled(&line["line"])), "{found}");
+    let not_reached = found["not_reached"].as_object().unwrap().values().flat_map(|of| of.as_array().unwrap());
+    assert!(!not_reached.into_iter().any(is_uncalled), "nothing says that it could be reached: {found}");
+    let changed = found["changed"].as_array().unwrap();
+    assert!(changed.iter().any(|change| change["line"] == place && change["name"] == "a2"), "{changed:?}");
+    viewer.quit();
+}
+
+/// The next process shows the picture again, and traces nothing before an edit.
+#[test]
+fn a_device_that_is_lost_in_a_trace_is_lost_once() {
+    let args = ["--size", "900x700", "shader-ball"];
+    let mut viewer = Viewer::driven_with_fault(Tree::new(), &args, "trace-loss:1");
+    viewer.running.event("ready");
+    let before = viewer.screenshot();
+    let (width, height) = before.dimensions();
+    viewer.running.say(&json!({ "command": "source", "file": NDF, "at": [width / 4, height / 2] }).to_string());
+    let event = viewer.restarted();
+    assert!(event["cause"].as_str().unwrap().contains("device was lost"), "{event}");
+    viewer.running.event("ready");
+    let refused = viewer.running.refused(json!({ "command": "source", "file": NDF }));
+    assert!(refused.contains("after a lost device, nothing is traced until an edit has been drawn"), "{refused}");
+    let after = viewer.screenshot();
+    assert!(after.pixels().any(|pixel| *pixel != *after.get_pixel(0, 0)), "there is no picture");
+    viewer.quit();
+}
+
+/// The camera is the user's, so a narrower picture does not show the pinned surface any more.
+#[test]
+fn a_pin_that_is_outside_after_a_resize_is_taken_away() {
+    let view = ["--size", "1000x700", "sphere-grid", "--eye", "0,0,2.5", "--target", "0,0,0"];
+    let mut viewer = Viewer::driven(Tree::new(), &view);
+    viewer.running.event("ready");
+    viewer.running.refused(json!({ "command": "source", "file": NDF }));
+    let (width, height) = viewer.screenshot().dimensions();
+    let columns = (0..width).rev().step_by(4);
+    let at = columns.flat_map(|x| (0..height).step_by(20).map(move |y| [x, y])).find(|at| {
+        let values = viewer.running.done(json!({ "command": "probe", "at": at, "modes": ["position"] }));
+        values["modes"]["position"].as_array().is_some_and(|position| position[0].as_f64().is_some_and(|x| x != 0.0))
+    });
+    let at = at.expect("a surface at the right edge");
+    viewer.running.done(json!({ "command": "source", "at": at }));
+    viewer.resize(620, 700);
+    viewer.running.until_stderr("The picture no longer shows the pinned place, so it was unpinned");
+    assert_eq!(viewer.running.done(json!({ "command": "pinned" }))["pixel"], Value::Null);
+    let refused = viewer.running.refused(json!({ "command": "source" }));
+    assert!(refused.contains("no pixel is pinned"), "{refused}");
+    viewer.quit();
+}

@@ -53,8 +53,10 @@ pub(super) fn show(
         if let Some(draft) = &state.edits.draft {
             show_draft(ui, state, draft, true, &mut commands.list);
         }
+        // The choices leave too little room in their row.
+        let is_unsaved = model.path().is_some_and(|path| editor.is_unsaved(path));
+        progress(ui, state, newest.map(|newest| &**newest), is_unsaved);
     });
-    let is_unsaved = model.path().is_some_and(|path| editor.is_unsaved(path));
     ui.horizontal(|ui| {
         pixel(ui, state, commands);
         let trace = newest.and_then(|newest| newest.trace.as_ref().ok());
@@ -62,7 +64,6 @@ pub(super) fn show(
             choices::show(ui, &state.traces.choice, (trace, &model.offers), fragment, commands);
         }
         changes(ui, state, model, scroll);
-        progress(ui, state, newest.map(|newest| &**newest), is_unsaved);
     });
     ui.add_space(2.0);
 }
@@ -216,7 +217,7 @@ fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
     }
     let Some(first) = model.first_change() else {
         let text = "no value differs from the version before";
-        return drop(ui.label(RichText::new(text).small().color(QUIET)));
+        return drop(ui.add(Label::new(RichText::new(text).small().color(QUIET)).truncate()));
     };
     let line = &model.lines[first].row;
     let text = format!("first change: line {}, {} in all", line.line, model.changes());

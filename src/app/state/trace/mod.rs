@@ -4,6 +4,7 @@
 pub(in crate::app) mod around;
 pub(in crate::app) mod choice;
 mod pixel_trace;
+pub(in crate::app) mod preparation;
 pub(in crate::app) mod rounds;
 pub(in crate::app) mod rows;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use crate::threads::TracedPlace;
 use around::Around;
 use choice::Choice;
 pub(in crate::app) use pixel_trace::PixelTrace;
+use preparation::Preparations;
 use rows::{Row, Sources, rows};
 use saved::{SavedText, WrittenText};
 use subject::Subject;
@@ -93,6 +95,7 @@ pub(in crate::app) struct Traces {
     /// Whether the thread has still to answer about the version before.
     awaits_before: bool,
     pub(in crate::app) around: Around,
+    pub(in crate::app) preparations: Preparations,
 }
 
 impl Traces {
@@ -149,6 +152,7 @@ impl Traces {
     pub(in crate::app) fn ask(&mut self, subject: Subject, number: u64, with_before: bool) {
         (self.asked, self.number, self.is_awaited) = (Some(subject), number, true);
         self.awaits_before = with_before;
+        self.preparations.interrupt();
         self.progress = Progress::UnderWay(number);
     }
 
@@ -181,6 +185,8 @@ impl Traces {
     /// Notes that the panel was out of sight in a frame.
     pub(in crate::app) fn unseen(&mut self) {
         (self.asked, self.progress) = (None, Progress::Unseen);
+        (self.is_awaited, self.awaits_before) = (false, false);
+        self.preparations.forget();
         self.unseen = self.unseen.saturating_add(1);
     }
 
@@ -267,6 +273,12 @@ impl Traces {
     pub(in crate::app) fn lacks_around(&self) -> Option<Arc<PixelTrace>> {
         let newest = self.newest.as_ref().filter(|newest| newest.trace.is_ok() && self.around.lacks(newest))?;
         (self.progress == Progress::Done && !self.awaits_before).then(|| newest.clone())
+    }
+
+    /// Whether the thread works on a trace of this panel.
+    pub(in crate::app) fn is_under_way(&self) -> bool {
+        let awaits_around = |newest: &Arc<PixelTrace>| !self.around.lacks(newest) && self.around.of(newest).is_none();
+        self.is_awaited || self.awaits_before || self.newest.as_ref().is_some_and(awaits_around)
     }
 
     /// The fragment whose statements are shown.

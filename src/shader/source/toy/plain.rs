@@ -1,6 +1,8 @@
 //! The text of an opened file with words that WebGL has as names, macros that stand for `uniform`, and arrays of samplers replaced by what
 //! the rest of this module knows. Each line keeps its number, and all but those with such a macro their columns.
 
+use std::ops::Range;
+
 use super::initial::{Edit, apply, blank};
 use crate::shader::glsl::syntax::closing;
 use crate::shader::glsl::{Token, TokenKind, find_word, tokens};
@@ -62,7 +64,7 @@ fn single_samplers(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
         if is(at + 1, "[") {
             let Some(close) = closing(all, at + 1).filter(|close| is_name(close + 1)) else { continue };
             edits.extend(brackets(at + 1));
-            names.push(all[close + 1].text);
+            names.push(close + 1);
             continue;
         }
         // Each name up to the end of the declaration may be an array.
@@ -70,7 +72,7 @@ fn single_samplers(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
         while is_name(name) {
             let end = if is(name + 1, "[") { closing(all, name + 1).map(|close| close + 1) } else { Some(name + 1) };
             if is(name + 1, "[") {
-                names.push(all[name].text);
+                names.push(name);
             }
             match end.filter(|end| is(*end, ",")) {
                 Some(comma) => name = comma + 1,
@@ -78,9 +80,39 @@ fn single_samplers(text: &str, all: &[Token<'_>]) -> Vec<Edit> {
             }
         }
     }
-    let uses = (1..all.len()).filter(|at| is(*at, "[") && names.contains(&all[at - 1].text));
+    let is_type = |at: usize| {
+        is_name(at) && !matches!(all[at].text, "return" | "else" | "case") && !all[at].text.contains("sampler")
+    };
+    let others = (1..all.len()).filter(|at| is_name(*at) && is(at + 1, "[") && is_type(at - 1));
+    // An array of numbers may have the same name where the samplers are not seen, or in place of them.
+    let declared = names.iter().map(|name| (*name, true)).chain(others.map(|name| (name, false)));
+    let declared: Vec<(Range<usize>, bool)> =
+        declared.map(|(name, is_sampler)| (name..scope_end(all, name), is_sampler)).collect();
+    let is_sampler = |at: usize| {
+        let seen = declared.iter().filter(|(scope, _)| scope.contains(&at) && all[scope.start].text == all[at].text);
+        seen.max_by_key(|(scope, _)| scope.start).is_some_and(|(_, is_sampler)| *is_sampler)
+    };
+    let uses = (1..all.len()).filter(|at| is(*at, "[") && is_sampler(at - 1));
     edits.extend(uses.filter_map(brackets));
     edits.into_iter().map(|bytes| blank(text, bytes)).collect()
+}
+
+/// Where the scope of a name ends: that of a parameter with the function, another one with the block around it.
+fn scope_end(all: &[Token<'_>], name: usize) -> usize {
+    let (mut parentheses, mut braces, mut is_parameter) = (0, 0, false);
+    for (at, token) in all.iter().enumerate().skip(name) {
+        match token.text {
+            "(" => parentheses += 1,
+            ")" if parentheses == 0 => is_parameter = true,
+            ")" => parentheses -= 1,
+            ";" if is_parameter && braces == 0 => return at,
+            "{" => braces += 1,
+            "}" if braces == 0 || is_parameter && braces == 1 => return at,
+            "}" => braces -= 1,
+            _ => {}
+        }
+    }
+    all.len()
 }
 
 /// `uniform` in place of the macros that stand for it alone.
@@ -131,6 +163,16 @@ mod tests {
                         vec4 f(sampler2D d , float y) { return texture(d , p) + texture(a , p) + c ; }";
         assert_eq!(squeezed, expected);
         assert_eq!(found.lines().count(), text.lines().count());
+    }
+
+    #[test]
+    fn an_array_of_numbers_keeps_its_brackets_beside_samplers_of_the_same_name() {
+        let text = "vec4 f(sampler2D d[2]) { return texture(d[0], p); }\nfloat g(float d[2]) { return d[1]; }\n\
+                    uniform sampler2D a[2];\nfloat h() { { float a[3]; a[2] = 1.0; } return texture(a[1], p).x; }\n";
+        let squeezed = plain(text).split_whitespace().collect::<Vec<_>>().join(" ");
+        let expected = "vec4 f(sampler2D d ) { return texture(d , p); } float g(float d[2]) { return d[1]; } \
+                        uniform sampler2D a ; float h() { { float a[3]; a[2] = 1.0; } return texture(a , p).x; }";
+        assert_eq!(squeezed, expected);
     }
 
     #[test]

@@ -65,8 +65,13 @@ fn reduce(optimizer: &mut Optimizer, function: &mut Function, with_private: bool
     // Values of parameters decide branches.
     tidy::fold(optimizer, function);
     tidy::drop_single_phis(optimizer, function);
-    dead::drop_unused(optimizer, function);
-    tidy::tidy(&mut optimizer.module, function);
+    loop {
+        dead::drop_unused(optimizer, function);
+        // What a selection without content depended on is unused, too.
+        if !tidy::tidy(&mut optimizer.module, function) {
+            return;
+        }
+    }
 }
 
 #[cfg(test)]

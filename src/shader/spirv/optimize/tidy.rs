@@ -33,15 +33,17 @@ pub(super) fn drop_single_phis(optimizer: &mut Optimizer, function: &mut Functio
     }
 }
 
-/// Removes selections that select nothing, and joins blocks that follow each other.
-pub(super) fn tidy(module: &mut Module, function: &mut Function) {
+/// Removes selections that select nothing, and joins blocks that follow each other. Returns whether there were such selections.
+pub(super) fn tidy(module: &mut Module, function: &mut Function) -> bool {
+    let mut has_dropped = false;
     loop {
         let is_changed = drop_single_cases(module, function) | drop_empty_selections(module, function);
         if is_changed {
             drop_unreached(module, function, &mut HashSet::new());
         }
+        has_dropped |= is_changed;
         if !(is_changed | join_blocks(module, function)) {
-            return;
+            return has_dropped;
         }
     }
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::client::{Client, Opened, uri};
 use crate::support::Tree;
-use crate::support::process::run;
+use crate::support::process::{run, specula};
 use crate::support::window::Viewer;
 
 const NDF: &str = "brdf/ndf.glsl";
@@ -151,6 +151,31 @@ fn hints_follow_the_pixel_that_is_pinned_in_a_window() {
     command(json!({ "command": "pick" }));
     opened.client.until("no hints", refreshed);
     assert!(hints(&mut opened).is_empty());
+    opened.client.quit();
+    viewer.quit();
+}
+
+/// Without `--socket`, the server looks for windows of its tree where they listen.
+#[test]
+fn hints_follow_a_window_that_nobody_has_named() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid", "--socket", "unnamed"]);
+    viewer.running.event("ready");
+    let (path, text) = (viewer.tree.path(NDF), viewer.tree.read(NDF));
+    let mut command = specula(&viewer.tree.root());
+    command.env("XDG_RUNTIME_DIR", viewer.tree.beside("runtime"));
+    let client = Client::start_as(command, &viewer.tree.root(), &[]);
+    let mut opened = Opened { tree: Tree::new(), client, path: path.clone(), text: text.clone() };
+    opened.client.open(&path, &text);
+    assert!(hints(&mut opened).is_empty(), "no pixel is pinned in the window");
+    let center = viewer.running.done(json!({ "command": "capture" }));
+    let at = [&center["width"], &center["height"]].map(|side| side.as_u64().unwrap() / 2);
+    viewer.running.done(json!({ "command": "pick", "at": at }));
+    opened.client.until("hints of the window", |message| message["method"] == REFRESH);
+    let shown = hints(&mut opened);
+    let of_window = viewer.running.done(json!({ "command": "trace", "file": NDF }));
+    let lines: Vec<u64> =
+        of_window["lines"].as_array().unwrap().iter().map(|line| line["line"].as_u64().unwrap() - 1).collect();
+    assert!(shown.len() > 2 && shown.keys().copied().eq(lines), "{shown:?} {of_window}");
     opened.client.quit();
     viewer.quit();
 }

@@ -117,7 +117,7 @@ fn fragments_of_an_edge_have_their_samples_and_together_the_picture() {
         run(directory.path(), &[&["trace"], &view[..], &["--env", "none", "--validate"], more].concat())
     };
     let text = traced(&["--fragment", "0"]).expect(0, &[]).stdout.clone();
-    assert!(text.contains("shares the pixel, whose 4 samples together are "), "{text}");
+    assert!(text.contains("the picture by 4 samples"), "{text}");
     let line = text.lines().find(|line| line.starts_with("covers sample")).unwrap_or_else(|| panic!("{text}"));
     assert!(line.contains(" of 4 · primitive "), "{line}");
     let found = traced(&["--json"]).expect(0, &[]).json();
