@@ -271,10 +271,19 @@ impl OffscreenCapture {
         redraw: Redraw,
         more: impl FnOnce(&View, &mut crate::gpu::Encoder, &Arc<Image>) -> Result<T, GpuError>,
     ) -> Result<T, HeadlessError> {
-        if self.canceled.load(Ordering::Relaxed) {
-            return Err(HeadlessError::Canceled);
+        let go_on = || if self.canceled.load(Ordering::Relaxed) { Err(HeadlessError::Canceled) } else { Ok(()) };
+        let mut rest = redraw;
+        if let Some(rows) = self.own.rows_at_once(frame, redraw) {
+            loop {
+                go_on()?;
+                if !self.own.draw_part(frame, rows)? {
+                    break;
+                }
+            }
+            rest = Redraw::IfChanged;
         }
-        let result = self.own.draw(frame, redraw, more)?;
+        go_on()?;
+        let result = self.own.draw(frame, rest, more)?;
         match self.own.endless_loop() {
             Some(words) => Err(HeadlessError::Gpu(GpuError::EndlessLoop(words))),
             None => Ok(result),

@@ -91,7 +91,7 @@ impl Headless {
         let frames = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
         let mut readback = None;
         for _ in 0..frames {
-            self.offscreen.draw_parts(&frame, rows)?;
+            while self.offscreen.draw_part(&frame, rows)? {}
             readback = self.draw_frame(&frame, Redraw::IfChanged, View::read_back)?;
         }
         let readback = readback.ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))?;
@@ -184,7 +184,14 @@ impl Headless {
         redraw: Redraw,
         more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
     ) -> Result<T, HeadlessError> {
-        let result = self.offscreen.draw(frame, redraw, more)?;
+        let mut rest = redraw;
+        if let Some(rows) = self.offscreen.rows_at_once(frame, redraw) {
+            while self.offscreen.draw_part(frame, rows)? {
+                self.tell_endless_loop(self.offscreen.endless_loop())?;
+            }
+            rest = Redraw::IfChanged;
+        }
+        let result = self.offscreen.draw(frame, rest, more)?;
         self.tell_endless_loop(self.offscreen.endless_loop())?;
         Ok(result)
     }

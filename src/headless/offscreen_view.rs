@@ -13,7 +13,12 @@ pub struct OffscreenView {
     /// Its submissions, one at a time.
     pub frames: Frames,
     output: Option<Arc<Image>>,
+    is_software: bool,
 }
+
+/// Most pixels whose random paths a software device follows at once. A device that does not answer for long counts as lost, and it needs
+/// seconds for so many.
+const PATHS_AT_ONCE: u32 = 1 << 17;
 
 impl OffscreenView {
     /// Creates the view. Its targets come with the first frame.
@@ -21,7 +26,8 @@ impl OffscreenView {
     /// # Errors
     /// No memory left.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>) -> Result<Self, GpuError> {
-        Ok(Self { view: View::new(gpu, layouts, 1)?, frames: Frames::new(gpu, 1)?, output: None })
+        let is_software = gpu.info().kind == "cpu";
+        Ok(Self { view: View::new(gpu, layouts, 1)?, frames: Frames::new(gpu, 1)?, output: None, is_software })
     }
 
     /// Draws a frame, records `more`, and waits for both. Loops that did not end are told by [`Self::endless_loop`].
@@ -74,25 +80,34 @@ impl OffscreenView {
         Ok(waited?)
     }
 
-    /// Draws the model of the next picture of a frame in parts of so many rows, and waits for each.
+    /// In how many rows at once the model of a frame is drawn; `None` if it is drawn as a whole. A software device takes too long for the whole
+    /// of a large frame of random paths.
+    pub fn rows_at_once(&self, frame: &BoundFrame, redraw: Redraw) -> Option<u32> {
+        let (width, height) = frame.state.size;
+        let rows = (PATHS_AT_ONCE / width).max(1);
+        let has_parts = frame.state.pipelines.traces && redraw == Redraw::Always && frame.stands_alone();
+        (self.is_software && has_parts && rows < height).then_some(rows)
+    }
+
+    /// Draws the next part of so many rows of the model of the next picture of a frame, and waits for it. Returns whether there are more.
     ///
     /// # Errors
     /// A device error.
-    pub fn draw_parts(&mut self, frame: &BoundFrame, rows: u32) -> Result<(), HeadlessError> {
+    pub fn draw_part(&mut self, frame: &BoundFrame, rows: u32) -> Result<bool, HeadlessError> {
         self.view.prepare(frame)?;
-        while self.view.rows_in_parts(frame) < frame.state.size.1 {
-            let mut encoder = self.frames.begin()?;
-            let slot = self.frames.current();
-            let drawn = self.view.draw_part(&mut encoder, slot, frame, (0, 0), rows);
-            let drawn = drawn.and_then(|()| self.frames.submit(encoder, Default::default()));
-            if drawn.is_err() {
-                self.view.forget();
-            }
-            drawn?;
-            // SYNC: the next part uses the same slot.
-            self.frames.wait()?;
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        let drawn = self.view.draw_part(&mut encoder, slot, frame, (0, 0), rows);
+        let drawn = drawn.and_then(|()| self.frames.submit(encoder, Default::default()));
+        if drawn.is_err() {
+            self.view.forget();
         }
-        Ok(())
+        drawn?;
+        // SYNC: the next part uses the same slot.
+        self.frames.wait()?;
+        // None, if there is no next picture.
+        let rows = self.view.rows_in_parts(frame);
+        Ok(rows > 0 && rows < frame.state.size.1)
     }
 
     /// The words of a loop of the last frame that did not end.

@@ -1,6 +1,6 @@
 //! Lines of the client, and lines to it.
 
-use std::io::{BufRead, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -44,7 +44,8 @@ fn skip(begun: &[u8], input: &mut impl BufRead) -> Value {
         #[serde(default)]
         id: Value,
     }
-    let mut line = begun.chain(RestOfLine { input, ended: false });
+    // A parser reads single bytes.
+    let mut line = BufReader::new(begun.chain(RestOfLine { input, ended: false }));
     let id = Message::deserialize(&mut serde_json::Deserializer::from_reader(&mut line)).map(|message| message.id);
     let _ = std::io::copy(&mut line, &mut std::io::sink());
     id.ok().filter(|id| id.is_number() || id.is_string()).unwrap_or_default()
@@ -62,10 +63,11 @@ impl<R: BufRead> Read for RestOfLine<'_, R> {
             return Ok(0);
         }
         let bytes = self.input.fill_buf()?;
-        let line = bytes.iter().position(|byte| *byte == b'\n');
-        let count = line.unwrap_or(bytes.len()).min(buffer.len());
+        let bytes = &bytes[..bytes.len().min(buffer.len())];
+        let end = bytes.iter().position(|byte| *byte == b'\n');
+        let count = end.unwrap_or(bytes.len());
         buffer[..count].copy_from_slice(&bytes[..count]);
-        self.ended = line == Some(count);
+        self.ended = end.is_some();
         self.input.consume(count + usize::from(self.ended));
         Ok(count)
     }

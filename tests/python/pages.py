@@ -46,8 +46,7 @@ def manual():
         with contextlib.redirect_stdout(printed):
             exec(code[2], names)
         (expected,) = blocks("assets/manual/python.md", "text")
-        # The built-in shaders have no folder.
-        assert printed.getvalue().replace("embedded:", "").startswith(expected), printed.getvalue()
+        assert printed.getvalue().strip() == expected.strip(), printed.getvalue()
 
 
 readme()

@@ -35,3 +35,14 @@ fn parts_make_the_same_picture_as_one_draw() {
     }
     assert_validated();
 }
+
+/// Commands draw it in parts by themselves, since a software device would not answer in time for the whole.
+#[test]
+fn a_large_picture_of_random_paths_is_the_same_in_parts() {
+    let mut session =
+        Session::new(model(&glb::gray()), settings(&["mode=path-traced", "view.frames=1", "view.msaa=1"]));
+    session.headless.set_size((640, 240)).unwrap();
+    let picture = session.render();
+    assert_same(&picture, &session.headless.render_in_parts(1000).unwrap(), "in parts and at once");
+    assert_validated();
+}

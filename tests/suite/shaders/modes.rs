@@ -140,7 +140,8 @@ fn every_mode_shows_data_of_the_shader_ball() {
     let elsewhere: Vec<&str> = ELSEWHERE.iter().flat_map(|(_, _, slugs)| *slugs).copied().chain(MEASURED).collect();
     let mut headless = sharp(model("shader-ball"), &[]);
     // Images of the depth of field have blur in alpha, not coverage, and those of lights a number of a matrix. Nothing moves here.
-    let is_other = |slug: &str| slug.starts_with("pass:dof_") || slug == "pass:velocity" || slug == "pass:light_views";
+    let others = ["pass:velocity", "pass:own_motion", "pass:light_views"];
+    let is_other = |slug: &str| slug.starts_with("pass:dof_") || others.contains(&slug);
     let all = slugs(&headless);
     let own: Vec<&str> =
         all.iter().map(String::as_str).filter(|slug| !elsewhere.contains(slug) && !is_other(slug)).collect();

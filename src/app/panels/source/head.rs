@@ -178,6 +178,9 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
     if is_unsaved {
         return quiet(ui, "values of the saved text");
     }
+    if state.has_errors() && state.traces.progress == Progress::Done && newest.is_some() {
+        return quiet(ui, "values of the last version that compiled");
+    }
     match (state.traces.progress, newest) {
         // Nothing that moves: frames of a software device would hold the trace up.
         (Progress::UnderWay(_), _) => quiet(ui, "Tracing…"),

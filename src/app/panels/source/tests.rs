@@ -245,3 +245,33 @@ fn values_of_the_version_before_are_dim() {
     harness.run();
     assert_eq!(color(&harness), theme::QUIET.color());
 }
+
+/// Nobody sees that a value is missing where the others end.
+#[test]
+fn values_without_room_are_counted() {
+    let many: Vec<Event> = (0..40).map(|index| event(3, Act::Store, &format!("v{index}"), &[index as f32])).collect();
+    let mut harness = window(TEXT, many, &[3]);
+    harness.run();
+    let shown = (0..40).filter(|index| harness.query_by_label(&format!("v{index} = {index}")).is_some()).count();
+    assert!((1..39).contains(&shown), "{shown} of 40 are shown");
+    let rest: Vec<String> = (shown..40).map(|index| format!("v{index} = {index}")).collect();
+    harness.get_by_label(&rest.join("\n"));
+}
+
+#[test]
+fn with_an_error_the_values_are_of_the_last_version_that_compiled() {
+    const WORDS: &str = "values of the last version that compiled";
+    let mut harness = window(TEXT, events(2.0), &[2, 3, 4, 6]);
+    harness.run();
+    assert!(harness.query_by_label(WORDS).is_none());
+    harness.state_mut().state.session.diagnostics = vec![Diagnostic::error("a.glsl", "an error")];
+    harness.run();
+    harness.get_by_label(WORDS);
+    assert!(
+        harness.query_by_label_contains("equal to the picture").is_none(),
+        "a proof stands beside a text that it is not of"
+    );
+    harness.state_mut().state.session.diagnostics.clear();
+    harness.run();
+    assert!(harness.query_by_label(WORDS).is_none());
+}

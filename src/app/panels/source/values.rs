@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Color32, CursorIcon, Galley, Rect, Sense, Ui, pos2, vec2};
+use egui::{Color32, CursorIcon, Galley, Rect, RichText, Sense, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
 use super::bar;
 use super::hover;
@@ -30,6 +30,8 @@ const LEAST: f32 = 3.0 * GAP;
 /// The values of a line as they are laid out.
 pub(super) struct Values<'a> {
     laid_out: Vec<(&'a Note, Arc<Galley>, Option<TracedValue>)>,
+    /// Those for which there is no room, and their mark.
+    left_out: Option<(&'a [Note], Arc<Galley>)>,
     /// Where they begin; infinite without values.
     pub(super) start: f32,
 }
@@ -60,8 +62,15 @@ impl<'a> Values<'a> {
             total += gap + of_bar + galley.size().x;
             laid_out.push((note, galley, bar));
         }
-        let start = if laid_out.is_empty() { f32::INFINITY } else { right - total };
-        Self { laid_out, start }
+        let rest = line.row.notes.get(laid_out.len()..).filter(|rest| !rest.is_empty());
+        let left_out = rest.map(|rest| {
+            let text = format!("+{}", rest.len());
+            let galley = ui.painter().layout_no_wrap(text, small_mono_font(), QUIET.color());
+            total += galley.size().x + if laid_out.is_empty() { 0.0 } else { GAP };
+            (rest, galley)
+        });
+        let start = if line.row.notes.is_empty() { f32::INFINITY } else { right - total };
+        Self { laid_out, left_out, start }
     }
 
     /// Shows them.
@@ -99,6 +108,13 @@ impl<'a> Values<'a> {
             response.on_hover_ui(|ui| hover::show(ui, state, (path, line), note, expression.as_deref()));
             x += size.x + GAP;
         }
+        let Some((rest, mark)) = self.left_out else { return };
+        let area = Rect::from_x_y_ranges(x..=x + mark.size().x, sight.y_range());
+        let response = ui.interact(area, ui.id().with(("left out", line.row.line)), Sense::hover());
+        ui.painter().galley(pos2(x, sight.center().y - mark.size().y / 2.0), mark, QUIET.color());
+        let all = rest.iter().map(Note::text).collect::<Vec<_>>().join("\n");
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &all));
+        response.on_hover_text(RichText::new(all).monospace().small());
     }
 }
 
@@ -112,8 +128,11 @@ fn expression(note: &Note) -> Option<String> {
     }
 }
 
-/// Whether the values are of a version before the shaders in use, which is being traced.
+/// Whether the values are of a version before the text: of one before the shaders in use, which is being traced, or of the last one that compiled.
 pub(super) fn are_old(state: &State) -> bool {
+    if state.has_errors() {
+        return true;
+    }
     let traced = state.traces.newest().map(|newest| newest.of.picture.shaders.generation);
     let is_done = state.traces.progress == Progress::Done;
     !is_done && state.session.shaders.as_ref().is_some_and(|now| traced.is_some_and(|traced| traced != now.generation))
