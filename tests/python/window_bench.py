@@ -16,6 +16,8 @@ import time
 
 SIZE = (1280, 720)
 DRAGS, SAVES = 5, 8
+# Between two movements, seconds
+PAUSE_S = 0.016
 LINE = "float a2 = alpha * alpha;"
 
 
@@ -60,10 +62,12 @@ class Window:
         """Turns the model by the mouse, and returns the event of the previews."""
         x, y = 600, 330
         self.mouse("mousemove", x, y, "mousedown", 1)
-        start = time.perf_counter()
-        while (passed := time.perf_counter() - start) < seconds:
-            self.mouse("mousemove", int(x + 80 * math.sin(2 * passed)), int(y + 30 * math.sin(3 * passed)))
-            time.sleep(0.008)
+        steps = []
+        for step in range(int(seconds / PAUSE_S)):
+            at = step * PAUSE_S
+            steps += ["mousemove", int(x + 80 * math.sin(2 * at)), int(y + 30 * math.sin(3 * at)), "sleep", PAUSE_S]
+        # One process: a process for each movement would take the time of the device.
+        self.mouse(*steps)
         self.mouse("mouseup", 1)
         return self.event("previews")
 
@@ -90,7 +94,8 @@ def main():
         )
         try:
             window = Window(program, model, folder, f":{server.stdout.readline().strip()}")
-            window.event("settled")
+            # Done once the final picture is on screen
+            window.do("set", values={"view.ev": 0})
             drags = [window.drag(4.0) for _ in range(DRAGS)]
             rates = [(drag["shown"] - 1) / drag["ms"] * 1e3 for drag in drags]
             print(f"previews a second while dragging  {min(rates):6.1f} to {max(rates):.1f}, at {drags[-1]['size']}")
