@@ -171,7 +171,7 @@ pub enum Event<'a> {
         /// How long it took.
         ms: f64,
     },
-    /// What traces of the shown file need was compiled before a pixel is clicked, for the panel Source.
+    /// The stages for traces of the shown file were compiled before a pixel is clicked, for the panel Source.
     Prepared {
         /// Shader generation.
         generation: u64,

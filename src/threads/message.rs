@@ -81,7 +81,7 @@ pub(crate) enum Message {
     TracedBefore(u64, Option<Box<(Arc<ShaderSet>, Trace)>>),
     /// The values around the pinned pixel, or why there are none, for the request with this number.
     TracedAround(u64, Box<Result<Neighborhood, String>>),
-    /// What a trace of a file needs was compiled, after a request of this number; how long it took, in milliseconds.
+    /// The stages for traces of a file were compiled, after a request of this number; how long it took, in milliseconds.
     TracePrepared(u64, Box<Result<Prepared, String>>, f64),
     /// A trace for another program, for the request with this number.
     GuestTraced(u64, Box<Traced>),

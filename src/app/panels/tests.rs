@@ -320,7 +320,7 @@ struct Shown {
     asked: Vec<Command>,
 }
 
-/// What lies over the picture.
+/// A picture with the overlay over it.
 fn over_the_picture(state: State) -> Harness<'static, State> {
     let mut own = overlay::Overlay::default();
     harness(state, move |ui, state| {

@@ -52,7 +52,7 @@ pub(super) fn trace(bench: &Bench<'_>) -> Result<Value, Failure> {
     Ok(result)
 }
 
-/// What is clicked.
+/// The session whose picture is clicked, and the file that is shown.
 struct Clicks {
     headless: Headless,
     folder: TempFolder,

@@ -1,5 +1,7 @@
 //! Types as a shader spells them, in place of glslang's descriptions.
 
+use crate::shader::glsl::QUALIFIERS;
+
 /// The message with each quoted description of a type replaced by the type: `vec3` for `global highp 3-component vector of float`.
 pub fn with_types(message: &str) -> String {
     let parts = message.split('\'').enumerate().map(|(at, part)| match at % 2 == 1 && part.contains(' ') {
@@ -11,35 +13,14 @@ pub fn with_types(message: &str) -> String {
 
 /// The type of a description.
 fn spelled(description: &str) -> Option<String> {
-    const QUALIFIERS: [&str; 21] = [
-        "const",
-        "global",
-        "temp",
-        "in",
-        "out",
-        "inout",
-        "uniform",
-        "buffer",
-        "shared",
-        "highp",
-        "mediump",
-        "lowp",
-        "flat",
-        "smooth",
-        "noperspective",
-        "centroid",
-        "sample",
-        "readonly",
-        "writeonly",
-        "coherent",
-        "specialization-constant",
-    ];
+    /// Words that only glslang has in front of a type.
+    const OF_GLSLANG: [&str; 3] = ["global", "temp", "specialization-constant"];
     let mut rest = description.trim();
     loop {
         let next = match rest.strip_prefix("layout(") {
             Some(inside) => inside.split_once(')')?.1,
             None => match rest.split_once(' ') {
-                Some((word, next)) if QUALIFIERS.contains(&word) => next,
+                Some((word, next)) if QUALIFIERS.contains(&word) || OF_GLSLANG.contains(&word) => next,
                 _ => break,
             },
         };

@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(texts[3..5], ["equal to the picture, blended over", "covered by fragment 3"]);
         assert!((1..4).all(|at| all.is_proven(at)) && !all.is_proven(4));
         assert_eq!(all.name_of(4), "Fragment 4: covered by 3, depth 0.4000");
-        // What is on screen has earlier frames, too, so nothing is proven of it.
+        // The picture on screen has earlier frames, too, so nothing is proven of it.
         let anew = Trace { begins_anew: true, ..all.clone() };
         assert!(
             !anew.is_proven(1)

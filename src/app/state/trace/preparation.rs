@@ -1,4 +1,4 @@
-//! What the shown file's traces need at any pixel is compiled before one is clicked, while the panel Source is in sight and the thread is free.
+//! Compiles all that traces of the shown file need before a pixel is clicked, while the panel Source is in sight and the thread is free.
 
 use std::sync::Arc;
 use std::time::Duration;

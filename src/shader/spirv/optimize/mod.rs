@@ -67,7 +67,7 @@ fn reduce(optimizer: &mut Optimizer, function: &mut Function, with_private: bool
     tidy::drop_single_phis(optimizer, function);
     loop {
         dead::drop_unused(optimizer, function);
-        // What a selection without content depended on is unused, too.
+        // The condition of a selection without content is unused, too.
         if !tidy::tidy(&mut optimizer.module, function) {
             return;
         }
