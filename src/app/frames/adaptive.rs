@@ -126,8 +126,13 @@ fn single_of(
 /// The clock and the size of the preview of a frame.
 fn clock_and_size(state: &State, frame: &BoundFrame) -> (Clock, (u32, u32)) {
     let side = state.previews.side();
+    (at_scale(state.picture.clock, side), scaled(frame.state.size, side))
+}
+
+/// The size of the preview of a picture.
+fn scaled((width, height): (u32, u32), side: f32) -> (u32, u32) {
     let of = |pixels: u32| ((pixels as f32 * side).round() as u32).max(1);
-    (at_scale(state.picture.clock, side), (of(frame.state.size.0), of(frame.state.size.1)))
+    (of(width), of(height))
 }
 
 /// Prepares the next preview while the picture rests: has the worker build its pipelines, and draws it once, unseen. Returns the time until
@@ -208,8 +213,8 @@ impl Drawing {
 /// Notes what the frame that has just been submitted has drawn.
 pub(super) fn submitted(state: &mut State, screen: &Screen, frame: Option<&BoundFrame>, drawing: &Drawing) {
     let Some(frame) = frame else { return };
-    if let Some((movement, preview)) = state.previews.take_movement().zip(screen.preview_frame()) {
-        let (size, ms) = (preview.state.size.into(), movement.time().as_secs_f64() * 1e3);
+    if let Some(movement) = state.previews.take_movement() {
+        let (size, ms) = (scaled(frame.state.size, movement.side).into(), movement.time().as_secs_f64() * 1e3);
         let whole_ms = movement.time_since(Instant::now()).as_secs_f64() * 1e3;
         emit(&state.events, &Event::Previews { shown: movement.previews, size, ms, whole_ms });
     }

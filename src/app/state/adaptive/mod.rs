@@ -61,6 +61,8 @@ pub(in crate::app) struct NextFrame {
 pub(in crate::app) struct Movement {
     /// How many different previews were shown.
     pub(in crate::app) previews: u32,
+    /// [`Previews::side`] of the last one.
+    pub(in crate::app) side: f32,
     begun: Instant,
     /// When the last of them was.
     last: Instant,
@@ -101,6 +103,8 @@ pub(in crate::app) struct Previews {
     changed: Option<Instant>,
     /// Whether it has moved since the last whole picture.
     has_moved: bool,
+    /// Whether the last preview is drawn. The one before may show the same picture, and its frame then draws the panels alone.
+    is_drawn: bool,
     /// Whether a part of this picture has failed, so that it is drawn as a whole.
     has_given_up: bool,
     movement: Option<Movement>,
@@ -166,10 +170,11 @@ impl Previews {
         };
         self.has_moved &= self.plan == Plan::Preview;
         self.is_planned = true;
-        if self.plan == Plan::Preview && (next.change != Change::Nothing || self.movement.is_none()) {
-            let begun = Movement { previews: 0, begun: next.now, last: next.now };
-            let Movement { previews, begun, .. } = self.movement.unwrap_or(begun);
-            self.movement = Some(Movement { previews: previews + 1, begun, last: next.now });
+        let is_other = next.change != Change::Nothing || self.movement.is_none();
+        self.is_drawn = self.plan == Plan::Preview && (is_other || next.accumulates);
+        if self.plan == Plan::Preview && is_other {
+            let (previews, begun) = self.movement.map_or((0, next.now), |movement| (movement.previews, movement.begun));
+            self.movement = Some(Movement { previews: previews + 1, side: self.side(), begun, last: next.now });
         }
         self.plan
     }
@@ -227,7 +232,11 @@ impl Previews {
 
     /// Notes what a submitted frame has drawn, if its time counts.
     pub(in crate::app) fn submitted(&mut self, serial: u64, drawn: Drawn) {
-        if matches!(drawn, Drawn::Whole { .. }) && std::mem::take(&mut self.is_first) && self.compiles_in_frame {
+        let counts = match drawn {
+            Drawn::Whole { .. } => !(std::mem::take(&mut self.is_first) && self.compiles_in_frame),
+            Drawn::Preview { .. } => self.is_drawn,
+        };
+        if !counts {
             return;
         }
         self.awaited.push_back(Awaited { serial, drawn });
@@ -323,6 +332,23 @@ mod tests {
     }
 
     #[test]
+    fn the_time_of_a_preview_that_was_not_drawn_again_says_nothing() {
+        let mut previews = Previews::new(true);
+        assert_eq!(previews.plan(&next(Change::Moved)), Plan::Preview);
+        let preview = Drawn::Preview { side: previews.side(), pixels_of_whole: 8.0, accumulates: false };
+        previews.submitted(1, preview);
+        assert!(previews.finished(1, 60.0, 10.0) && previews.whole_ms.is_none());
+        assert_eq!(previews.plan(&next(Change::Nothing)), Plan::Preview, "the mouse stands still");
+        previews.submitted(2, preview);
+        assert!(!previews.finished(2, 11.0, 10.0));
+        assert_eq!((previews.whole_ms, previews.may_preview(Adaptive::Auto)), (None, true));
+        let mean = NextFrame { accumulates: true, ..next(Change::Nothing) };
+        assert_eq!(previews.plan(&mean), Plan::Preview, "another frame of the mean");
+        previews.submitted(3, preview);
+        assert!(previews.finished(3, 60.0, 10.0));
+    }
+
+    #[test]
     fn a_fast_picture_has_no_previews() {
         let mut previews = Previews::new(true);
         assert!(previews.may_preview(Adaptive::Auto), "a software device is slow until its time is known");
@@ -331,6 +357,7 @@ mod tests {
         previews.submitted(1, Drawn::Whole { parts_ms: 0.0 });
         previews.finished(1, 900.0, 0.0);
         assert_eq!(previews.whole_ms, None, "the first frame has compiled");
+        assert_eq!(previews.plan(&next(Change::Moved)), Plan::Preview);
         previews.submitted(2, Drawn::Preview { side: 0.5, pixels_of_whole: 8.0, accumulates: false });
         previews.finished(2, 12.0, 10.0);
         assert_eq!(previews.whole_ms, Some(26.0));
