@@ -80,7 +80,7 @@ impl Assertion {
         let name = match doing.act {
             Act::Return => format!("return{}", doing.name),
             Act::Condition => "condition".to_owned(),
-            Act::Store | Act::Argument | Act::Discard => doing.name.clone(),
+            Act::Store | Act::Argument | Act::Discard | Act::Leave => doing.name.clone(),
         };
         if (doing.file.as_str(), doing.line) != (&*self.file, self.line) {
             return None;
@@ -134,7 +134,7 @@ impl Assertion {
             let name = match doing.act {
                 Act::Return => "return",
                 Act::Condition => "condition",
-                Act::Store | Act::Argument | Act::Discard => doing.name.as_str(),
+                Act::Store | Act::Argument | Act::Discard | Act::Leave => doing.name.as_str(),
             };
             if !names.contains(&name) {
                 names.push(name);

@@ -24,6 +24,7 @@ fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
         Purpose::Constant { .. } => return None,
         Purpose::Return => (Act::Return, ""),
         Purpose::Discard => (Act::Discard, ""),
+        Purpose::Leave => (Act::Leave, ""),
         Purpose::Enter(..) | Purpose::Input(_) | Purpose::Use => return None,
     };
     Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })

@@ -224,7 +224,7 @@ pub struct Doing {
 pub struct Event {
     /// The action of the statement. Events of the same one share it.
     pub doing: Arc<Doing>,
-    /// The value; none for a discard.
+    /// The value; none for a discard and a return without one.
     pub value: Option<TracedValue>,
     /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
     pub calls: Arc<str>,
@@ -246,6 +246,8 @@ pub enum Act {
     Return,
     /// Discards the fragment.
     Discard,
+    /// Returns without a value.
+    Leave,
 }
 
 impl Trace {
