@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 use specula::events::{Event, emit};
 use specula::headless::TraceRequest;
+use specula::message::did_you_mean;
 use specula::shader::trace::{Assertion, Trace};
 use specula::shader::{Severity, ShaderSet, StageKind, TreePath};
 
@@ -88,8 +89,14 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     progress.say("tracing the pixel");
     let opened = args.common.source()?.opened();
     let whole = |file: &str| whole_path(&shaders, opened.as_ref(), file);
-    args.assert.iter_mut().for_each(|assertion| assertion.file = whole(&assertion.file));
-    let mut named: Vec<String> = args.file.iter().map(|file| whole(file)).collect();
+    for assertion in &mut args.assert {
+        assertion.file = whole(&assertion.file)?;
+        let text = shaders.author_text(&TreePath::from(assertion.file.as_str()));
+        if let Some(lacks) = text.and_then(|text| assertion.lacks_line(text)) {
+            return Err(Failure::Usage(lacks));
+        }
+    }
+    let mut named = args.file.iter().map(|file| whole(file)).collect::<Result<Vec<String>, _>>()?;
     if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
         // The stage around a single file is not what the user has written.
         named.extend(opened.as_ref().map(TreePath::to_string));
@@ -138,15 +145,28 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
 }
 
 /// The path of a file of the tree. `ndf.glsl` is enough if only one path ends so, or that of the single file that is opened.
-fn whole_path(shaders: &ShaderSet, opened: Option<&TreePath>, file: &str) -> String {
+///
+/// # Errors
+/// No stage has such a file.
+fn whole_path(shaders: &ShaderSet, opened: Option<&TreePath>, file: &str) -> Result<String, Failure> {
     let ending = format!("/{file}");
     if let Some(opened) = opened.filter(|opened| opened.as_str().ends_with(&ending)) {
-        return opened.to_string();
+        return Ok(opened.to_string());
     }
-    let mut found = shaders.texts.keys().filter(|path| path.as_str().ends_with(&ending));
-    match (shaders.texts.contains_key(&TreePath::from(file)), found.next(), found.next()) {
-        (false, Some(one), None) => one.to_string(),
-        _ => file.to_owned(),
+    if shaders.texts.contains_key(&TreePath::from(file)) {
+        return Ok(file.to_owned());
+    }
+    let paths = || shaders.texts.keys().map(TreePath::as_str);
+    let found: Vec<&str> = paths().filter(|path| path.ends_with(&ending)).collect();
+    match found.as_slice() {
+        [one] => Ok((*one).to_owned()),
+        [] => {
+            // Of a name alone, the folder may be missing, too.
+            let names =
+                paths().map(|path| if file.contains('/') { path } else { path.rsplit('/').next().unwrap_or(path) });
+            Err(Failure::Usage(format!("no stage has a file {file}.{}", did_you_mean(file, names))))
+        }
+        several => Err(Failure::Usage(format!("{file} can be {}: name one of them", several.join(" or ")))),
     }
 }
 

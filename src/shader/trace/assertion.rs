@@ -75,6 +75,13 @@ impl Assertion {
         })
     }
 
+    /// Why a text has no such line.
+    pub fn lacks_line(&self, text: &str) -> Option<String> {
+        let count = text.lines().count();
+        let has = self.line > 0 && self.line as usize <= count;
+        (!has).then(|| format!("{}: {} has {count} lines", self.text, self.file))
+    }
+
     /// Whether this is the place, and the name of its value or of a vector with the component. Returns that component.
     fn finds(&self, doing: &Doing) -> Option<Option<usize>> {
         let name = match doing.act {
