@@ -27,7 +27,7 @@ const CODE: usize = 60;
     The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit: where fragments share the \
     samples of a pixel or are blended, that of all of them. --stage traces any other \
     stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
-    compute stage, for the invocation of the pixel or --invocation. Vertex stages of passes, stages of tessellation, geometry and meshes, \
+    compute stage, for the invocation of the pixel or --invocation, which also names a quad of draw=quads. Stages of tessellation, geometry and meshes, \
     and those that bake light are not traced. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute; of a single file opened with \
@@ -48,7 +48,7 @@ pub struct Args {
     /// Stage of the picture, as tonemap.frag [default: the one that draws the pixel, or the first that has the files]
     #[arg(long, value_name = "STAGE")]
     stage: Option<String>,
-    /// Invocation of a compute stage, by gl_GlobalInvocationID [default: that of the pixel]
+    /// Invocation of a compute stage, by gl_GlobalInvocationID, or the number of a quad [default: that of the pixel; the first quad]
     #[arg(long, value_name = "X,Y,Z", value_parser = invocation)]
     invocation: Option<[u32; 3]>,
     /// Fragment of the pixel, from 0 for the nearest; of a vertex stage, the corner [default: the one that is seen]

@@ -109,18 +109,18 @@ impl Trace {
             });
             let (depth, vertex) = match of {
                 Invocations::Pixel(..) => (f32::from_bits(logged.number), None),
-                Invocations::Triangle(_) => (0.0, Some(logged.number)),
+                Invocations::Triangle(_) | Invocations::Quad(_) => (0.0, Some(logged.number)),
                 Invocations::Compute(_) => (0.0, None),
             };
             let LoggedFragment { samples, primitive, .. } = logged;
             Fragment { depth, vertex, samples, primitive, color, events, not_logged }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
-        let order = |of: &Fragment| (of.color, of.primitive, of.samples);
         // A device may draw them in any order.
         match of {
-            Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
-            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b)))),
+            Invocations::Triangle(corners) => sort_vertices(&mut fragments, &corners),
+            Invocations::Quad(_) => sort_vertices(&mut fragments, &[0, 1, 2, 3, 4, 5]),
+            Invocations::Pixel(..) | Invocations::Compute(_) => sort_fragments(&mut fragments),
         }
         let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
         let places = stage.places().filter(|place| is_shown(&place.purpose));
@@ -143,8 +143,14 @@ impl Trace {
     }
 }
 
+/// Sorts fragments by depth, the nearest first.
+pub(super) fn sort_fragments(fragments: &mut [Fragment]) {
+    let order = |of: &Fragment| (of.color, of.primitive, of.samples);
+    fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b))));
+}
+
 /// Sorts vertices by the corners of their triangle. A vertex is run again for each triangle that has it, with the same values.
-fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
+fn sort_vertices(fragments: &mut Vec<Fragment>, corners: &[u32]) {
     let corner = |fragment: &Fragment| corners.iter().position(|corner| Some(*corner) == fragment.vertex);
     let mut kept: Vec<Fragment> = Vec::new();
     for fragment in std::mem::take(fragments) {

@@ -75,7 +75,7 @@ impl LoggingStage {
     ) -> Result<Self, String> {
         let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
         let color = shaders.stages.get(stage).and_then(|of| color_of(of));
-        let listener = log::listener(kind, color, has_primitives(shaders, stage))
+        let listener = log::listener(kind, color, has_primitives(shaders, stage), places_quads(shaders, stage))
             .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, |words, _| Some(words))?;
@@ -158,6 +158,11 @@ fn has_primitives(shaders: &ShaderSet, stage: &str) -> bool {
 }
 
 /// The invocations of a stage at a pixel, with all that they did.
+/// Whether a stage places the corners of quads.
+fn places_quads(shaders: &ShaderSet, stage: &str) -> bool {
+    shaders.graph.passes.iter().any(|pass| pass.desc.quads && pass.pre_rasterization.vertex == stage)
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The stage.
