@@ -245,5 +245,9 @@ fn with_pixel<T>(
         stage: stage.as_deref(),
         invocation: None,
     };
-    run(&pixel, tracer, &mut TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() })
+    run(
+        &pixel,
+        tracer,
+        &mut TraceTools { resources, compiler, source, is_interactive: true, is_canceled: &|| turn.is_superseded() },
+    )
 }

@@ -37,6 +37,7 @@ use super::{Compiler, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 pub use calls::{is_related, last_call, light_of, paths_to};
+use events::sort_fragments;
 pub use history::FragmentState;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
@@ -157,12 +158,12 @@ fn has_primitives(shaders: &ShaderSet, stage: &str) -> bool {
     passes.peek().is_some() && passes.all(|pass| pass.desc.draws_model() && passes_on(&pass.pre_rasterization))
 }
 
-/// The invocations of a stage at a pixel, with all that they did.
 /// Whether a stage places the corners of quads.
 fn places_quads(shaders: &ShaderSet, stage: &str) -> bool {
     shaders.graph.passes.iter().any(|pass| pass.desc.quads && pass.pre_rasterization.vertex == stage)
 }
 
+/// The invocations of a stage at a pixel, with all that they did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The stage.
@@ -287,6 +288,27 @@ impl Trace {
             self.redrawn = other.redrawn;
         }
         Ok(())
+    }
+
+    /// Adds the fragments that the depth test has left out, from a draw of the pixel without that test.
+    pub fn add_hidden(&mut self, all: Self) {
+        if all.left_out > 0 {
+            // Which of them the log has is a matter of chance, so they are only counted.
+            let count = all.fragments.len() as u32 + all.left_out;
+            self.left_out = self.left_out.max(count.saturating_sub(self.fragments.len() as u32));
+            return;
+        }
+        let key = |of: &Fragment| (of.depth.to_bits(), of.primitive);
+        let mut drawn: Vec<_> = self.fragments.iter().map(key).collect();
+        let is_hidden = |of: &Fragment| match drawn.iter().position(|drawn| *drawn == key(of)) {
+            Some(at) => {
+                drawn.swap_remove(at);
+                false
+            }
+            None => true,
+        };
+        self.fragments.extend(all.fragments.into_iter().filter(is_hidden));
+        sort_fragments(&mut self.fragments);
     }
 
     /// Whether the result of the stage is a color that can be read.
