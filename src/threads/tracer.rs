@@ -89,6 +89,11 @@ impl Tracer {
         self.ask(Asked::Prepare(Box::new(request), most))
     }
 
+    /// Ends what is under way before its next step.
+    pub(crate) fn cancel(&self) {
+        self.thread.supersede();
+    }
+
     /// Ends what is under way, and releases the memory.
     pub(crate) fn release(&mut self) {
         if std::mem::take(&mut self.is_used) {
