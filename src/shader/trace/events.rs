@@ -141,10 +141,31 @@ impl Trace {
             code: code.collect(),
         }
     }
+
+    /// Adds the fragments that the depth test has left out, from a draw of the pixel without that test.
+    pub fn add_hidden(&mut self, all: Self) {
+        if all.left_out > 0 {
+            // Which of them the log has is a matter of chance, so they are only counted.
+            let count = all.fragments.len() as u32 + all.left_out;
+            self.left_out = self.left_out.max(count.saturating_sub(self.fragments.len() as u32));
+            return;
+        }
+        let key = |of: &Fragment| (of.depth.to_bits(), of.primitive);
+        let mut drawn: Vec<_> = self.fragments.iter().map(key).collect();
+        let is_hidden = |of: &Fragment| match drawn.iter().position(|drawn| *drawn == key(of)) {
+            Some(at) => {
+                drawn.swap_remove(at);
+                false
+            }
+            None => true,
+        };
+        self.fragments.extend(all.fragments.into_iter().filter(is_hidden));
+        sort_fragments(&mut self.fragments);
+    }
 }
 
 /// Sorts fragments by depth, the nearest first.
-pub(super) fn sort_fragments(fragments: &mut [Fragment]) {
+fn sort_fragments(fragments: &mut [Fragment]) {
     let order = |of: &Fragment| (of.color, of.primitive, of.samples);
     fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b))));
 }

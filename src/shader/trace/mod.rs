@@ -37,7 +37,6 @@ use super::{Compiler, ShaderSet, Source, StageKind};
 pub use around::{Neighborhood, Which};
 pub use assertion::Assertion;
 pub use calls::{is_related, last_call, light_of, paths_to};
-use events::sort_fragments;
 pub use history::FragmentState;
 use invocations::color_of;
 pub use invocations::{Invocations, Target, TraceableStage};
@@ -288,27 +287,6 @@ impl Trace {
             self.redrawn = other.redrawn;
         }
         Ok(())
-    }
-
-    /// Adds the fragments that the depth test has left out, from a draw of the pixel without that test.
-    pub fn add_hidden(&mut self, all: Self) {
-        if all.left_out > 0 {
-            // Which of them the log has is a matter of chance, so they are only counted.
-            let count = all.fragments.len() as u32 + all.left_out;
-            self.left_out = self.left_out.max(count.saturating_sub(self.fragments.len() as u32));
-            return;
-        }
-        let key = |of: &Fragment| (of.depth.to_bits(), of.primitive);
-        let mut drawn: Vec<_> = self.fragments.iter().map(key).collect();
-        let is_hidden = |of: &Fragment| match drawn.iter().position(|drawn| *drawn == key(of)) {
-            Some(at) => {
-                drawn.swap_remove(at);
-                false
-            }
-            None => true,
-        };
-        self.fragments.extend(all.fragments.into_iter().filter(is_hidden));
-        sort_fragments(&mut self.fragments);
     }
 
     /// Whether the result of the stage is a color that can be read.
