@@ -46,7 +46,7 @@ impl Tracer<'_> {
                     // Copies of a body would each have to be compiled.
                     self.module[i][3] = self.module[i][3] & !UNROLL | DONT_UNROLL;
                 }
-            } else if !out.last().is_some_and(|i| is_merge(*i)) && !(is_last && i.op == Op::Return) {
+            } else if !(out.last().is_some_and(|i| is_merge(*i)) || is_last && i.op == Op::Return) {
                 let constant = branches.constant(self.module, i, None);
                 self.statement(&mut out, i, line, constant);
             }
