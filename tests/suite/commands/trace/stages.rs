@@ -178,10 +178,10 @@ fn passes_of_the_model_and_of_quads_are_traced() {
     let found = run(&of_vertices).expect(0, &[]).json();
     assert_eq!(found["fragments"].as_array().map(Vec::len), Some(3), "{found}");
     let of_picture = run(&["--at", "40,24", "--stage", "pbr.vert"]).expect(0, &[]).json();
-    for (own, of_picture) in [(&found["fragments"], &of_picture["fragments"])] {
-        let both = own.as_array().unwrap().iter().zip(of_picture.as_array().unwrap());
-        both.for_each(|(own, other)| assert_eq!(own["vertex"], other["vertex"]));
-    }
+    let vertices = |of: &Value| -> Vec<Value> {
+        of["fragments"].as_array().unwrap().iter().map(|corner| corner["vertex"].clone()).collect()
+    };
+    assert_eq!(vertices(&found), vertices(&of_picture));
     let line = line_of(&of_model_vertices, "vec4 shifted");
     assert_eq!(values(&found, "passes/normals.vert", line, "shifted").len(), 1, "{found}");
     assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
