@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 use specula::events::{Event, emit};
 use specula::headless::TraceRequest;
+use specula::message::did_you_mean;
 use specula::shader::trace::{Assertion, Trace};
 use specula::shader::{Severity, ShaderSet, StageKind, TreePath};
 
@@ -26,7 +27,7 @@ const CODE: usize = 60;
     The stage that draws the mode is drawn again with a log, and its color is compared with the picture's, bit by bit: where fragments share the \
     samples of a pixel or are blended, that of all of them. --stage traces any other \
     stage of the picture: a pass, whose color is compared with its image; a vertex stage, for the corners of the triangle at the pixel; a \
-    compute stage, for the invocation of the pixel or --invocation. Vertex stages of passes, stages of tessellation, geometry and meshes, \
+    compute stage, for the invocation of the pixel or --invocation, which also names a quad of draw=quads. Stages of tessellation, geometry and meshes, \
     and those that bake light are not traced. A file of another stage than the picture's finds its stage by itself. \
     In a file of Shadertoy, --frames draws the frames before. The log leaves out large structs: their members are logged where they are stored.\n\
     Without --file, all files are traced, a few at a time, which takes a software device about a minute; of a single file opened with \
@@ -47,7 +48,7 @@ pub struct Args {
     /// Stage of the picture, as tonemap.frag [default: the one that draws the pixel, or the first that has the files]
     #[arg(long, value_name = "STAGE")]
     stage: Option<String>,
-    /// Invocation of a compute stage, by gl_GlobalInvocationID [default: that of the pixel]
+    /// Invocation of a compute stage, by gl_GlobalInvocationID, or the number of a quad [default: that of the pixel; the first quad]
     #[arg(long, value_name = "X,Y,Z", value_parser = invocation)]
     invocation: Option<[u32; 3]>,
     /// Fragment of the pixel, from 0 for the nearest; of a vertex stage, the corner [default: the one that is seen]
@@ -88,8 +89,14 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     progress.say("tracing the pixel");
     let opened = args.common.source()?.opened();
     let whole = |file: &str| whole_path(&shaders, opened.as_ref(), file);
-    args.assert.iter_mut().for_each(|assertion| assertion.file = whole(&assertion.file));
-    let mut named: Vec<String> = args.file.iter().map(|file| whole(file)).collect();
+    for assertion in &mut args.assert {
+        assertion.file = whole(&assertion.file)?;
+        let text = shaders.author_text(&TreePath::from(assertion.file.as_str()));
+        if let Some(lacks) = text.and_then(|text| assertion.lacks_line(text)) {
+            return Err(Failure::Usage(lacks));
+        }
+    }
+    let mut named = args.file.iter().map(|file| whole(file)).collect::<Result<Vec<String>, _>>()?;
     if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
         // The stage around a single file is not what the user has written.
         named.extend(opened.as_ref().map(TreePath::to_string));
@@ -138,15 +145,28 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
 }
 
 /// The path of a file of the tree. `ndf.glsl` is enough if only one path ends so, or that of the single file that is opened.
-fn whole_path(shaders: &ShaderSet, opened: Option<&TreePath>, file: &str) -> String {
+///
+/// # Errors
+/// No stage has such a file.
+fn whole_path(shaders: &ShaderSet, opened: Option<&TreePath>, file: &str) -> Result<String, Failure> {
     let ending = format!("/{file}");
     if let Some(opened) = opened.filter(|opened| opened.as_str().ends_with(&ending)) {
-        return opened.to_string();
+        return Ok(opened.to_string());
     }
-    let mut found = shaders.texts.keys().filter(|path| path.as_str().ends_with(&ending));
-    match (shaders.texts.contains_key(&TreePath::from(file)), found.next(), found.next()) {
-        (false, Some(one), None) => one.to_string(),
-        _ => file.to_owned(),
+    if shaders.texts.contains_key(&TreePath::from(file)) {
+        return Ok(file.to_owned());
+    }
+    let paths = || shaders.texts.keys().map(TreePath::as_str);
+    let found: Vec<&str> = paths().filter(|path| path.ends_with(&ending)).collect();
+    match found.as_slice() {
+        [one] => Ok((*one).to_owned()),
+        [] => {
+            // Of a name alone, the folder may be missing, too.
+            let names =
+                paths().map(|path| if file.contains('/') { path } else { path.rsplit('/').next().unwrap_or(path) });
+            Err(Failure::Usage(format!("no stage has a file {file}.{}", did_you_mean(file, names))))
+        }
+        several => Err(Failure::Usage(format!("{file} can be {}: name one of them", several.join(" or ")))),
     }
 }
 

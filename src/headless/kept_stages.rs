@@ -112,6 +112,12 @@ impl KeptStage {
         self.logging.groups(files, &constants).map_err(HeadlessError::Settings)
     }
 
+    /// Whether the pipelines of `request` with a log of this file are built.
+    pub(super) fn is_built(&self, file: &str, request: impl FnOnce(&Arc<ShaderSet>) -> Arc<PipelineRequest>) -> bool {
+        let group = self.groups.iter().find(|group| group.files.len() == 1 && group.files.contains(file));
+        group.is_some_and(|group| group.set.has(&request(&group.stage.shaders)))
+    }
+
     /// The stage with a log of these files, and the pipelines of `request` with it in a set that is otherwise `of_picture`. Also how many
     /// pipelines were missing.
     pub(super) fn group(

@@ -13,7 +13,7 @@ pub struct OffscreenView {
     /// Its submissions, one at a time.
     pub frames: Frames,
     output: Option<Arc<Image>>,
-    is_software: bool,
+    pub(super) is_software: bool,
 }
 
 /// Most pixels whose random paths a software device follows at once. A device that does not answer for long counts as lost, and it needs

@@ -52,6 +52,8 @@ pub struct TraceTools<'a> {
     pub compiler: &'a Compiler,
     /// The tree, for the names of its files.
     pub source: &'a Source,
+    /// Whether someone waits for a click: a software device compiles the stage once more for hidden fragments.
+    pub is_interactive: bool,
     /// Whether the result is no longer needed.
     pub is_canceled: &'a dyn Fn() -> bool,
 }
@@ -60,7 +62,13 @@ impl<'a> TraceTools<'a> {
     /// Those of a command, which nothing cancels.
     pub fn new(resources: &'a mut Resources, reloader: &'a Reloader) -> Self {
         let library = reloader.library();
-        Self { resources, compiler: library.compiler(), source: library.source(), is_canceled: &|| false }
+        Self {
+            resources,
+            compiler: library.compiler(),
+            source: library.source(),
+            is_interactive: false,
+            is_canceled: &|| false,
+        }
     }
 }
 
@@ -96,6 +104,12 @@ impl<'a> TracePlan<'a> {
         near.target.weighs &= stage.samples == 1;
         let state = near.state_of(stage.extent, pixel.mode, pixel.clock, &pixel.whole.shaders);
         Self { pixel, near, stage, state }
+    }
+
+    /// The same, without the fragments that others hide.
+    pub(super) fn of_drawn_fragments(mut self) -> Self {
+        self.stage.hides = false;
+        self
     }
 
     /// Whether the stage draws a pixel without the rest of the picture.
@@ -195,13 +209,22 @@ impl PixelTracer {
     ) -> Result<Trace, HeadlessError> {
         let constants = plan.constants();
         let mut trace: Option<Trace> = None;
-        for files in self.stage(plan, tools)?.groups(files, &constants)? {
+        let groups = self.stage(plan, tools)?.groups(files, &constants)?;
+        // A software device compiles for each depth test, which takes seconds for each group.
+        let lists_hidden = !self.is_on_cpu() || (groups.len() == 1 && !tools.is_interactive);
+        for files in groups {
             if (tools.is_canceled)() {
                 return Err(HeadlessError::Canceled);
             }
-            let of_group = self.draw(plan, tools, &files, shown)?;
+            let mut of_group = self.draw(plan, tools, &files, shown)?;
             if of_group.fragments.is_empty() {
                 break;
+            }
+            if plan.stage.hides && lists_hidden {
+                self.own.view.draws_hidden = true;
+                let all = self.draw(plan, tools, &files, shown);
+                self.own.view.draws_hidden = false;
+                of_group.add_hidden(all?);
             }
             match &mut trace {
                 Some(trace) => trace.add(of_group).map_err(HeadlessError::Settings)?,
@@ -223,6 +246,22 @@ impl PixelTracer {
         tools: &TraceTools<'_>,
     ) -> Result<&mut KeptStage, HeadlessError> {
         self.stages.stage(&plan.pixel.whole.shaders, plan.stage(), (tools.compiler, tools.source))
+    }
+
+    /// Whether a trace of this file compiles no pipeline.
+    pub(super) fn is_built(
+        &mut self,
+        plan: &TracePlan<'_>,
+        tools: &TraceTools<'_>,
+        file: &str,
+    ) -> Result<bool, HeadlessError> {
+        let request = |shaders: &Arc<ShaderSet>| plan.state(plan.pixel.clock, shaders).pipelines.clone();
+        Ok(self.stage(plan, tools)?.is_built(file, request))
+    }
+
+    /// Whether the device is the CPU.
+    pub(super) fn is_on_cpu(&self) -> bool {
+        self.own.is_software
     }
 
     /// Draws the pixel with a log of these files.

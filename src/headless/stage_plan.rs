@@ -21,8 +21,8 @@ pub(super) enum Extent {
 }
 
 /// The stages that can be traced, for a reader.
-pub const UNTRACED: &str = "Fragment stages, the vertex stage of the model and the compute stages of a picture are traced; vertex stages of other \
-    passes and those of tessellation, geometry, tasks and meshes are not, and neither are those that bake light";
+pub const UNTRACED: &str = "Fragment stages, the vertex stages of the model and of quads, and the compute stages of a picture are traced; those of \
+    tessellation, geometry, tasks and meshes are not, and neither are those that bake light";
 
 /// How a stage is traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,8 @@ pub(super) struct StagePlan {
     pub(super) is_whole: bool,
     /// The samples of a pixel of that image.
     pub(super) samples: u32,
+    /// Whether the depth test leaves out fragments.
+    pub(super) hides: bool,
 }
 
 impl StagePlan {
@@ -50,6 +52,7 @@ impl StagePlan {
             }
             Invocations::Pixel(x, y) => format!("{} draws nothing at the pixel {x},{y} of its image", self.stage),
             Invocations::Triangle(_) => format!("{} draws no vertex of the triangle at the pixel {x},{y}", self.stage),
+            Invocations::Quad(quad) => format!("{} places no quad {quad}", self.stage),
             Invocations::Compute([x, y, z]) => format!("{} has no invocation {x},{y},{z}", self.stage),
         }
     }
@@ -72,7 +75,12 @@ pub(super) fn traceable(state: &FrameState) -> Vec<TraceableStage> {
         add(&request.stage, "Surfaces of the model");
         add(vertex_stage(state), "Vertices of the model");
     }
-    request.passes.iter().for_each(|pass| add(&pass.desc.stage, &pass.desc.label));
+    for pass in &request.passes {
+        add(&pass.desc.stage, &pass.desc.label);
+        if pass_of_vertices(state, &pass.pre_rasterization.vertex).is_some() {
+            add(&pass.pre_rasterization.vertex, &format!("Vertices of {}", pass.desc.label));
+        }
+    }
     if request.deforms {
         add(DEFORM, "Joints and morph targets");
     }
@@ -92,6 +100,16 @@ fn shown_pass(state: &FrameState) -> Option<&GraphPass> {
 fn vertex_stage(state: &FrameState) -> &str {
     let before = state.pipelines.model_pass().map(|pass| &pass.pre_rasterization);
     before.filter(|before| before.mesh.is_none()).map_or("", |before| before.vertex.as_str())
+}
+
+/// The pass with a vertex stage of its own for the model or for quads.
+fn pass_of_vertices<'a>(state: &'a FrameState, stage: &str) -> Option<&'a GraphPass> {
+    let is_it = |pass: &&GraphPass| {
+        let before = &pass.pre_rasterization;
+        before.vertex == stage && before.mesh.is_none() && pass.desc.model.is_some()
+    };
+    let passes = || state.pipelines.passes.iter().map(|pass| &**pass);
+    passes().find(is_it).filter(|_| stage != vertex_stage(state))
 }
 
 /// The stage that `wanted` names; otherwise the first that has all of these files, or that of the picture.
@@ -134,10 +152,8 @@ fn why_not(state: &FrameState, path: &str) -> Option<&'static str> {
 fn is_untraced(state: &FrameState, file: &str) -> bool {
     let path = TreePath::from(file);
     let has = |stage: &Stage| stage.path == path || stage.dependencies.contains(&path);
-    let is_of_pass = |vertex: &str| state.pipelines.passes.iter().any(|pass| pass.pre_rasterization.vertex == vertex);
     let is_traced = |stage: &Stage| match stage.kind {
-        StageKind::Fragment => true,
-        StageKind::Vertex => stage.path.as_str() == vertex_stage(state) || !is_of_pass(stage.path.as_str()),
+        StageKind::Fragment | StageKind::Vertex => true,
         StageKind::Compute => !bake_stages().any(|bake| bake == stage.path.as_str()),
         _ => false,
     };
@@ -169,10 +185,19 @@ pub(super) fn plan(
     let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
     let is_with_model = pass.is_none_or(|pass| pass.desc.is_drawn_with_model());
     let samples = if is_with_model { request.target.samples } else { 1 };
-    let make =
-        |of, target, extent, is_whole| StagePlan { stage: stage.to_owned(), of, target, extent, is_whole, samples };
-    if invocation.is_some() && kind != Some(StageKind::Compute) {
-        return fails(format!("{stage} is no compute stage, so it has no invocation to choose"));
+    let hides = draws_surfaces(state, stage) || pass.is_some_and(|pass| pass.desc.draws_model());
+    let make = |of, target, extent, is_whole| StagePlan {
+        stage: stage.to_owned(),
+        of,
+        target,
+        extent,
+        is_whole,
+        samples,
+        hides,
+    };
+    let is_of_quads = pass_of_vertices(state, stage).is_some_and(|pass| pass.desc.quads);
+    if invocation.is_some() && kind != Some(StageKind::Compute) && !is_of_quads {
+        return fails(format!("{stage} is no compute stage and places no quads, so it has no invocation to choose"));
     }
     match kind {
         Some(StageKind::Fragment) if draws_surfaces(state, stage) => {
@@ -180,8 +205,14 @@ pub(super) fn plan(
             Ok(make(Invocations::Pixel(at.0, at.1), Target::Picture, extent, false))
         }
         Some(StageKind::Vertex) => {
+            let pass = pass_of_vertices(state, stage);
+            let (target, is_whole) = (pass.map_or(Target::Picture, target_of), pass.is_some());
+            if pass.is_some_and(|pass| pass.desc.quads) {
+                let [quad, ..] = invocation.unwrap_or_default();
+                return Ok(make(Invocations::Quad(quad), target, Extent::All, is_whole));
+            }
             let (instance, triangle) = triangle(state, at)?;
-            Ok(make(Invocations::Triangle(triangle), Target::Picture, Extent::Instance(instance), false))
+            Ok(make(Invocations::Triangle(triangle), target, Extent::Instance(instance), is_whole))
         }
         Some(StageKind::Fragment) => {
             let Some(pass) = pass else { return fails(format!("no pass of the picture draws {stage}")) };
@@ -215,23 +246,27 @@ pub(super) fn without_log(
     const NONE: u32 = u32::MAX;
     let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
     let of = match kind {
-        Some(StageKind::Vertex) => Some(Invocations::Triangle([NONE; 3])),
+        Some(StageKind::Vertex) if stage == vertex_stage(state) => Some(Invocations::Triangle([NONE; 3])),
         Some(StageKind::Fragment) if draws_surfaces(state, stage) => Some(Invocations::Pixel(NONE, NONE)),
         _ => None,
     };
+    if let Some(pass) = pass_of_vertices(state, stage) {
+        let (of, target, samples) = (Invocations::Triangle([NONE; 3]), target_of(pass), state.pipelines.target.samples);
+        let (stage, extent) = (stage.to_owned(), Extent::All);
+        return Ok(StagePlan { stage, of, target, extent, is_whole: true, samples, hides: false });
+    }
     let Some(of) = of else {
         return plan(state, stage, at, None);
     };
     let extent = instance.map_or(Extent::All, Extent::Instance);
     let (stage, samples) = (stage.to_owned(), state.pipelines.target.samples);
-    Ok(StagePlan { stage, of, target: Target::Picture, extent, is_whole: false, samples })
+    Ok(StagePlan { stage, of, target: Target::Picture, extent, is_whole: false, samples, hides: false })
 }
 
 /// Whether a stage draws the surfaces of the model, each for itself: no pass and no path reads others.
 pub(super) fn draws_instances(state: &FrameState, stage: &str) -> bool {
-    let is_vertex = state.shaders.stages.get(stage).is_some_and(|stage| stage.kind == StageKind::Vertex);
     let request = &state.pipelines;
-    is_vertex || draws_surfaces(state, stage) && request.is_local() && !request.follows_paths()
+    stage == vertex_stage(state) || draws_surfaces(state, stage) && request.is_local() && !request.follows_paths()
 }
 
 /// Whether a stage is the fragment stage of the model.

@@ -188,6 +188,11 @@ impl PipelineSet {
         self.build_as(self.requests.load(Ordering::SeqCst), request)
     }
 
+    /// Whether all pipelines of `request` that draw are built.
+    pub(crate) fn has(&self, request: &PipelineRequest) -> bool {
+        request.keys().all(|key| lock(&self.graphics).entries.contains_key(&key))
+    }
+
     fn build_as(&self, number: u64, request: &PipelineRequest) -> Result<usize, GpuError> {
         let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
         let missing: Vec<PipelineKey> =

@@ -92,6 +92,7 @@ fn check(
     };
     let state = |shaders: &Arc<ShaderSet>, _| session.frame_state_of(shaders, *clock, *size, target);
     let request = CheckRequest { state: &state, frames: 1, shaders: &shaders, set: &set, undefined: *undefined };
-    let mut tools = TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() };
+    let mut tools =
+        TraceTools { resources, compiler, source, is_interactive: true, is_canceled: &|| turn.is_superseded() };
     checker.check(&request, &mut tools)
 }

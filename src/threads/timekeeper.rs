@@ -118,7 +118,8 @@ fn functions_of(
     let meter = meter_of(gpu, meter, resources)?;
     let state = |shaders: &Arc<ShaderSet>| session.frame_state_of(shaders, *clock, *size, *target);
     let request = CostRequest { state: &state, set: &set, stage: stage.as_deref(), functions, most: *most };
-    let mut tools = TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() };
+    let mut tools =
+        TraceTools { resources, compiler, source, is_interactive: true, is_canceled: &|| turn.is_superseded() };
     meter.measure(&request, &mut tools, &mut |_, _, _| ())
 }
 

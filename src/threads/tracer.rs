@@ -89,6 +89,11 @@ impl Tracer {
         self.ask(Asked::Prepare(Box::new(request), most))
     }
 
+    /// Ends what is under way before its next step.
+    pub(crate) fn cancel(&self) {
+        self.thread.supersede();
+    }
+
     /// Ends what is under way, and releases the memory.
     pub(crate) fn release(&mut self) {
         if std::mem::take(&mut self.is_used) {
@@ -245,5 +250,9 @@ fn with_pixel<T>(
         stage: stage.as_deref(),
         invocation: None,
     };
-    run(&pixel, tracer, &mut TraceTools { resources, compiler, source, is_canceled: &|| turn.is_superseded() })
+    run(
+        &pixel,
+        tracer,
+        &mut TraceTools { resources, compiler, source, is_interactive: true, is_canceled: &|| turn.is_superseded() },
+    )
 }

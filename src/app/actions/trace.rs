@@ -111,9 +111,16 @@ pub(in crate::app) fn on_trace_prepared(state: &mut State, number: u64, prepared
     emit(&state.events, &event);
 }
 
-/// Asks for the values around the pixel, once the mouse rests on one of its values.
+/// Asks for the values around the pixel, while the mouse is on one of its values. When it leaves, they are no longer needed.
 fn ask_around(state: &mut State, engine: &mut Engine) {
-    let Some(newest) = state.traces.lacks_around().filter(|_| state.workspace.sight.around) else { return };
+    if !state.workspace.sight.around {
+        if state.traces.leave_around() {
+            engine.threads.tracer.cancel();
+            state.traces.preparations.interrupt();
+        }
+        return;
+    }
+    let Some(newest) = state.traces.lacks_around() else { return };
     let place = (Some(newest.stage.clone()), Some(&newest.file));
     let request = request_of(state, engine, &newest.of.picture, newest.of.at, place);
     let number = engine.threads.tracer.trace_around(request);

@@ -77,9 +77,8 @@ pub(in crate::app) struct SourcePlace {
 pub(in crate::app) static SHOW_LINE: Spec<SourcePlace> = Spec::act("show-line", |state, engine, place| {
     let SourcePlace { file, line } = place;
     state.traces.seeks = Some((file.clone(), line));
-    if state.traces.file_shown() != Some(&file) {
-        let _ = SHOW_FILE.with(file).run(state, engine);
-    }
+    // Also if the file is shown as that of a trace: the next one may be of another file.
+    let _ = SHOW_FILE.with(file).run(state, engine);
 });
 
 /// Chooses the stage whose statements the panel Source shows, with its own file.

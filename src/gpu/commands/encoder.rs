@@ -75,6 +75,8 @@ pub struct Encoder {
     pub(in crate::gpu) timer: Option<PassTimer>,
     pub(in crate::gpu) is_rendering: bool,
     pub(in crate::gpu) counter: Counter,
+    /// Whether fragments behind others pass the depth test, too.
+    pub(in crate::gpu) draws_hidden: bool,
     /// The loop report buffer, if a pipeline has loops that may not end.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
 }
@@ -88,6 +90,7 @@ impl Encoder {
             timer,
             is_rendering: false,
             counter: Counter::default(),
+            draws_hidden: false,
             loops: None,
         }
     }
@@ -193,8 +196,15 @@ impl Encoder {
         }
     }
 
+    /// Whether later rendering also runs the fragment stage where a nearer surface hides it. The picture is then not the right one.
+    pub fn draw_hidden(&mut self, draws_hidden: bool) {
+        self.draws_hidden = draws_hidden;
+    }
+
     /// Sets which fragments pass the depth test; at the start of rendering these are all that nothing nearer hides.
     pub fn set_depth_test(&mut self, compare: vk::CompareOp) {
+        let is_of_surfaces = compare == vk::CompareOp::GREATER_OR_EQUAL;
+        let compare = if self.draws_hidden && is_of_surfaces { vk::CompareOp::ALWAYS } else { compare };
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_set_depth_compare_op(self.raw, compare) };
     }

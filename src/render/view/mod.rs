@@ -112,6 +112,8 @@ pub struct View {
     pub probe: Option<(u32, u32)>,
     /// The pixel whose values in the images of passes each frame reports.
     pub probe_passes: Option<(u32, u32)>,
+    /// Whether frames also run the fragment stage where a nearer surface hides it, for the list of all fragments. Such a picture is not shown.
+    pub draws_hidden: bool,
     /// Whether the next frame looks for NaN and infinity in its picture.
     pub scans: bool,
     /// Whether to sample each frame's values even if no range is automatic.
@@ -168,6 +170,7 @@ impl View {
             sample_index: 0,
             probe: None,
             probe_passes: None,
+            draws_hidden: false,
             scans: false,
             samples_range: false,
             range_sample: None,
@@ -245,6 +248,7 @@ impl View {
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
 
+        encoder.draw_hidden(self.draws_hidden);
         // Uniforms and set 0.
         let [_, before] = self.cameras.unwrap_or([frame.state.camera.clip_from_world(); 2]);
         let constants = frame.constants(rect, self.sample_index, before);
@@ -268,7 +272,7 @@ impl View {
         let images = FrameImages { picture: Some(&targets.color), samples, opaque_scene, ..FrameImages::default() };
         let keys = redrawn.then(|| frame.state.pipelines.model_keys()).into_iter().flatten();
         let sets = self.declared.sets_of(&context, &images, keys)?;
-        let peeling = PeelImages::new(&mut self.declared, &context, targets)?;
+        let peeling = PeelImages::new(&mut self.declared, &context, targets)?.filter(|_| !self.draws_hidden);
         let (layouts, more, peeling) = (&self.layouts, &[][..], peeling.as_ref());
         let passes = passes::Passes { layouts, targets, frame, placed, sets: &sets, only, more, peeling, part: None };
         if draws_model {

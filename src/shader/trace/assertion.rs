@@ -75,12 +75,19 @@ impl Assertion {
         })
     }
 
+    /// Why a text has no such line.
+    pub fn lacks_line(&self, text: &str) -> Option<String> {
+        let count = text.lines().count();
+        let has = self.line > 0 && self.line as usize <= count;
+        (!has).then(|| format!("{}: {} has {count} lines", self.text, self.file))
+    }
+
     /// Whether this is the place, and the name of its value or of a vector with the component. Returns that component.
     fn finds(&self, doing: &Doing) -> Option<Option<usize>> {
         let name = match doing.act {
             Act::Return => format!("return{}", doing.name),
             Act::Condition => "condition".to_owned(),
-            Act::Store | Act::Argument | Act::Discard => doing.name.clone(),
+            Act::Store | Act::Argument | Act::Discard | Act::Leave => doing.name.clone(),
         };
         if (doing.file.as_str(), doing.line) != (&*self.file, self.line) {
             return None;
@@ -134,7 +141,7 @@ impl Assertion {
             let name = match doing.act {
                 Act::Return => "return",
                 Act::Condition => "condition",
-                Act::Store | Act::Argument | Act::Discard => doing.name.as_str(),
+                Act::Store | Act::Argument | Act::Discard | Act::Leave => doing.name.as_str(),
             };
             if !names.contains(&name) {
                 names.push(name);

@@ -24,6 +24,7 @@ fn doing(stage: &TracedStage, number: u32) -> Option<Doing> {
         Purpose::Constant { .. } => return None,
         Purpose::Return => (Act::Return, ""),
         Purpose::Discard => (Act::Discard, ""),
+        Purpose::Leave => (Act::Leave, ""),
         Purpose::Enter(..) | Purpose::Input(_) | Purpose::Use => return None,
     };
     Some(Doing { file: place.file.clone(), line: place.line, act, name: format!("{name}{}", point.part) })
@@ -108,18 +109,18 @@ impl Trace {
             });
             let (depth, vertex) = match of {
                 Invocations::Pixel(..) => (f32::from_bits(logged.number), None),
-                Invocations::Triangle(_) => (0.0, Some(logged.number)),
+                Invocations::Triangle(_) | Invocations::Quad(_) => (0.0, Some(logged.number)),
                 Invocations::Compute(_) => (0.0, None),
             };
             let LoggedFragment { samples, primitive, .. } = logged;
             Fragment { depth, vertex, samples, primitive, color, events, not_logged }
         };
         let mut fragments: Vec<Fragment> = logged.into_iter().map(fragment).collect();
-        let order = |of: &Fragment| (of.color, of.primitive, of.samples);
         // A device may draw them in any order.
         match of {
-            Invocations::Triangle(corners) => sort_vertices(&mut fragments, corners),
-            _ => fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b)))),
+            Invocations::Triangle(corners) => sort_vertices(&mut fragments, &corners),
+            Invocations::Quad(_) => sort_vertices(&mut fragments, &[0, 1, 2, 3, 4, 5]),
+            Invocations::Pixel(..) | Invocations::Compute(_) => sort_fragments(&mut fragments),
         }
         let is_shown = |purpose: &Purpose| !matches!(purpose, Purpose::Enter(..));
         let places = stage.places().filter(|place| is_shown(&place.purpose));
@@ -140,10 +141,37 @@ impl Trace {
             code: code.collect(),
         }
     }
+
+    /// Adds the fragments that the depth test has left out, from a draw of the pixel without that test.
+    pub fn add_hidden(&mut self, all: Self) {
+        if all.left_out > 0 {
+            // Which of them the log has is a matter of chance, so they are only counted.
+            let count = all.fragments.len() as u32 + all.left_out;
+            self.left_out = self.left_out.max(count.saturating_sub(self.fragments.len() as u32));
+            return;
+        }
+        let key = |of: &Fragment| (of.depth.to_bits(), of.primitive);
+        let mut drawn: Vec<_> = self.fragments.iter().map(key).collect();
+        let is_hidden = |of: &Fragment| match drawn.iter().position(|drawn| *drawn == key(of)) {
+            Some(at) => {
+                drawn.swap_remove(at);
+                false
+            }
+            None => true,
+        };
+        self.fragments.extend(all.fragments.into_iter().filter(is_hidden));
+        sort_fragments(&mut self.fragments);
+    }
+}
+
+/// Sorts fragments by depth, the nearest first.
+fn sort_fragments(fragments: &mut [Fragment]) {
+    let order = |of: &Fragment| (of.color, of.primitive, of.samples);
+    fragments.sort_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| order(a).cmp(&order(b))));
 }
 
 /// Sorts vertices by the corners of their triangle. A vertex is run again for each triangle that has it, with the same values.
-fn sort_vertices(fragments: &mut Vec<Fragment>, corners: [u32; 3]) {
+fn sort_vertices(fragments: &mut Vec<Fragment>, corners: &[u32]) {
     let corner = |fragment: &Fragment| corners.iter().position(|corner| Some(*corner) == fragment.vertex);
     let mut kept: Vec<Fragment> = Vec::new();
     for fragment in std::mem::take(fragments) {

@@ -13,6 +13,8 @@ pub enum Invocations {
     Pixel(u32, u32),
     /// The vertices of a triangle, by `gl_VertexIndex`.
     Triangle([u32; 3]),
+    /// The vertices of a quad, by `gl_InstanceIndex`.
+    Quad(u32),
     /// One of a compute stage, by `gl_GlobalInvocationID`.
     Compute([u32; 3]),
 }
@@ -22,6 +24,7 @@ impl Invocations {
     pub(super) fn words(self) -> [u32; 3] {
         match self {
             Self::Pixel(x, y) => [x, y, 0],
+            Self::Quad(quad) => [quad, 0, 0],
             Self::Triangle(words) | Self::Compute(words) => words,
         }
     }

@@ -59,8 +59,13 @@ pub const EXTENSIONS: &str = "#extension GL_EXT_buffer_reference : require\n#ext
     #extension GL_EXT_scalar_block_layout : require";
 
 /// The text that writes the log of a stage of this kind, and of its `color` if it has one. `None` for kinds that are not traced.
-/// `has_primitives`: whether it gets the numbers of the model's primitives.
-pub(super) fn listener(kind: StageKind, color: Option<&str>, has_primitives: bool) -> Option<Listener> {
+/// `has_primitives`: whether it gets the numbers of the model's primitives; `places_quads`: whether it places the corners of quads.
+pub(super) fn listener(
+    kind: StageKind,
+    color: Option<&str>,
+    has_primitives: bool,
+    places_quads: bool,
+) -> Option<Listener> {
     // Which invocation is logged, its number, and its result.
     let [is_logged, own_number, result] = match kind {
         StageKind::Fragment => [
@@ -68,6 +73,9 @@ pub(super) fn listener(kind: StageKind, color: Option<&str>, has_primitives: boo
             "floatBitsToUint(gl_FragCoord.z)",
             color.unwrap_or("vec4(0.0)"),
         ],
+        StageKind::Vertex if places_quads => {
+            ["uint(gl_InstanceIndex) == logged.x", "uint(gl_VertexIndex)", "gl_Position"]
+        }
         StageKind::Vertex => ["any(equal(uvec3(gl_VertexIndex), logged))", "uint(gl_VertexIndex)", "gl_Position"],
         StageKind::Compute => ["gl_GlobalInvocationID == logged", "0u", "vec4(0.0)"],
         _ => return None,

@@ -75,7 +75,7 @@ impl LoggingStage {
     ) -> Result<Self, String> {
         let kind = shaders.stages.get(stage).map_or(StageKind::Fragment, |of| of.kind);
         let color = shaders.stages.get(stage).and_then(|of| color_of(of));
-        let listener = log::listener(kind, color, has_primitives(shaders, stage))
+        let listener = log::listener(kind, color, has_primitives(shaders, stage), places_quads(shaders, stage))
             .ok_or_else(|| format!("{stage} is not traced: only fragment, vertex and compute stages are"))?;
         let stage = ListeningStage::new(shaders, stage, tools, &listener)?;
         let whole = stage.traced(&listener, None, |words, _| Some(words))?;
@@ -157,6 +157,11 @@ fn has_primitives(shaders: &ShaderSet, stage: &str) -> bool {
     passes.peek().is_some() && passes.all(|pass| pass.desc.draws_model() && passes_on(&pass.pre_rasterization))
 }
 
+/// Whether a stage places the corners of quads.
+fn places_quads(shaders: &ShaderSet, stage: &str) -> bool {
+    shaders.graph.passes.iter().any(|pass| pass.desc.quads && pass.pre_rasterization.vertex == stage)
+}
+
 /// The invocations of a stage at a pixel, with all that they did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -224,7 +229,7 @@ pub struct Doing {
 pub struct Event {
     /// The action of the statement. Events of the same one share it.
     pub doing: Arc<Doing>,
-    /// The value; none for a discard.
+    /// The value; none for a discard and a return without one.
     pub value: Option<TracedValue>,
     /// The calls that led to it, outermost first: `shade > add_light [light 2]`.
     pub calls: Arc<str>,
@@ -246,6 +251,8 @@ pub enum Act {
     Return,
     /// Discards the fragment.
     Discard,
+    /// Returns without a value.
+    Leave,
 }
 
 impl Trace {

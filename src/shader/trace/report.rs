@@ -44,7 +44,7 @@ pub struct Done {
 /// One time that a statement did something.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Once {
-    /// The value; none for a discard.
+    /// The value; none for a discard and a return without one.
     pub value: Option<TracedValue>,
     /// The calls that led to it.
     pub calls: Arc<str>,
@@ -225,6 +225,7 @@ impl Done {
             Act::Return => format!("return{} {values}", self.name),
             Act::Condition => format!("? {values}"),
             Act::Discard => format!("discard{values}"),
+            Act::Leave => format!("return{values}"),
         }
     }
 

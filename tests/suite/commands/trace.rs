@@ -236,6 +236,9 @@ fn assertions_are_exit_codes() {
     };
     with(&["half_rough > 0", "half_rough <= 1"]).expect(0, &[]);
     with(&["half_rough > 0", "half_rough > 5"]).expect(1, &["half_rough > 5", "failed for 1 of 1 values"]);
+    let lines = text.lines().count();
+    trace(directory.path(), &[&args[..], &["--assert", "user.glsl:9999 x > 0"]].concat())
+        .expect(2, &[&format!("user.glsl:9999 x > 0: user.glsl has {lines} lines")]);
     with(&["nothing > 0"]).expect(1, &["no value of `nothing`", "the line has half_rough"]);
     trace(directory.path(), &["--at", "50,30", "--assert", "a b"]).expect(2, &["expected FILE:LINE NAME > NUMBER"]);
     trace(directory.path(), &["--at", "96,0"]).expect(2, &["--at 96,0 is outside of the picture"]);
@@ -256,8 +259,12 @@ fn what_cannot_be_traced_is_said() {
     write_sphere(directory.path());
     let ball = |more: &[&str]| trace(directory.path(), &[&["ball.glb"][..], &EYE, more].concat());
     ball(&["--at", "1,1", "--file", "user.glsl"]).expect(2, &["the model does not cover the pixel 1,1"]);
-    ball(&["--at", "50,30", "--file", "common/absent.glsl"])
-        .expect(2, &["no statement of common/absent.glsl is in the stage", "brdf/ndf.glsl"]);
+    ball(&["--at", "50,30", "--file", "common/absent.glsl"]).expect(2, &["no stage has a file common/absent.glsl"]);
+    ball(&["--at", "50,30", "--file", "ndff.glsl"])
+        .expect(2, &["no stage has a file ndff.glsl. Did you mean `ndf.glsl`?"]);
+    ball(&["--at", "50,30", "--file", "brdf/nfd.glsl"]).expect(2, &["Did you mean `brdf/ndf.glsl`?"]);
+    ball(&["--at", "50,30", "--file", "tonemap.frag", "--stage", "pbr.frag"])
+        .expect(2, &["no statement of tonemap.frag is in the stage", "brdf/ndf.glsl"]);
     ball(&["--at", "50,30", "--fragment", "7", "--file", "user.glsl"])
         .expect(2, &["the pixel has 1 fragment; the first is 0"]);
 }

@@ -61,6 +61,27 @@ fn a_click_on_the_box_of_the_time_takes_a_number() {
     harness.get_by_label("a = 2");
 }
 
+/// As a light below the horizon: its call is made, and ends before it has evaluated anything.
+#[test]
+fn a_call_that_returns_early_says_so() {
+    let [one, two] = ["shade > add_light [light 1]", "shade > add_light [light 2]"];
+    let events = vec![
+        called(one, 3, Act::Store, "a", &[2.0]),
+        called(one, 5, Act::Store, "a", &[4.0]),
+        called(two, 3, Act::Store, "a", &[2.0]),
+        called(two, 4, Act::Leave, "", &[]),
+    ];
+    let mut harness = window(TEXT, events, &[3, 4, 5]);
+    harness.get_by_label("return");
+    harness.get_by_label("Call").click();
+    harness.run_steps(2);
+    harness.get_by_label(one);
+    harness.get_by_label("shade > add_light [light 2], returns early").click();
+    harness.run_steps(2);
+    let chosen = Choice { call: Some(two.to_owned()), ..Choice::default() };
+    assert_eq!(harness.state().asked, [CHOOSE_TRACE.with(chosen)]);
+}
+
 #[test]
 fn calls_stand_below_their_callers_with_their_lights() {
     let paths =

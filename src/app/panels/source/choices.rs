@@ -129,13 +129,14 @@ fn choose_call(ui: &mut Ui, choice: &mut Choice, count: usize, (trace, fragment)
 fn call_row(ui: &mut Ui, call: &ListedCall, light: Option<&TracedLight>, is_chosen: bool) -> bool {
     let row = ui.horizontal(|ui| {
         ui.add_space(INDENT * call.depth as f32);
-        let button = ui.selectable_label(is_chosen, small_mono(&call.name));
+        let end = if call.is_cut { ", returns early" } else { "" };
+        let button = ui.selectable_label(is_chosen, small_mono(format!("{}{end}", call.name)));
         if let Some(light) = light {
             let (area, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
             ui.painter().circle(area.center(), 4.0, light_color(light), Stroke::new(1.0, QUIET));
             ui.label(RichText::new(light.text()).small().color(QUIET));
         }
-        named(button, &call.path).clicked()
+        named(button, &format!("{}{end}", call.path)).clicked()
     });
     row.inner
 }

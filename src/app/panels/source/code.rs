@@ -48,7 +48,7 @@ pub(super) fn show(
     if let Some(line) = scroll.take() {
         if folds.open_at(model, line) {
             // The next frame has its row.
-            scroll.to(line);
+            scroll.again(line);
             ui.ctx().request_repaint();
         }
         let above = (ui.available_height() / 3.0).min(6.0 * ROW);
@@ -60,7 +60,7 @@ pub(super) fn show(
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing, vec2(0.0, 0.0));
     area.show_rows(ui, ROW, model.shown.len(), |ui, range| {
         ui.set_min_width(width.max(ui.available_width()));
-        scroll.first = model.line_at(range.start);
+        scroll.saw(model.line_at(range.start));
         for shown in &model.shown[range] {
             match show_row(ui, (state, path), model, shown, (&look, find, drag), commands) {
                 Some(Clicked::Edit(line)) => {

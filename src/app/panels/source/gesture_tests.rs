@@ -115,6 +115,10 @@ fn the_hover_text_of_a_value_shows_it_around_the_pixel() {
         let value = event(3, Act::Store, "a", &[at.0 as f32]);
         Ok::<_, ()>((at.1 > 0).then(|| trace(vec![value], &[3])))
     });
+    // The mouse leaves, and comes back.
+    assert!(traces.around.leave() && !traces.around.leave() && traces.lacks_around().is_some());
+    traces.around.take(9, Err("of a hover that has ended".to_owned()));
+    traces.around.ask(&newest, 9);
     traces.around.take(8, Err("of an older request".to_owned()));
     traces.around.take(9, Ok(around.unwrap()));
     assert!(traces.lacks_around().is_none());

@@ -183,7 +183,10 @@ fn progress(ui: &mut Ui, state: &State, newest: Option<&PixelTrace>, is_unsaved:
     }
     match (state.traces.progress, newest) {
         // Nothing that moves: frames of a software device would hold the trace up.
-        (Progress::UnderWay(_), _) => quiet(ui, "Tracing…"),
+        (Progress::UnderWay(_), _) if state.traces.preparations.is_done() => quiet(ui, "Tracing…"),
+        (Progress::UnderWay(_), _) => {
+            quiet(ui, "Compiling the log of this file, then tracing… Later clicks need no compiling");
+        }
         (Progress::Outside, _) => quiet(ui, "outside of the picture"),
         (Progress::AfterLoss, _) => quiet(ui, "After a lost device, nothing is traced until an edit has been drawn"),
         (Progress::Waits, _) if state.inspection.is_pinned() => quiet(ui, "Waiting for the final picture…"),

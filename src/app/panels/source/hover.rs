@@ -33,6 +33,7 @@ pub(super) fn show(
         Act::Condition => "A condition".to_owned(),
         Act::Return => format!("{kind}, returned"),
         Act::Discard => "Discards the fragment".to_owned(),
+        Act::Leave => "Returns without a value".to_owned(),
     };
     ui.horizontal(|ui| {
         ui.label(RichText::new(what).strong());

@@ -144,7 +144,7 @@ fn job_of(note: &Note, is_old: bool) -> LayoutJob {
         let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
         job.append(text, 0.0, format);
     };
-    let is_branch = matches!(note.done.act, Act::Condition | Act::Discard);
+    let is_branch = matches!(note.done.act, Act::Condition | Act::Discard | Act::Leave);
     add(&note.label, QUIET.color());
     if let Some(before) = &note.before {
         add(before, QUIET.color());

@@ -24,6 +24,13 @@ impl Around {
         (self.asked, self.found) = (Some((Arc::downgrade(trace), number)), None);
     }
 
+    /// Forgets the request, because the mouse has left the value. Returns whether it was under way.
+    pub(in crate::app) fn leave(&mut self) -> bool {
+        let is_under_way = self.asked.is_some() && self.found.is_none();
+        self.asked.take_if(|_| is_under_way);
+        is_under_way
+    }
+
     /// Takes the result of a request, if it is the newest.
     pub(in crate::app) fn take(&mut self, number: u64, found: Result<Neighborhood, String>) {
         if self.asked.as_ref().is_some_and(|(_, asked)| *asked == number) {

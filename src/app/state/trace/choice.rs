@@ -1,6 +1,6 @@
 //! Which of a pixel's fragments, calls, rounds and times the values are of.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::rounds::{Round, TracedLoop, traced_loops};
@@ -97,7 +97,7 @@ pub(in crate::app) fn evaluations<'a>(
     let is_it = move |doing: &Doing| match doing.act {
         Act::Store | Act::Argument => doing.name == expression,
         Act::Return => expression == "return",
-        Act::Condition | Act::Discard => false,
+        Act::Condition | Act::Discard | Act::Leave => false,
     };
     // A line may give a value to an argument and store to it.
     let (mut last, mut number): (HashMap<&Doing, u32>, u32) = (HashMap::new(), 0);
@@ -126,18 +126,23 @@ pub(in crate::app) struct ListedCall {
     pub(in crate::app) name: String,
     /// The index of the light that it is about.
     pub(in crate::app) light: Option<usize>,
+    /// Whether a `return` without a value ended it before its end: it may have left out what it is for.
+    pub(in crate::app) is_cut: bool,
 }
 
 /// The calls in a fragment and those that led to them, in the order of execution: each behind the one that made it.
 pub(in crate::app) fn listed_calls(trace: &Trace, fragment: usize) -> Vec<ListedCall> {
     let mut listed: Vec<ListedCall> = Vec::new();
+    let all = trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events);
+    let cut: HashSet<&str> = all.filter(|event| event.doing.act == Act::Leave).map(|event| &*event.calls).collect();
     for path in calls(trace, fragment).iter().flat_map(|path| paths_to(path)) {
         if listed.iter().any(|known| known.path == path) {
             continue;
         }
         let (name, depth) = last_call(path);
         let light = light_of(name).and_then(|number| number.checked_sub(1));
-        let call = ListedCall { path: path.to_owned(), depth, name: name.to_owned(), light };
+        let call =
+            ListedCall { path: path.to_owned(), depth, name: name.to_owned(), light, is_cut: cut.contains(path) };
         let caller = depth.checked_sub(1).and_then(|depth| paths_to(path).nth(depth));
         let is_within = |known: &ListedCall| caller.is_none_or(|caller| paths_to(&known.path).any(|of| of == caller));
         let end = listed.iter().rposition(is_within).map_or(0, |at| at + 1);

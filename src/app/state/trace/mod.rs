@@ -153,6 +153,7 @@ impl Traces {
         (self.asked, self.number, self.is_awaited) = (Some(subject), number, true);
         self.awaits_before = with_before;
         self.preparations.interrupt();
+        self.around.leave();
         self.progress = Progress::UnderWay(number);
     }
 
@@ -273,6 +274,11 @@ impl Traces {
     pub(in crate::app) fn lacks_around(&self) -> Option<Arc<PixelTrace>> {
         let newest = self.newest.as_ref().filter(|newest| newest.trace.is_ok() && self.around.lacks(newest))?;
         (self.progress == Progress::Done && !self.awaits_before).then(|| newest.clone())
+    }
+
+    /// Notes that the mouse is on no value. Returns whether the thread works on the values around one.
+    pub(in crate::app) fn leave_around(&mut self) -> bool {
+        self.around.leave() && !self.is_awaited && !self.awaits_before
     }
 
     /// Whether the thread works on a trace of this panel.

@@ -39,6 +39,11 @@ impl Preparations {
         (self.asked, self.is_done) = (Some((next, number)), false);
     }
 
+    /// Whether the last preparation has ended.
+    pub(in crate::app) fn is_done(&self) -> bool {
+        self.asked.is_some() && self.is_done
+    }
+
     /// Takes the end of a request, also one that failed. Returns the preparation, if it is the newest.
     pub(in crate::app) fn take(&mut self, number: u64) -> Option<&Preparation> {
         let (asked, _) = self.asked.as_ref().filter(|(_, asked)| *asked == number)?;

@@ -197,7 +197,7 @@ fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, decides: Decides) ->
         let label = match done.act {
             Act::Store | Act::Argument => format!("{} = ", done.name),
             Act::Return => format!("return{} ", done.name),
-            Act::Condition | Act::Discard => String::new(),
+            Act::Condition | Act::Discard | Act::Leave => String::new(),
         };
         let is_bad = done.values().any(|value| !value.is_finite());
         Note { done: done.clone(), label, values, before, is_bad }
@@ -209,12 +209,9 @@ fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, decides: Decides) ->
 fn values(done: &Done, decides: Decides) -> String {
     let count = done.count;
     match done.act {
-        Act::Discard => {
-            if count > 1 {
-                format!("discard ×{count}")
-            } else {
-                "discard".to_owned()
-            }
+        Act::Discard | Act::Leave => {
+            let name = if done.act == Act::Discard { "discard" } else { "return" };
+            if count > 1 { format!("{name} ×{count}") } else { name.to_owned() }
         }
         Act::Condition if done.values().count() == count => {
             let is_true = |value: TracedValue| value.numbers().any(|number| number != 0.0);

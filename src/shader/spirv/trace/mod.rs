@@ -59,6 +59,8 @@ pub enum Purpose {
     },
     /// Discards the pixel. Without a value.
     Discard,
+    /// Returns before the end of a function without a value.
+    Leave,
 }
 
 /// A place whose values are logged.
@@ -138,11 +140,14 @@ pub fn trace(words: &[u32], function: &str, logged: Logged, only: Option<&BTreeS
             Logged::Statements if !is_silent => Some((Branches::new(function), tracer.enter(function, &known))),
             _ => None,
         };
-        for block in &mut function.blocks {
+        let last = function.blocks.len().saturating_sub(1);
+        for (at, block) in function.blocks.iter_mut().enumerate() {
             match &entered {
                 _ if is_silent => block.body.retain(|i| !is_line(*i)),
                 None => block.body = tracer.floats(&block.body),
-                Some((branches, (_, caller))) => block.body = tracer.statements(&block.body, branches, *caller),
+                Some((branches, (_, caller))) => {
+                    block.body = tracer.statements(&block.body, branches, (*caller, at == last));
+                }
             }
         }
         if let (Some((_, (start, _))), Some(block)) = (entered, function.blocks.first_mut()) {

@@ -21,7 +21,13 @@ fn is_merge(i: Instruction) -> bool {
 
 impl Tracer<'_> {
     /// The instructions of a block with calls between them, without lines. `caller`: the number of the call that made the function's.
-    pub(super) fn statements(&mut self, body: &[Instruction], branches: &Branches, caller: Id) -> Vec<Instruction> {
+    /// `is_last`: the block ends the function.
+    pub(super) fn statements(
+        &mut self,
+        body: &[Instruction],
+        branches: &Branches,
+        (caller, is_last): (Id, bool),
+    ) -> Vec<Instruction> {
         let (mut out, mut line): (Vec<Instruction>, _) = (Vec::with_capacity(body.len()), None);
         for (at, &i) in body.iter().enumerate() {
             if is_line(i) {
@@ -40,7 +46,7 @@ impl Tracer<'_> {
                     // Copies of a body would each have to be compiled.
                     self.module[i][3] = self.module[i][3] & !UNROLL | DONT_UNROLL;
                 }
-            } else if !out.last().is_some_and(|i| is_merge(*i)) {
+            } else if !(out.last().is_some_and(|i| is_merge(*i)) || is_last && i.op == Op::Return) {
                 let constant = branches.constant(self.module, i, None);
                 self.statement(&mut out, i, line, constant);
             }
@@ -72,6 +78,7 @@ impl Tracer<'_> {
             (Op::ReturnValue, [value]) => (Purpose::Return, Some(*value)),
             (Op::BranchConditional | Op::Switch, [condition, ..]) => (Purpose::Condition, Some(*condition)),
             (Op::Kill | Op::TerminateInvocation | Op::DemoteToHelperInvocation, _) => (Purpose::Discard, None),
+            (Op::Return, _) => (Purpose::Leave, None),
             _ => return,
         };
         let line = constant.as_ref().map_or(line, |constant| constant.line);

@@ -125,6 +125,25 @@ fn statements_are_logged_with_what_they_do() {
                 "10 Return",
             ],
         ),
+        (
+            "void g(inout float x) {\n if (x > 1.0)\n  return;\n x = 2.0;\n if (x > 3.0) {\n  x = 1.0;\n  return;\n }\n x += 1.0; }\n\
+             float f(float x) {\n g(x);\n return x; }",
+            &[
+                "2 Enter(\"g\", None)",
+                "2 Argument(\"x\")",
+                "2 Condition",
+                "3 Leave",
+                "4 Store(\"x\")",
+                "5 Condition",
+                "6 Store(\"x\")",
+                "7 Leave",
+                "9 Store(\"x\")",
+                "11 Enter(\"f\", None)",
+                "11 Argument(\"x\")",
+                "11 Store(\"x\")",
+                "12 Return",
+            ],
+        ),
         // The compiler gives constants no line: that of their branch counts.
         (
             "float f(float x) {\n const bool ON = true;\n x += 1.0;\n if (ON)\n  x += 2.0;\n if (KIND == 1u) {\n  if (ON)\n   x += 3.0;\n \

@@ -110,10 +110,23 @@ fn passes_of_the_model_and_of_quads_are_traced() {
     let quads = "//@pass quads \"Quads\" draw=quads instances=2 to=picture blend\n#version 460\n#include \"interface.glsl\"\n\
         layout(location = 0) in flat int number;\nlayout(location = 0) out vec4 color;\n\
         void main() {\n    float part = 0.25 * float(number + 1);\n    color = vec4(0.0, part, 0.0, part);\n}\n";
-    let corners = "#version 460\n#include \"interface.glsl\"\nlayout(location = 0) out flat int number;\n\
+    let corners_text = "#version 460\n#include \"interface.glsl\"\nlayout(location = 0) out flat int number;\n\
         const vec2 CORNERS[6] = vec2[](vec2(-1, -1), vec2(0, -1), vec2(0, 1), vec2(-1, -1), vec2(0, 1), vec2(-1, 1));\n\
         void main() {\n    number = gl_InstanceIndex;\n    gl_Position = vec4(CORNERS[gl_VertexIndex], 0.8 - 0.2 * float(number), 1.0);\n}\n";
-    for (file, text) in [("normals.frag", normals), ("quads.frag", quads), ("quads.vert", corners)] {
+    // The model's own stage, with one more statement.
+    let of_model_vertices = std::fs::read_to_string(root.join("pbr.vert")).unwrap();
+    let of_model_vertices = of_model_vertices.replacen(
+        "void main() {\n",
+        "void main() {\n    vec4 shifted = vec4(float(gl_VertexIndex));\n",
+        1,
+    );
+    assert!(of_model_vertices.contains("shifted"));
+    for (file, text) in [
+        ("normals.frag", normals),
+        ("quads.frag", quads),
+        ("quads.vert", corners_text),
+        ("normals.vert", &of_model_vertices),
+    ] {
         tree.write(&format!("passes/{file}"), text);
     }
     let common = [&["ball.glb", "--json", "--shaders", root.to_str().unwrap()][..], &EYE].concat();
@@ -147,8 +160,31 @@ fn passes_of_the_model_and_of_quads_are_traced() {
     assert_eq!((&found["proof"]["equal"], &found["proof"]["blended_ulp"]), (&json!(true), &json!(0)), "{found}");
     assert_eq!(found["proof"]["picture"], json!([0.0, 0.625, 0.0, 0.625]), "{}", found["proof"]);
     of_quads("70,20").expect(2, &["passes/quads.frag draws nothing at the pixel 70,20"]);
-    run(&["--at", "20,20", "--stage", "passes/quads.vert"])
-        .expect(2, &["no stage passes/quads.vert", "vertex stages of other passes"]);
+    // The corners of a quad by its number, and those of the triangle at the pixel.
+    for (more, number, depth) in [(&[][..], 0, 0.8), (&["--invocation", "1"], 1, 0.6)] {
+        let found = run(&[&["--at", "20,20", "--stage", "passes/quads.vert"], more].concat()).expect(0, &[]).json();
+        let corners = found["fragments"].as_array().unwrap();
+        let vertices: Vec<&Value> = corners.iter().map(|of| &of["vertex"]).collect();
+        assert_eq!(vertices, [0, 1, 2, 3, 4, 5].map(Value::from).each_ref(), "{found}");
+        let position = corners[2]["position"].as_array().unwrap();
+        let depth_of = position[2].as_f64().unwrap();
+        assert!(position[0] == 0.0 && position[1] == 1.0 && near(depth_of, depth, 1e-6), "{found}");
+        let line = line_of(corners_text, "number =");
+        assert_eq!(values(&found, "passes/quads.vert", line, "number"), [json!(number)]);
+        assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
+    }
+    run(&["--at", "20,20", "--stage", "passes/quads.vert", "--invocation", "2"]).expect(2, &["places no quad 2"]);
+    let of_vertices = ["--at", "40,24", "--mode", "pass:normals", "--stage", "passes/normals.vert"];
+    let found = run(&of_vertices).expect(0, &[]).json();
+    assert_eq!(found["fragments"].as_array().map(Vec::len), Some(3), "{found}");
+    let of_picture = run(&["--at", "40,24", "--stage", "pbr.vert"]).expect(0, &[]).json();
+    let vertices = |of: &Value| -> Vec<Value> {
+        of["fragments"].as_array().unwrap().iter().map(|corner| corner["vertex"].clone()).collect()
+    };
+    assert_eq!(vertices(&found), vertices(&of_picture));
+    let line = line_of(&of_model_vertices, "vec4 shifted");
+    assert_eq!(values(&found, "passes/normals.vert", line, "shifted").len(), 1, "{found}");
+    assert_eq!(found["proof"]["equal"], json!(true), "{}", found["proof"]);
 }
 
 /// The image of a toy, and a buffer that counts frames.
