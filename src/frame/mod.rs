@@ -46,13 +46,23 @@ use glam::Mat4;
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHT_VIEWS, MAX_LIGHTS};
 use crate::scene::environment::MODEL;
-use crate::scene::{Bounds, CameraView, LightGrid, Model, Sun, lights, separates_suns, view_of, view_of_light};
+use crate::scene::{
+    Bounds, CameraView, LightGrid, Model, Sun, lights, moved_environment, separates_suns, view_of, view_of_light,
+};
 use crate::settings::Settings;
 use crate::shader::graph::RenderPhase;
 use crate::shader::{Mode, ShaderSet, values};
 
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
+
+/// Factor on the environment's radiance, and its angle around +Y, radians. A model's own environment has both in the pose too.
+fn environment_now(settings: &Settings, model: &Model) -> (f32, f32) {
+    let environment = &settings.environment;
+    let of_model = model.environment.as_ref().filter(|_| environment.name == MODEL);
+    let (intensity, angle) = of_model.map_or((1.0, 0.0), |of_model| moved_environment(of_model, &model.pose.values));
+    (environment.intensity * intensity, environment.rotation.to_radians() + angle)
+}
 
 /// The part of a frame that depends on neither camera, time nor size. Frames that differ only by these share it.
 struct Needs {
@@ -177,7 +187,7 @@ impl FrameState {
         );
         let lit = settings.environment.is_lit();
         let clip_from_world = camera.clip_from_world();
-        let turn = settings.environment.rotation.to_radians();
+        let (environment_intensity, turn) = environment_now(settings, model);
         let constants = Frame {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
@@ -206,7 +216,7 @@ impl FrameState {
             mode: pipelines.mode,
             largest_value: if target.is_half() { LARGEST_HALF } else { f32::MAX },
             environment_rotation: [turn.cos(), turn.sin()],
-            environment_intensity: if lit { settings.environment.intensity } else { 0.0 },
+            environment_intensity: if lit { environment_intensity } else { 0.0 },
             environment_blur: settings.environment.blur,
             sample_count: pipelines.paths_per_frame(),
             path_bounces: settings.view.bounces,

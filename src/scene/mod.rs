@@ -57,7 +57,7 @@ pub use motion::{Clip, Curve, Deformation, Displacement, Influence, Motion, Play
 pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
-pub use posing::{held_entry, moved_materials};
+pub use posing::{held_entry, moved_environment, moved_materials};
 pub use replace::{material_factors, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, slot_name, texture_sources};
 

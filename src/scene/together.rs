@@ -58,6 +58,8 @@ struct Offsets {
     values: usize,
     lights: usize,
     cameras: usize,
+    /// 0 for the model whose environment is shown.
+    environments: usize,
 }
 
 impl Offsets {
@@ -80,6 +82,8 @@ impl Offsets {
             Property::Cone(of) => Property::Cone(of + self.lights),
             Property::Fovy(of) => Property::Fovy(of + self.cameras),
             Property::Height(of) => Property::Height(of + self.cameras),
+            Property::EnvironmentIntensity(of) => Property::EnvironmentIntensity(of + self.environments),
+            Property::EnvironmentRotation(of) => Property::EnvironmentRotation(of + self.environments),
         }
     }
 
@@ -109,6 +113,7 @@ impl Together {
             values: self.motion.values.len(),
             lights: self.model.lights.len(),
             cameras: self.model.cameras.len(),
+            environments: usize::from(self.model.environment.is_some() || model.environment.is_none()),
         };
         let name = unused(&model.name, |name| self.members.iter().any(|member| *member.name == *name));
         let first_clip = self.motion.clips.len();

@@ -19,6 +19,7 @@ mod keys;
 mod layout;
 mod learn;
 mod losses;
+mod motion;
 mod open;
 mod panels;
 mod passes;

@@ -21,7 +21,7 @@ pub struct ModelEnvironment {
     pub side: u32,
     /// World from cube: how the cube is turned; a unit quaternion.
     pub rotation: Quat,
-    /// Factor on the values of the faces, cd/m^2; finite and not negative.
+    /// Factor on the values of the faces, cd/m^2, finite and not negative. Frames apply it, so that clips may move it.
     pub intensity: f32,
     /// The faces +X -X +Y -Y +Z -Z, RGBA with 8 bits a channel. The colors are sRGB-encoded and divided by alpha (RGBD). Rows are
     /// stored from the lower edge of a face of OpenGL's cube map to its upper edge, as the extension flips them.
@@ -30,10 +30,12 @@ pub struct ModelEnvironment {
 }
 
 impl ModelEnvironment {
+    /// Largest intensity; that of `environment.intensity`.
+    pub const MAX_INTENSITY: f32 = 1e6;
+
     /// An environment of these faces: `side * side * 4` bytes each.
     pub fn new(name: String, side: u32, (rotation, intensity): (Quat, f32), faces: [Vec<u8>; 6]) -> Self {
-        let numbers = [&rotation.to_array()[..], &[intensity]].concat();
-        let mut bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        let mut bytes: Vec<u8> = rotation.to_array().iter().flat_map(|number| number.to_le_bytes()).collect();
         bytes.extend(side.to_le_bytes());
         faces.iter().for_each(|face| bytes.extend(face));
         Self { name, side, rotation, intensity, faces, fingerprint: fingerprint(&bytes) }
@@ -51,7 +53,7 @@ impl ModelEnvironment {
         row.par_chunks_exact_mut(6 * side).enumerate().for_each(|(y, row)| {
             for (face, texels) in self.faces.iter().zip(row.chunks_exact_mut(side)) {
                 let from = &face.as_chunks::<4>().0[(side - 1 - y) * side..][..side];
-                texels.iter_mut().zip(from).for_each(|(texel, rgbd)| *texel = self.radiance(*rgbd));
+                texels.iter_mut().zip(from).for_each(|(texel, rgbd)| *texel = radiance(*rgbd));
             }
         });
         // The faces are those of OpenGL's cube map around the axes of glTF. Layouts have the front, glTF's -Z, in their fifth face.
@@ -63,15 +65,17 @@ impl ModelEnvironment {
         let warnings = warning.into_iter().collect();
         Environment { name: String::new(), width, height, pixels, peak, warnings }
     }
-
-    fn radiance(&self, [r, g, b, d]: [u8; 4]) -> [f32; 4] {
-        // An alpha of 0 is no divisor; encoders write at least 1.
-        let factor = self.intensity * 255.0 / f32::from(d.max(1));
-        let [r, g, b] = [r, g, b].map(|code| linear_from_srgb(f32::from(code) / 255.0) * factor);
-        [r, g, b, 1.0]
-    }
 }
 
+/// The radiance of a texel at an intensity of 1.
+fn radiance([r, g, b, d]: [u8; 4]) -> [f32; 4] {
+    // An alpha of 0 is no divisor; encoders write at least 1.
+    let factor = 255.0 / f32::from(d.max(1));
+    let [r, g, b] = [r, g, b].map(|code| linear_from_srgb(f32::from(code) / 255.0) * factor);
+    [r, g, b, 1.0]
+}
+
+/// Equal environments have the same pixels. Their intensity may differ.
 impl PartialEq for ModelEnvironment {
     fn eq(&self, other: &Self) -> bool {
         self.fingerprint == other.fingerprint

@@ -17,8 +17,6 @@ pub const EXTENSION: &str = "EXT_lights_image_based";
 
 /// Largest side of a face, pixels. The bake takes 1 GiB for such a cube.
 const MAX_SIDE: u32 = 2048;
-/// Largest factor on the faces; that of `environment.intensity`.
-const MAX_INTENSITY: f32 = 1e6;
 
 #[derive(Deserialize)]
 struct Lights {
@@ -50,8 +48,7 @@ pub fn read(
     scene: usize,
     warnings: &mut Vec<String>,
 ) -> Option<Arc<ModelEnvironment>> {
-    let used = root.scenes.get(scene)?.extensions.as_ref()?.others.get(EXTENSION)?;
-    let light = light(root, used).and_then(|light| environment(root, buffers, files, light));
+    let light = light(root, used(root, scene)?).and_then(|light| environment(root, buffers, files, light));
     let say = |problem: String| {
         warnings.push(format!(
             "{EXTENSION}: {problem}; the environment of the settings lights the model. Export the light again, or choose a map \
@@ -59,6 +56,16 @@ pub fn read(
         ));
     };
     light.map_err(say).ok().map(Arc::new)
+}
+
+/// The index of the light that a scene names.
+pub fn index(root: &json::Root, scene: usize) -> Option<usize> {
+    Used::deserialize(used(root, scene)?).ok().map(|used| used.light)
+}
+
+/// The entry of the extension in a scene.
+fn used(root: &json::Root, scene: usize) -> Option<&json::Value> {
+    root.scenes.get(scene)?.extensions.as_ref()?.others.get(EXTENSION)
 }
 
 /// The light that a scene uses.
@@ -80,9 +87,9 @@ fn environment(
     files: &mut Files<'_>,
     light: Light,
 ) -> Result<ModelEnvironment, String> {
-    let intensity = light.intensity.unwrap_or(1.0);
-    if !(0.0..=MAX_INTENSITY).contains(&intensity) {
-        return Err(format!("the intensity is {intensity}, expected 0 to {MAX_INTENSITY}"));
+    let (intensity, most) = (light.intensity.unwrap_or(1.0), ModelEnvironment::MAX_INTENSITY);
+    if !(0.0..=most).contains(&intensity) {
+        return Err(format!("the intensity is {intensity}, expected 0 to {most}"));
     }
     let rotation = Quat::from_array(light.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
     if !rotation.is_finite() || !(0.5..2.0).contains(&rotation.length()) {

@@ -100,7 +100,7 @@ fn build(
     let mut scene = nodes::walk(&root, scene, &pointers::switched_nodes(&raw.animations))?;
     let weights = skins::attach(reader, &raw, &mut scene);
     left_out.append(std::mem::take(&mut scene.left_out));
-    let (clips, values) = animations::read(reader, &raw.animations, &scene.rig, &mut left_out);
+    let (clips, values) = animations::read((reader, scene_index), &raw.animations, &scene.rig, &mut left_out);
     let material::Materials { materials, textures, images, warnings: material_warnings } =
         material::read(&root, &mut left_out);
     let variants = variants::names(&root, &mut warnings);

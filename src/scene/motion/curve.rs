@@ -59,6 +59,11 @@ impl Curve {
         self.values.iter().any(|number| *number != 0.0)
     }
 
+    /// The times of the keys, seconds, ascending.
+    pub fn times(&self) -> &[f32] {
+        &self.times
+    }
+
     /// Number of keys.
     pub fn keys(&self) -> usize {
         self.times.len()

@@ -1,7 +1,9 @@
-//! The properties that animations move beside nodes: numbers of materials, lights and cameras (KHR_animation_pointer).
+//! The properties that animations move beside nodes: numbers of materials, lights, cameras and the environment (KHR_animation_pointer).
 
-use glam::Vec3;
+use glam::{DQuat, Vec3};
 
+use super::curve::Curve;
+use super::transform::slerp;
 use crate::settings::Factor;
 
 /// Numbers that belong together, of a material, light or camera of the model.
@@ -33,6 +35,10 @@ pub enum Property {
     Fovy(usize),
     /// Half the height of what a parallel camera sees.
     Height(usize),
+    /// Intensity of a model's environment. Index 0 is the environment that is shown.
+    EnvironmentIntensity(usize),
+    /// Rotation of a model's environment, a quaternion; indices as for its intensity.
+    EnvironmentRotation(usize),
 }
 
 impl Property {
@@ -47,7 +53,13 @@ impl Property {
             | Self::ThinnestFilm(index)
             | Self::Factor(index, _)
             | Self::Texture(index, _) => Some(index),
-            Self::Light(_) | Self::Range(_) | Self::Cone(_) | Self::Fovy(_) | Self::Height(_) => None,
+            Self::Light(_)
+            | Self::Range(_)
+            | Self::Cone(_)
+            | Self::Fovy(_)
+            | Self::Height(_)
+            | Self::EnvironmentIntensity(_)
+            | Self::EnvironmentRotation(_) => None,
         }
     }
 }
@@ -62,11 +74,23 @@ pub struct Values {
 }
 
 impl Values {
-    /// Mixes numbers, from `first` on, with others.
-    pub fn mix(&mut self, first: usize, to: &[f64], weight: f64) {
-        for (number, to) in self.numbers.iter_mut().skip(first).zip(to) {
+    /// Mixes numbers, from `first` on, with those of a curve.
+    pub fn follow(&mut self, first: usize, curve: &Curve, time_s: f64, weight: f64) {
+        if let Some(from) = self.rotation() {
+            let to = curve.rotation(time_s).unwrap_or(from);
+            self.numbers = slerp(from, to, weight).to_array().into();
+            return;
+        }
+        for (number, to) in self.numbers.iter_mut().skip(first).zip(curve.numbers(time_s)) {
             *number += (to - *number) * weight;
         }
+    }
+
+    /// The rotation, of a property that is one.
+    pub fn rotation(&self) -> Option<DQuat> {
+        let rotation = DQuat::from_slice(self.numbers.get(..4)?);
+        let is_one = matches!(self.property, Property::EnvironmentRotation(_));
+        is_one.then(|| if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY })
     }
 
     /// A number; 0 beyond the last.

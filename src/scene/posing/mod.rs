@@ -10,4 +10,4 @@ mod values;
 mod vertices;
 
 pub use held::held_entry;
-pub use values::moved_materials;
+pub use values::{moved_environment, moved_materials};

@@ -203,7 +203,7 @@ impl Moved {
                     *number += ((to - f64::from(*number)) * weight) as f32;
                 }
             }
-            Target::Values(index, first) => self.values[index].mix(first, &curve.numbers(time_s), weight),
+            Target::Values(index, first) => self.values[index].follow(first, curve, time_s, weight),
         }
     }
 }

@@ -1,9 +1,10 @@
-//! Gives materials, lights and cameras the values of a moment (KHR_animation_pointer).
+//! Gives materials, lights, cameras and the environment the values of a moment (KHR_animation_pointer).
 
 use std::collections::BTreeMap;
 
 use glam::{Affine2, Vec2, Vec3};
 
+use crate::scene::environment::ModelEnvironment;
 use crate::scene::material::Material;
 use crate::scene::motion::{Property, Values};
 use crate::scene::objects::{Camera, Lens, Light, LightKind};
@@ -53,7 +54,13 @@ fn move_material(material: &mut Material, value: &Values) {
                 used.uv_from_mesh = affine;
             }
         }
-        Property::Light(_) | Property::Range(_) | Property::Cone(_) | Property::Fovy(_) | Property::Height(_) => {}
+        Property::Light(_)
+        | Property::Range(_)
+        | Property::Cone(_)
+        | Property::Fovy(_)
+        | Property::Height(_)
+        | Property::EnvironmentIntensity(_)
+        | Property::EnvironmentRotation(_) => {}
     }
 }
 
@@ -105,4 +112,20 @@ pub fn move_camera(camera: &mut Camera, index: usize, values: &[Values]) {
             _ => {}
         }
     }
+}
+
+/// The intensity of the model's environment, and the angle around +Y from its rotation in the file to that of the moment, radians.
+pub fn moved_environment(environment: &ModelEnvironment, values: &[Values]) -> (f32, f32) {
+    let (mut intensity, mut angle) = (environment.intensity, 0.0);
+    for value in values {
+        match value.property {
+            Property::EnvironmentIntensity(0) => intensity = value.at(0).clamp(0.0, ModelEnvironment::MAX_INTENSITY),
+            Property::EnvironmentRotation(0) => {
+                let from_file = value.rotation().unwrap_or_default() * environment.rotation.as_dquat().inverse();
+                angle = 2.0 * from_file.y.atan2(from_file.w) as f32;
+            }
+            _ => {}
+        }
+    }
+    (intensity, angle)
 }

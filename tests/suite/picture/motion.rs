@@ -8,30 +8,8 @@ use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder as _, RgbaImage};
 use serde_json::json;
 
-/// A square of 1 m that goes 2 m to the right in a second (clip `go`), or 1 m up at once (clip `jump`).
 fn write_model(path: &Path) {
-    let (mut json, mut bin) = glb::document(&glb::quad(0.5), &glb::gray());
-    let mut accessor = |kind: &str, values: &[f32]| {
-        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        let view = json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": bytes.len() });
-        bin.extend(&bytes);
-        json["bufferViews"].as_array_mut().unwrap().push(view);
-        let view = json["bufferViews"].as_array().unwrap().len() - 1;
-        let count = if kind == "VEC3" { values.len() / 3 } else { values.len() };
-        let all = json["accessors"].as_array_mut().unwrap();
-        all.push(json!({ "bufferView": view, "componentType": 5126, "count": count, "type": kind }));
-        all.len() - 1
-    };
-    let times = accessor("SCALAR", &[0.0, 1.0]);
-    let right = accessor("VEC3", &[-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
-    let up = accessor("VEC3", &[0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
-    let clip = |name: &str, output: usize| {
-        json!({ "name": name, "samplers": [{ "input": times, "output": output }],
-            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] })
-    };
-    json["animations"] = json!([clip("go", right), clip("jump", up)]);
-    json["buffers"][0]["byteLength"] = json!(bin.len());
-    std::fs::write(path.join("moving.glb"), glb::container(&json, &bin)).unwrap();
+    std::fs::write(path.join("moving.glb"), glb::moving_quad()).unwrap();
 }
 
 /// Arguments of a picture of 4 m by 4 m that is fast.

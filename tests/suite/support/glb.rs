@@ -190,6 +190,34 @@ pub fn model_with_lights(mesh: &Mesh, material: &Value, light: &Value, node: &Va
     container(&json, &bin)
 }
 
+/// Adds floats to a document. Returns the index of their accessor.
+pub fn accessor(json: &mut Value, bin: &mut Vec<u8>, kind: &str, values: &[f32]) -> usize {
+    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let views = json["bufferViews"].as_array_mut().unwrap();
+    let view = views.len();
+    views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": bytes.len() }));
+    bin.extend(&bytes);
+    json["buffers"][0]["byteLength"] = json!(bin.len());
+    let width = if kind == "SCALAR" { 1 } else { usize::from(kind.as_bytes()[3] - b'0') };
+    let all = json["accessors"].as_array_mut().unwrap();
+    all.push(json!({ "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind }));
+    all.len() - 1
+}
+
+/// A gray square of 1 m that goes from 1 m left of the origin to 1 m right of it in a second (clip `go`), or is 1 m up (clip `jump`).
+pub fn moving_quad() -> Vec<u8> {
+    let (mut json, mut bin) = document(&quad(0.5), &gray());
+    let times = accessor(&mut json, &mut bin, "SCALAR", &[0.0, 1.0]);
+    let right = accessor(&mut json, &mut bin, "VEC3", &[-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let up = accessor(&mut json, &mut bin, "VEC3", &[0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    let clip = |name: &str, output: usize| {
+        json!({ "name": name, "samplers": [{ "input": times, "output": output }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] })
+    };
+    json["animations"] = json!([clip("go", right), clip("jump", up)]);
+    container(&json, &bin)
+}
+
 /// A gray dielectric.
 pub fn gray() -> Value {
     json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.5, 0.5, 1.0], "metallicFactor": 0.0,

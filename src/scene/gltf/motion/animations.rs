@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::DQuat;
 use gltf::json;
 use json::accessor::{ComponentType as C, Type};
 use serde::Deserialize;
@@ -55,7 +56,7 @@ struct RawSampler {
 
 /// Reads the clips, and the values of the file that they move.
 pub fn read(
-    reader: Reader<'_>,
+    (reader, scene): (Reader<'_>, usize),
     animations: &[json::Value],
     rig: &Rig,
     left_out: &mut LeftOut,
@@ -64,7 +65,7 @@ pub fn read(
         return Default::default();
     }
     let (nodes, times, curves, values) = (HashMap::new(), HashMap::new(), HashMap::new(), Vec::new());
-    let mut clips = Clips { reader, rig, nodes, times, curves, values, numbers: 0 };
+    let mut clips = Clips { reader, scene, rig, nodes, times, curves, values, numbers: 0 };
     for (at, node) in rig.nodes.iter().enumerate() {
         clips.nodes.entry(node.index).or_default().push(at);
     }
@@ -75,6 +76,8 @@ pub fn read(
 
 struct Clips<'a> {
     reader: Reader<'a>,
+    /// The scene that is shown.
+    scene: usize,
     rig: &'a Rig,
     /// The nodes of the rig with an index in the file.
     nodes: HashMap<usize, Vec<usize>>,
@@ -122,12 +125,15 @@ impl Clips<'_> {
             (None, Some(node)) => self.nodes(sampler, (&[*node], path), place),
             // A channel without a node is for nobody (glTF 2.0, section 3.11).
             (None, None) => Ok(Vec::new()),
-            (Some(pointer), _) => match pointers::resolve(pointer, self.reader.root, self.rig) {
+            (Some(pointer), _) => match pointers::resolve(pointer, (self.reader.root, self.scene), self.rig) {
                 Some(Pointed::Nodes(nodes, path)) => self.nodes(sampler, (&nodes, &path), place),
                 Some(Pointed::Visible(node)) => self.visible(sampler, node, place),
                 Some(Pointed::Weight(nodes, target)) => self.weight(sampler, (&nodes, target), place),
                 Some(Pointed::Values(values, first, width)) => {
                     let curve = self.curve(sampler, width, place)?;
+                    if let Some(from) = values.iter().find_map(Values::rotation) {
+                        turns_around_y(&curve, from, place)?;
+                    }
                     let channel = |values| {
                         let target = Target::Values(self.index_of(values), first);
                         Channel { target, curve: curve.clone() }
@@ -273,5 +279,18 @@ impl Clips<'_> {
             return Err(Problem::invalid(place, format!("at most {MOST_NUMBERS} numbers in all animations"), "more"));
         }
         self.reader.numbers(json::Index::new(accessor as u32), format, place)
+    }
+}
+
+/// Refuses rotations that are not `from` turned around +Y: frames turn the environment around that axis alone.
+fn turns_around_y(curve: &Curve, from: DQuat, place: &str) -> Result<(), Problem> {
+    let turns = curve.times().iter().filter_map(|time| Some(curve.rotation(f64::from(*time))? * from.inverse()));
+    match turns.map(|turn| turn.x.hypot(turn.z)).find(|tilt| *tilt > 1e-3) {
+        Some(tilt) => {
+            let degrees = (2.0 * tilt.min(1.0).asin()).to_degrees();
+            let expected = "rotations of the environment around +Y, from that of the file";
+            Err(Problem::invalid(place, expected, format!("one that tilts it by {degrees:.0} degrees")))
+        }
+        None => Ok(()),
     }
 }

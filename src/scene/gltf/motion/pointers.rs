@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::interface as contract;
 use crate::scene::extensions::SPECULAR_GLOSSINESS;
+use crate::scene::gltf::environment;
 use crate::scene::motion::{Property, Rig, Values};
 use crate::settings::Factor;
 
@@ -173,13 +174,19 @@ pub fn switched_nodes(animations: &[Value]) -> HashSet<usize> {
     channels.filter_map(node).collect()
 }
 
-/// Resolves a pointer; `None` if the model has no such thing.
-pub fn resolve(pointer: &str, root: &json::Root, rig: &Rig) -> Option<Pointed> {
+/// Resolves a pointer of a file of which this scene is shown; `None` if the model has no such thing.
+pub fn resolve(pointer: &str, (root, scene): (&json::Root, usize), rig: &Rig) -> Option<Pointed> {
     let (kind, rest) = pointer.strip_prefix('/')?.split_once('/')?;
     let (index, path) = match kind {
         "extensions" => {
-            let (index, path) = rest.strip_prefix("KHR_lights_punctual/lights/")?.split_once('/')?;
-            return light(index.parse().ok()?, path, root, rig);
+            let (extension, rest) = rest.split_once("/lights/")?;
+            let (index, path) = rest.split_once('/')?;
+            let index = index.parse().ok()?;
+            return match extension {
+                "KHR_lights_punctual" => light(index, path, root, rig),
+                environment::EXTENSION => image_based(index, path, root, scene),
+                _ => None,
+            };
         }
         _ => rest.split_once('/')?,
     };
@@ -266,6 +273,22 @@ fn light(index: usize, path: &str, root: &json::Root, rig: &Rig) -> Option<Point
     };
     let of = |light: usize| Values { property: make(light), numbers: rest.clone() };
     Some(Pointed::Values(rig.lights_of(index).map(of).collect(), first, width))
+}
+
+/// A number of an image-based light. The environment is the light that the scene names.
+fn image_based(index: usize, path: &str, root: &json::Root, scene: usize) -> Option<Pointed> {
+    let lights = root.extensions.as_ref()?.others.get(environment::EXTENSION)?.get("lights")?;
+    let of_file = lights.get(index)?;
+    let (property, default): (_, &[f64]) = match path {
+        "intensity" => (Property::EnvironmentIntensity(0), &[1.0]),
+        "rotation" => (Property::EnvironmentRotation(0), &[0.0, 0.0, 0.0, 1.0]),
+        _ => return None,
+    };
+    if environment::index(root, scene) != Some(index) {
+        return Some(Pointed::Unused);
+    }
+    let values = Values { property, numbers: numbers(of_file, path, default) };
+    Some(Pointed::Values(vec![values], 0, default.len()))
 }
 
 /// The numbers at a path of the file, or their defaults.

@@ -1,6 +1,5 @@
 //! The environment that a glTF file brings along (`EXT_lights_image_based`), against the same cube as an EXR file.
 
-use std::f64::consts::FRAC_1_SQRT_2;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -70,8 +69,17 @@ fn strip() -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// A ball with this cube as the light of its scene.
-fn write_ball(folder: &Path) {
+/// A rotation around +Y, as glTF writes it.
+fn around_y(degrees: f32) -> [f32; 4] {
+    let (sin, cos) = (degrees.to_radians() / 2.0).sin_cos();
+    [0.0, sin, 0.0, cos]
+}
+
+/// Intensity and rotation of a light, degrees around +Y.
+type Lit = (f32, f32);
+
+/// A ball with this cube as the light of its scene, and with a clip of a second in which the light becomes another.
+fn write_ball(folder: &Path, (intensity, degrees): Lit, end: Option<Lit>) {
     let metal = json!({ "pbrMetallicRoughness": { "roughnessFactor": 0.2 } });
     let (mut json, mut bin) = glb::document(&glb::sphere(16, 32), &metal);
     let mut images = Vec::new();
@@ -92,11 +100,51 @@ fn write_ball(folder: &Path) {
     json["images"] = json!(images);
     json["buffers"][0]["byteLength"] = json!(bin.len());
     json["extensionsUsed"] = json!(["EXT_lights_image_based"]);
-    json["extensions"]["EXT_lights_image_based"]["lights"] = json!([{ "intensity": INTENSITY,
-        "rotation": [0.0, FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2], "specularImageSize": SIDE,
+    json["extensions"]["EXT_lights_image_based"]["lights"] = json!([{ "intensity": intensity,
+        "rotation": around_y(degrees), "specularImageSize": SIDE,
         "specularImages": [[0, 1, 2, 3, 4, 5]], "irradianceCoefficients": vec![[0.0; 3]; 9] }]);
     json["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = json!(0);
+    if let Some((to_intensity, to_degrees)) = end {
+        let input = glb::accessor(&mut json, &mut bin, "SCALAR", &[0.0, 1.0]);
+        let outputs = [
+            glb::accessor(&mut json, &mut bin, "SCALAR", &[intensity, to_intensity]),
+            glb::accessor(&mut json, &mut bin, "VEC4", &[around_y(degrees), around_y(to_degrees)].concat()),
+        ];
+        let channel = |(sampler, member): (usize, &str)| {
+            let pointer = json!({ "pointer": format!("/extensions/EXT_lights_image_based/lights/0/{member}") });
+            let target = json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": pointer } });
+            json!({ "sampler": sampler, "target": target })
+        };
+        json["animations"] = json!([{
+            "samplers": outputs.map(|output| json!({ "input": input, "output": output })),
+            "channels": [(0, "intensity"), (1, "rotation")].map(channel),
+        }]);
+        json["extensionsUsed"].as_array_mut().unwrap().push(json!("KHR_animation_pointer"));
+    }
     fs::write(folder.join("ball.glb"), glb::container(&json, &bin)).unwrap();
+}
+
+/// A clip changes the light without baking it anew, and the picture is that of a file whose light is so.
+#[test]
+fn a_clip_dims_and_turns_the_light_of_a_gltf_file() {
+    let directory = folder();
+    let folder = directory.path();
+    let picture = |start: Lit, end: Option<Lit>, time: &str| {
+        write_ball(folder, start, end);
+        lit_by(folder, "model", &["--background", "env", "--time", time]).expect(0, &[]);
+        open_image(&folder.join("out.exr")).into_rgb32f().into_raw()
+    };
+    let clip = Some((0.75, 210.0));
+    let half = picture((0.0, 90.0), clip, "0.5");
+    let still = picture((0.375, 150.0), None, "0");
+    // The bake samples another grid of directions.
+    let mean = |a: &[f32], b: &[f32]| {
+        let sum: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
+        sum / b.iter().sum::<f32>()
+    };
+    assert!(mean(&half, &still) < 0.02, "the picture differs by {} of its mean", mean(&half, &still));
+    let early = picture((0.0, 90.0), clip, "0.25");
+    assert!(mean(&early, &still) > 0.2, "the time changes nothing: {}", mean(&early, &still));
 }
 
 #[test]
@@ -104,7 +152,7 @@ fn the_light_of_a_gltf_file_is_that_of_the_same_cube_as_a_map() {
     let directory = folder();
     let folder = directory.path();
     lit_by(folder, "model", &[]).expect(1, &["EXT_lights_image_based", "this model has none", "studio, furnace, sky"]);
-    write_ball(folder);
+    write_ball(folder, (INTENSITY as f32, 90.0), None);
     fs::write(folder.join("strip.exr"), strip()).unwrap();
     let picture = |environment: &str, more: &[&str]| {
         lit_by(folder, environment, &[&["--background", "env"], more].concat()).expect(0, &[]);
