@@ -90,9 +90,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let whole = |file: &str| whole_path(&shaders, opened.as_ref(), file);
     args.assert.iter_mut().for_each(|assertion| assertion.file = whole(&assertion.file));
     let mut named: Vec<String> = args.file.iter().map(|file| whole(file)).collect();
-    if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
+    if named.is_empty() && args.assert.is_empty() {
         // The stage around a single file is not what the user has written.
-        named.extend(opened.as_ref().map(TreePath::to_string));
+        let of_stage = |stage: &String| whole(shaders.name_of(shaders.stage_named(stage)?)).into();
+        let own = args.stage.as_ref().map_or_else(|| opened.as_ref().map(TreePath::to_string), of_stage);
+        named.extend(own.filter(|_| opened.is_some()));
     }
     let asserted_files = args.assert.iter().map(|assertion| assertion.file.as_str());
     let files: Vec<&str> = named.iter().map(String::as_str).chain(asserted_files).collect();
@@ -122,7 +124,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         }
         print_json(&value);
     } else {
-        print(args.at, &trace, fragment);
+        print(args.at, &shaders, &trace, fragment);
     }
     // The validation layers also report errors when objects are destroyed.
     drop(headless);
@@ -177,9 +179,9 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
     }
 }
 
-fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
+fn print((x, y): (u32, u32), shaders: &ShaderSet, trace: &Trace, fragment: usize) {
     let count = trace.fragments.len() + trace.left_out as usize;
-    let (stage, proof) = (&trace.stage, trace.proof_text(fragment));
+    let (stage, proof) = (shaders.name_of(&trace.stage), trace.proof_text(fragment));
     match trace.kind {
         StageKind::Fragment => {
             out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}");
@@ -195,7 +197,7 @@ fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
     let numbers = lines.iter().map(|line| line.line).chain(not_reached.values().flatten().copied());
     let width = numbers.max().unwrap_or(0).to_string().len();
     for of_file in lines.chunk_by(|a, b| a.file == b.file) {
-        out!("\n{}", of_file[0].file);
+        out!("\n{}", shaders.name_of(&of_file[0].file));
         for line in of_file {
             out!("  {:>width$}  {:<CODE$}  {}", line.line, line.code, line.text());
         }

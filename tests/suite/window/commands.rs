@@ -109,7 +109,7 @@ fn a_program_drives_the_window_by_standard_input() {
         (json!({"command": "set", "values": "view.exposure=1"}), "Did you mean `view.ev`?"),
         (json!({"command": "set", "values": ["view.ev=1", "view.ev=99"]}), "view.ev is 99"),
         (json!({"command": "set", "values": {"no_such_name": 1}}), "no_such_name"),
-        (json!({"command": "mode", "name": "ruffness"}), "Did you mean `roughness`?"),
+        (json!({"command": "mode", "name": "rougness"}), "Did you mean `roughness`?"),
         (json!({"command": "probe", "at": [9999, 0]}), "is outside of the picture"),
         (json!({"command": "capture", "file": "a.jpg"}), "a.jpg"),
         (json!({"command": "capture", "size": [1, 1000000]}), "pixels a side"),
