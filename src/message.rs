@@ -10,8 +10,8 @@ use std::io::{ErrorKind, Write as _, stderr, stdout};
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError};
 
-/// Least similarity, 0..1, for a suggestion.
-const LEAST_LIKENESS: f64 = 0.4;
+/// Fewest letters of a typed word that can stand for a longer name with this word in it.
+const LEAST_PART: usize = 4;
 /// Longest name that is compared with others, in bytes: the time grows with the square of the length.
 const LONGEST_NAME: usize = 64;
 
@@ -164,18 +164,32 @@ pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
     best(candidates.into_iter().map(likeness))
 }
 
-/// The similarity of two names, 0..1; 1 if they differ only in case. 0 if one is longer than any name.
-pub(crate) fn likeness(a: &str, b: &str) -> f64 {
-    if a.len().max(b.len()) > LONGEST_NAME {
+/// The similarity of a typed name and a known one, 0..1; 1 if they differ only in case. 0 if the known one is not near enough to be meant:
+/// more letters differ than [`most_typos`], and the typed word is no part of it.
+pub(crate) fn likeness(typed: &str, known: &str) -> f64 {
+    if typed.len().max(known.len()) > LONGEST_NAME {
         return 0.0;
     }
-    strsim::normalized_damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
+    let (typed, known) = (typed.to_lowercase(), known.to_lowercase());
+    let (letters, most) = (typed.chars().count(), typed.chars().count().max(known.chars().count()));
+    let distance = strsim::damerau_levenshtein(&typed, &known);
+    let is_part = letters >= LEAST_PART && known.contains(&typed);
+    if distance > most_typos(letters) && !is_part { 0.0 } else { 1.0 - distance as f64 / most.max(1) as f64 }
 }
 
-/// The first candidate with the greatest similarity, if that is enough for a suggestion.
+/// How many letters of a typed word may differ from the name that is meant: a third, and two of a word with four or five.
+pub(crate) fn most_typos(letters: usize) -> usize {
+    match letters {
+        0 | 1 => 0,
+        2 | 3 => 1,
+        letters => (letters / 3).max(2),
+    }
+}
+
+/// The first candidate with the greatest similarity, unless that is 0.
 pub(crate) fn best<'a>(candidates: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
     let (likeness, best) = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
-    (likeness > LEAST_LIKENESS).then_some(best)
+    (likeness > 0.0).then_some(best)
 }
 
 /// The question at the end of a message about an unknown name, as `` Did you mean `studio`? `` with a leading space; empty if no
@@ -217,6 +231,10 @@ mod tests {
             assert_eq!(nearest(typed, names), expected, "{typed}");
         }
         assert_eq!(nearest("x", []), None);
+        for (typed, known) in [("foo", "fovy"), ("metal", "petals"), ("gold", "model"), ("x", "y"), ("sun", "sky")] {
+            assert_eq!(nearest(typed, [known]).is_some(), typed == "metal", "{typed} {known}");
+        }
+        assert_eq!(nearest("helmet", ["Boots", "DamagedHelmet"]), Some("DamagedHelmet"), "a part of a name");
         assert_eq!(did_you_mean("sly", names), " Did you mean `sky`?");
     }
 

@@ -8,9 +8,9 @@
 #include "brdf/visibility.glsl"
 #include "common/sampling.glsl"
 
-// Each strip has the lobe's smaller alpha and a normal that is tilted along t. The slopes x of GGX along t have the
-// density 1 / (2 a (1 + x^2 / a^2)^(3/2)); each strip takes the middle of an equal share of it. An isotropic lobe
-// already has a width, so a^2 is the difference of the two alpha^2; without anisotropy all strips coincide. A strip is
+// A strip has the lobe's smaller alpha and a normal tilted along t by the slope x, the middle of an equal share of GGX's slopes. Their
+// density is D cos^4 (D: Walter et al. 2007, eq. 33), integrated over the slopes along b: 1 / (2 a (1 + x^2 / a^2)^(3/2)). An isotropic
+// lobe already has a width, so a^2 is the difference of the two alpha^2; without anisotropy all strips coincide. A strip is
 // weighted like a facet with its normal, V NoL VoH / NoH (Walter et al. 2007, eq. 41), and by the selected D over GGX.
 const int STRIPS = 8;
 

@@ -97,9 +97,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         }
     }
     let mut named = args.file.iter().map(|file| whole(file)).collect::<Result<Vec<String>, _>>()?;
-    if named.is_empty() && args.assert.is_empty() && args.stage.is_none() {
+    if named.is_empty() && args.assert.is_empty() {
         // The stage around a single file is not what the user has written.
-        named.extend(opened.as_ref().map(TreePath::to_string));
+        let of_stage = |stage: &String| whole(shaders.name_of(shaders.stage_named(stage)?)).ok();
+        let own = args.stage.as_ref().map_or_else(|| opened.as_ref().map(TreePath::to_string), of_stage);
+        named.extend(own.filter(|_| opened.is_some()));
     }
     let asserted_files = args.assert.iter().map(|assertion| assertion.file.as_str());
     let files: Vec<&str> = named.iter().map(String::as_str).chain(asserted_files).collect();
@@ -129,7 +131,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         }
         print_json(&value);
     } else {
-        print(args.at, &trace, fragment);
+        print(args.at, &shaders, &trace, fragment);
     }
     // The validation layers also report errors when objects are destroyed.
     drop(headless);
@@ -197,9 +199,9 @@ fn chosen(trace: &Trace, wanted: Option<usize>) -> Result<usize, Failure> {
     }
 }
 
-fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
+fn print((x, y): (u32, u32), shaders: &ShaderSet, trace: &Trace, fragment: usize) {
     let count = trace.fragments.len() + trace.left_out as usize;
-    let (stage, proof) = (&trace.stage, trace.proof_text(fragment));
+    let (stage, proof) = (shaders.name_of(&trace.stage), trace.proof_text(fragment));
     match trace.kind {
         StageKind::Fragment => {
             out!("pixel {x} {y}, {stage}, fragment {fragment} of {count}: {proof}");
@@ -215,7 +217,7 @@ fn print((x, y): (u32, u32), trace: &Trace, fragment: usize) {
     let numbers = lines.iter().map(|line| line.line).chain(not_reached.values().flatten().copied());
     let width = numbers.max().unwrap_or(0).to_string().len();
     for of_file in lines.chunk_by(|a, b| a.file == b.file) {
-        out!("\n{}", of_file[0].file);
+        out!("\n{}", shaders.name_of(&of_file[0].file));
         for line in of_file {
             out!("  {:>width$}  {:<CODE$}  {}", line.line, line.code, line.text());
         }

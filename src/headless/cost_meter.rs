@@ -77,10 +77,15 @@ impl CostMeter {
         let stage = stage.map_err(HeadlessError::Settings)?;
         let all = stage.functions();
         if let Some(unknown) = request.functions.iter().find(|name| !all.iter().any(|(of, _)| has_name(of, name))) {
-            let message = format!("{path} has no function {unknown} that is compiled and that the author wrote");
+            let message = format!(
+                "{} has no function {unknown} that is compiled and that the author wrote",
+                shaders.name_of(&path)
+            );
             return Err(HeadlessError::Settings(message));
         }
-        let wanted: Vec<usize> = (0..all.len()).filter(|at| is_named(&all[*at].0, request.functions)).collect();
+        let wanted: Vec<usize> = (0..all.len())
+            .filter(|at| shaders.is_authored(&all[*at].0.file) && is_named(&all[*at].0, request.functions))
+            .collect();
         let Recording { results, invocations, calls } = self.record(request, tools, (&stage, &wanted), state.size)?;
         let mut run = Run { meter: self, request, tools, stage: &stage, path: &path, address: results.address() };
         let (whole, base) = run.bound(None)?;
@@ -131,7 +136,10 @@ impl CostMeter {
         let name = &self.gpu.info().name;
         match can_write {
             true => Ok(()),
-            false => Err(HeadlessError::Settings(format!("{name} cannot write buffers from {path}, which this needs"))),
+            false => Err(HeadlessError::Settings(format!(
+                "{name} cannot write buffers from {}, which this needs",
+                shaders.name_of(path)
+            ))),
         }
     }
 
@@ -269,10 +277,11 @@ fn bound(
 fn chosen(state: &FrameState, wanted: Option<&str>) -> Result<String, HeadlessError> {
     let Some(wanted) = wanted else { return stage_plan::choose(state, None, &[]) };
     let all = state.pipelines.stages();
-    match all.contains(wanted) {
-        true => Ok(wanted.to_owned()),
-        false => {
-            let list = all.into_iter().collect::<Vec<_>>().join(", ");
+    let shaders = &state.shaders;
+    match shaders.stage_named(wanted).filter(|stage| all.contains(*stage)) {
+        Some(stage) => Ok(stage.to_owned()),
+        None => {
+            let list = all.iter().map(|stage| shaders.name_of(stage)).collect::<Vec<_>>().join(", ");
             Err(HeadlessError::Settings(format!("the picture has no stage {wanted}; it has {list}")))
         }
     }

@@ -8,12 +8,13 @@ use crate::shader::graph::Input;
 use crate::shader::{GraphPass, TreePath, embedded};
 
 impl Headless {
-    /// The names of the passes whose image or buffer continues from frame to frame.
+    /// The names for people ([`crate::shader::ShaderSet::name_of`]) of the passes whose image or buffer continues from frame to frame.
     ///
     /// # Errors
     /// As [`Headless::frame_state`].
     pub fn continuing_passes(&self) -> Result<Vec<String>, HeadlessError> {
-        let request = self.frame_state()?.pipelines.clone();
+        let state = self.frame_state()?;
+        let (request, shaders) = (&state.pipelines, &state.shaders);
         let passes = &request.passes;
         let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
         let continues = |pass: &&Arc<GraphPass>| {
@@ -21,7 +22,7 @@ impl Headless {
                 || pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
         };
         let own = passes.iter().filter(|pass| !pass.desc.is_built_in());
-        Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
+        Ok(own.filter(continues).map(|pass| shaders.name_of_pass(pass).to_owned()).collect())
     }
 
     /// Why a picture shows nothing of the model, although there is one. A background that is drawn covers all pixels, so the answer is `None` then.

@@ -231,7 +231,8 @@ impl PixelTracer {
                 None => trace = Some(of_group),
             }
         }
-        let mut trace = trace.ok_or_else(|| HeadlessError::Settings(plan.stage.nothing(plan.pixel.at)))?;
+        let nothing = || HeadlessError::Settings(plan.stage.nothing(&plan.state.shaders, plan.pixel.at));
+        let mut trace = trace.ok_or_else(nothing)?;
         trace.lights = traced_lights(&plan.state, plan.pixel.settings);
         trace.endless_loop = self.endless_loop;
         let lacks_frames = plan.pixel.earlier.len() < plan.pixel.clock.frame_index as usize;
@@ -332,8 +333,9 @@ impl PixelTracer {
         let of_view = || own.view.pixel(slot).map(|pixel| pixel.value);
         let value = match &plan.stage.target {
             Target::Display => readback.map(|readback| displayed(readback.finish_display(), at)),
-            Target::Image(name, _) => {
-                let slug = format!("pass:{name}");
+            Target::Image(..) => {
+                let drawing = plan.state.pipelines.passes.iter().find(|pass| pass.desc.stage == plan.stage.stage);
+                let slug = format!("pass:{}", drawing.map_or("", |pass| pass.name()));
                 own.view.pass_pixels(slot).into_iter().find(|(of, _)| *of == slug).map(|(_, pixel)| pixel.value)
             }
             Target::Picture | Target::Unknown => of_view(),

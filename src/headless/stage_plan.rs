@@ -7,7 +7,7 @@ use crate::scene;
 use crate::shader::annotation::pass::{PassDesc, PassFormat, PassTarget};
 use crate::shader::graph::{Input, RenderPhase};
 use crate::shader::trace::{Invocations, Target, TraceableStage};
-use crate::shader::{GraphPass, Stage, StageKind, TreePath};
+use crate::shader::{GraphPass, ShaderSet, Stage, StageKind, TreePath};
 
 /// The part of a scene that is drawn for a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,15 +45,16 @@ pub(super) struct StagePlan {
 
 impl StagePlan {
     /// Why nothing was logged at a pixel of the picture.
-    pub(super) fn nothing(&self, (x, y): (u32, u32)) -> String {
+    pub(super) fn nothing(&self, shaders: &ShaderSet, (x, y): (u32, u32)) -> String {
+        let stage = shaders.name_of(&self.stage);
         match self.of {
             Invocations::Pixel(..) if !self.is_whole => {
                 format!("the model does not cover the pixel {x},{y}: no fragment is drawn there")
             }
-            Invocations::Pixel(x, y) => format!("{} draws nothing at the pixel {x},{y} of its image", self.stage),
-            Invocations::Triangle(_) => format!("{} draws no vertex of the triangle at the pixel {x},{y}", self.stage),
-            Invocations::Quad(quad) => format!("{} places no quad {quad}", self.stage),
-            Invocations::Compute([x, y, z]) => format!("{} has no invocation {x},{y},{z}", self.stage),
+            Invocations::Pixel(x, y) => format!("{stage} draws nothing at the pixel {x},{y} of its image"),
+            Invocations::Triangle(_) => format!("{stage} draws no vertex of the triangle at the pixel {x},{y}"),
+            Invocations::Quad(quad) => format!("{stage} places no quad {quad}"),
+            Invocations::Compute([x, y, z]) => format!("{stage} has no invocation {x},{y},{z}"),
         }
     }
 }
@@ -65,7 +66,8 @@ pub(super) fn traceable(state: &FrameState) -> Vec<TraceableStage> {
     let mut add = |path: &str, label: &str| {
         let is_new = !path.is_empty() && all.iter().all(|known| known.path != *path);
         if is_new && state.shaders.stages.contains_key(path) {
-            all.push(TraceableStage { path: path.to_owned(), label: label.to_owned() });
+            let name = state.shaders.name_of(path).to_owned();
+            all.push(TraceableStage { path: path.to_owned(), name, label: label.to_owned() });
         }
     };
     if let Some(pass) = shown_pass(state) {
@@ -118,12 +120,14 @@ fn pass_of_vertices<'a>(state: &'a FrameState, stage: &str) -> Option<&'a GraphP
 /// The frame has no such stage.
 pub(super) fn choose(state: &FrameState, wanted: Option<&str>, files: &[&str]) -> Result<String, HeadlessError> {
     let all = traceable(state);
-    let list = || all.iter().map(|stage| stage.path.as_str()).collect::<Vec<_>>().join(", ");
+    let list = || all.iter().map(|stage| stage.name.as_str()).collect::<Vec<_>>().join(", ");
     if let Some(wanted) = wanted {
+        let wanted = state.shaders.stage_named(wanted).unwrap_or(wanted);
         return match all.iter().any(|stage| stage.path == wanted) {
             true => Ok(wanted.to_owned()),
             false => fails(format!(
-                "the picture has no stage {wanted} that can be traced; it has {}.{}",
+                "the picture has no stage {} that can be traced; it has {}.{}",
+                state.shaders.name_of(wanted),
                 list(),
                 why_not(state, wanted).map(|why| format!(" {why}")).unwrap_or_default()
             )),
@@ -182,6 +186,7 @@ pub(super) fn plan(
 ) -> Result<StagePlan, HeadlessError> {
     let request = &state.pipelines;
     let kind = state.shaders.stages.get(stage).map(|stage| stage.kind);
+    let name = state.shaders.name_of(stage);
     let pass = request.passes.iter().find(|pass| pass.desc.stage == stage);
     let is_with_model = pass.is_none_or(|pass| pass.desc.is_drawn_with_model());
     let samples = if is_with_model { request.target.samples } else { 1 };
@@ -197,7 +202,7 @@ pub(super) fn plan(
     };
     let is_of_quads = pass_of_vertices(state, stage).is_some_and(|pass| pass.desc.quads);
     if invocation.is_some() && kind != Some(StageKind::Compute) && !is_of_quads {
-        return fails(format!("{stage} is no compute stage and places no quads, so it has no invocation to choose"));
+        return fails(format!("{name} is no compute stage and places no quads, so it has no invocation to choose"));
     }
     match kind {
         Some(StageKind::Fragment) if draws_surfaces(state, stage) => {
@@ -206,7 +211,8 @@ pub(super) fn plan(
         }
         Some(StageKind::Vertex) => {
             let pass = pass_of_vertices(state, stage);
-            let (target, is_whole) = (pass.map_or(Target::Picture, target_of), pass.is_some());
+            let (target, is_whole) =
+                (pass.map_or(Target::Picture, |pass| target_of(&state.shaders, pass)), pass.is_some());
             if pass.is_some_and(|pass| pass.desc.quads) {
                 let [quad, ..] = invocation.unwrap_or_default();
                 return Ok(make(Invocations::Quad(quad), target, Extent::All, is_whole));
@@ -215,9 +221,9 @@ pub(super) fn plan(
             Ok(make(Invocations::Triangle(triangle), target, Extent::Instance(instance), is_whole))
         }
         Some(StageKind::Fragment) => {
-            let Some(pass) = pass else { return fails(format!("no pass of the picture draws {stage}")) };
+            let Some(pass) = pass else { return fails(format!("no pass of the picture draws {name}")) };
             let (x, y) = place_in(&pass.desc, state.size, at);
-            Ok(make(Invocations::Pixel(x, y), target_of(pass), Extent::All, true))
+            Ok(make(Invocations::Pixel(x, y), target_of(&state.shaders, pass), Extent::All, true))
         }
         Some(StageKind::Compute) => {
             let of_pixel = pass.filter(|pass| pass.desc.to == PassTarget::Image).map(|pass| {
@@ -225,11 +231,11 @@ pub(super) fn plan(
                 [x, y, 0]
             });
             let Some(of) = invocation.or(of_pixel) else {
-                return fails(format!("{stage} does not run for a pixel: name an invocation of it"));
+                return fails(format!("{name} does not run for a pixel: name an invocation of it"));
             };
             Ok(make(Invocations::Compute(of), Target::Unknown, Extent::All, true))
         }
-        _ => fails(format!("{stage} is not traced. {UNTRACED}")),
+        _ => fails(format!("{name} is not traced. {UNTRACED}")),
     }
 }
 
@@ -251,7 +257,8 @@ pub(super) fn without_log(
         _ => None,
     };
     if let Some(pass) = pass_of_vertices(state, stage) {
-        let (of, target, samples) = (Invocations::Triangle([NONE; 3]), target_of(pass), state.pipelines.target.samples);
+        let (of, target, samples) =
+            (Invocations::Triangle([NONE; 3]), target_of(&state.shaders, pass), state.pipelines.target.samples);
         let (stage, extent) = (stage.to_owned(), Extent::All);
         return Ok(StagePlan { stage, of, target, extent, is_whole: true, samples, hides: false });
     }
@@ -299,10 +306,10 @@ fn place_in(desc: &PassDesc, size: (u32, u32), (x, y): (u32, u32)) -> (u32, u32)
 }
 
 /// The image that a pass draws to.
-fn target_of(pass: &GraphPass) -> Target {
+fn target_of(shaders: &ShaderSet, pass: &GraphPass) -> Target {
     match (pass.desc.to, pass.phase) {
         (PassTarget::Image, _) if matches!(pass.desc.format, PassFormat::Rgba16f | PassFormat::Rgba32f) => {
-            Target::Image(pass.name().to_owned(), pass.desc.format)
+            Target::Image(shaders.name_of_pass(pass).to_owned(), pass.desc.format)
         }
         (PassTarget::Image, _) => Target::Unknown,
         (_, RenderPhase::Tonemap | RenderPhase::Display) => Target::Display,

@@ -9,7 +9,7 @@ use lsp_types::{
 
 use super::source_text::number;
 use super::uri::uri_of;
-use crate::shader::{Diagnostic, Severity};
+use crate::shader::{Diagnostic, Severity, is_specula_tree};
 
 /// The diagnostics of each file, by its path.
 pub type ByFile = BTreeMap<PathBuf, Vec<Diagnostic>>;
@@ -33,8 +33,11 @@ pub fn shown(diagnostic: &Diagnostic) -> Shown {
     if let Some(help) = &diagnostic.help {
         message += &format!("\nhelp: {help}");
     }
-    let (places, rest): (Vec<_>, Vec<_>) =
-        diagnostic.notes.iter().map(|note| (note, places(note))).partition(|(_, found)| !found.is_empty());
+    let (places, rest): (Vec<_>, Vec<_>) = diagnostic
+        .notes
+        .iter()
+        .map(|note| (note, places(note, Path::new(&diagnostic.file))))
+        .partition(|(_, found)| !found.is_empty());
     for (note, _) in rest {
         message += &format!("\nnote: {note}");
     }
@@ -72,8 +75,9 @@ pub fn span(diagnostic: &Diagnostic) -> Span {
     Span::new(Position::new(line, units(&excerpt[..from])), Position::new(line, units(&excerpt[..to])))
 }
 
-/// The places of a note, as `FILE:LINE`.
-fn places(note: &str) -> Vec<Location> {
+/// The places of a note about a file, as `FILE:LINE`. A relative path is one in the tree of the file.
+fn places(note: &str, about: &Path) -> Vec<Location> {
+    let root = about.ancestors().skip(1).find(|folder| is_specula_tree(folder));
     let words = note.split([' ', ',', '(', ')', '`']).filter_map(|word| {
         let (file, line) = word.rsplit_once(':')?;
         let (file, line) = match (file.rsplit_once(':'), line.parse::<u32>()) {
@@ -82,9 +86,10 @@ fn places(note: &str) -> Vec<Location> {
             (_, Ok(line)) => (file, line),
             _ => return None,
         };
-        let path = Path::new(file);
+        let in_tree = root.map(|root| root.join(file)).filter(|path| path.is_file());
+        let path = in_tree.unwrap_or_else(|| PathBuf::from(file));
         let place = Position::new(line.saturating_sub(1), 0);
-        path.is_absolute().then(|| uri_of(path)).flatten().map(|uri| Location::new(uri, Span::new(place, place)))
+        path.is_absolute().then(|| uri_of(&path)).flatten().map(|uri| Location::new(uri, Span::new(place, place)))
     });
     words.collect()
 }
@@ -114,6 +119,6 @@ mod tests {
         assert_eq!(shown.message, "m\nhelp: h\nnote: plain");
         let related = shown.related_information.unwrap();
         assert_eq!((related[0].location.uri.as_str(), related[0].location.range.start.line), ("file:///b/c.glsl", 6));
-        assert_eq!(places("/a:1:2, x:3 and /b:4 include it, too").len(), 2);
+        assert_eq!(places("/a:1:2, x:3 and /b:4 include it, too", Path::new("/a.frag")).len(), 2);
     }
 }

@@ -174,7 +174,7 @@ pub fn endless_loop(
     Some(match place.is_finite {
         // There is a picture to show.
         true => Diagnostic { severity: Severity::Warning, ..diagnostic }.with_help(
-            "it was cut short; where, the picture is magenta. Let it take fewer, also with the loops around it",
+            "it was cut short: pixels where it was are magenta. Let it take fewer iterations, counted with the loops around it",
         ),
         false => diagnostic.with_help(
             "it was cut short, so the result is wrong. Repair its condition, or set back the value that it depends on",

@@ -86,25 +86,20 @@ impl Settings {
 /// takes.
 pub fn unknown_setting(name: &str, own: &[&str], describe: impl Fn(&str) -> Option<String>) -> String {
     let nearest = catalog::nearest(name, own);
-    let hint = nearest.as_ref().map_or_else(String::new, |(_, nearest)| {
+    let hint = nearest.as_ref().map_or_else(String::new, |nearest| {
         let takes = if own.contains(&nearest.as_str()) { describe(nearest) } else { numbers(nearest) };
         let takes = takes.map(|takes| format!(", which takes {takes}")).unwrap_or_default();
         format!(" Did you mean `{nearest}`{takes}?")
     });
-    if is_near(nearest) {
+    // The list of all names would hide the one that is meant.
+    if nearest.is_some() {
         return format!("unknown setting `{name}`.{hint} {SEE_ALL}");
     }
     let list = own.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let list = if list.is_empty() { "none".to_owned() } else { list };
     format!(
-        "unknown setting `{name}`.{hint} Shader parameters: {list}. Settings: `view.ev`, `lights.orbit.0.strength`, ... {SEE}"
+        "unknown setting `{name}`. Shader parameters: {list}. Settings: `view.ev`, `lights.orbit.0.strength`, ... {SEE}"
     )
-}
-
-/// Whether the nearest name is so near that it was meant: the list of all names would hide it.
-fn is_near(nearest: Option<(f64, String)>) -> bool {
-    const LEAST_LIKENESS: f64 = 0.6;
-    nearest.is_some_and(|(likeness, _)| likeness >= LEAST_LIKENESS)
 }
 
 /// A TOML value, or numbers joined by commas; anything else is text.
@@ -138,12 +133,12 @@ fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>
             (None, _) if matches!(above.as_str(), "shader" | "passes") && full == path => return Ok(None),
             (None, _) => {
                 let nearest = catalog::nearest(path, &[]);
-                let hint = nearest.as_ref().map(|(_, name)| format!(" Did you mean `{name}`?")).unwrap_or_default();
-                if is_near(nearest) {
+                let hint = nearest.as_ref().map(|name| format!(" Did you mean `{name}`?")).unwrap_or_default();
+                if nearest.is_some() {
                     return Err(format!("unknown setting `{path}`.{hint} {SEE_ALL}"));
                 }
                 let place_name = if above.is_empty() { "At the top".to_owned() } else { format!("Below `{above}`") };
-                return Err(format!("unknown setting `{path}`.{hint} {place_name} there are {} {SEE}", keys(place)));
+                return Err(format!("unknown setting `{path}`. {place_name} there are {} {SEE}", keys(place)));
             }
         };
         above = full;
@@ -285,9 +280,13 @@ mod tests {
         let before = settings.clone();
         for (assignment, part) in [
             (
+                "view.brightness=1",
+                "unknown setting `view.brightness`. Below `view` there are adaptive, background, blend_layers, bounces, channels, checks, \
+                 colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
+            ),
+            (
                 "view.exposure=1",
-                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are adaptive, background, blend_layers, bounces, \
-                 channels, checks, colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
+                "unknown setting `view.exposure`. Did you mean `view.ev`? `specula help set` lists all",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? `specula help set` lists all"),
             ("qqqq.ev=1", "At the top there are animation, camera, "),

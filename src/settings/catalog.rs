@@ -33,17 +33,21 @@ pub fn setting(path: &str) -> Option<&'static Setting> {
     })
 }
 
-/// The setting that is most like an unknown path, and how alike they are, 0..1. A path without a dot is also compared with the last parts of all
-/// paths, since that is how people abbreviate them.
-pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
-    let candidates = own.iter().copied().chain(catalog().iter().map(|setting| setting.path.as_str()));
-    let likeness = |path: &str| {
+/// The setting that is most like an unknown path, if one is near. A path without a dot is also compared with the last parts of all
+/// paths, since that is how people abbreviate them, and the last part with the words that the panels show.
+pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<String> {
+    let settings = catalog().iter().map(|setting| (setting.path.as_str(), setting.entry.label));
+    let candidates = own.iter().map(|name| (*name, "")).chain(settings);
+    let (group, own_part) = typed.rsplit_once('.').unwrap_or(("", typed));
+    let likeness = |path: &str, label: &str| {
+        let (above, last) = path.rsplit_once('.').unwrap_or(("", path));
         let whole = message::likeness(typed, path);
-        let last = path.rsplit('.').next().filter(|_| !typed.contains('.')).unwrap_or(path);
-        // A full name wins over an abbreviation that is equally like it.
-        whole.max(0.99 * message::likeness(typed, last))
+        // A full name wins over an abbreviation that is equally like it, and over the words of the panel.
+        let part = if group.is_empty() { message::likeness(typed, last) } else { 0.0 };
+        let words = if group.is_empty() || group == above { message::likeness(own_part, label) } else { 0.0 };
+        whole.max(0.99 * part).max(0.98 * words)
     };
-    message::best(candidates.map(|path| (likeness(path), path))).map(|path| (likeness(path), path.to_owned()))
+    message::best(candidates.map(|(path, label)| (likeness(path, label), path))).map(str::to_owned)
 }
 
 #[cfg(test)]
@@ -161,9 +165,11 @@ mod tests {
             ("ndf", &["NDF"], Some("NDF")),
             ("view.exposure", &[], Some("view.ev")),
             ("roughness", &["roughness_scale"], Some("material.roughness")),
+            ("exposre", &["NDF"], Some("view.ev")),
             ("qqqqq", &["NDF"], None),
+            ("foo", &["NDF"], None),
         ] {
-            assert_eq!(nearest(typed, own).as_ref().map(|(_, name)| name.as_str()), expected, "{typed}");
+            assert_eq!(nearest(typed, own).as_deref(), expected, "{typed}");
         }
     }
 

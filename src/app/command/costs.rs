@@ -2,13 +2,13 @@
 
 use serde::Deserialize;
 
+use super::source::stage_of;
 use super::spec::{Outcome, Spec, Until};
 use crate::app::engine::Engine;
 use crate::app::state::State;
 use crate::app::state::arrangement::Panel;
 use crate::app::state::costs::WantedCosts;
 use crate::app::state::workspace::PanelRequest;
-use crate::message::did_you_mean;
 
 /// Fields of `cost`.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -27,14 +27,7 @@ pub(in crate::app) static COST: Spec<Cost> = Spec::new("cost", cost)
     .arguments(|_| Cost::default());
 
 fn cost(state: &mut State, _: &mut Engine, Cost { stage, function }: Cost) -> Outcome {
-    let shown = state.shown().ok_or("there is no picture yet")?;
-    if let Some(stage) = &stage {
-        let all = shown.pipelines.stages();
-        if !all.contains(stage) {
-            let hint = did_you_mean(stage, all.iter().map(String::as_str));
-            return Err(format!("the picture has no stage {stage}.{hint}"));
-        }
-    }
+    let stage = stage.map(|stage| stage_of(state, &stage)).transpose()?;
     let number = state.costs.want(WantedCosts { stage, functions: function.into_iter().collect() });
     state.workspace.request_in_sight(PanelRequest::Open(Panel::SOURCE));
     Ok(Until::Found(Box::new(move |state| state.costs.answer(number))))

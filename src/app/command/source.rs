@@ -90,6 +90,20 @@ pub(in crate::app) static CHOOSE_STAGE: Spec<String> = Spec::act("choose-stage",
 pub(in crate::app) static CHOOSE_TRACE: Spec<Choice> =
     Spec::act("choose-trace", |state, _, choice: Choice| state.traces.choose(choice));
 
+/// The path of the stage of the picture that a user names.
+///
+/// # Errors
+/// The picture has none of this name.
+pub(super) fn stage_of(state: &State, name: &str) -> Result<String, String> {
+    let shown = state.shown().ok_or("there is no picture yet")?;
+    let (shaders, all) = (&shown.shaders, shown.pipelines.stages());
+    let found = shaders.stage_named(name).filter(|stage| all.contains(*stage)).map(str::to_owned);
+    found.ok_or_else(|| {
+        let hint = did_you_mean(name, all.iter().map(|stage| shaders.name_of(stage)));
+        format!("the picture has no stage {name}.{hint}")
+    })
+}
+
 fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment, call, time }: Source) -> Outcome {
     let file = file.map(|file| file_of(state, &file)).transpose()?;
     if let Some([x, y]) = at {
@@ -99,16 +113,7 @@ fn source(state: &mut State, _: &mut Engine, Source { file, stage, at, fragment,
         }
         state.inspection.pin = at;
     }
-    if let Some(stage) = &stage {
-        let shown = state.shown().ok_or("there is no picture yet")?;
-        let all = shown.pipelines.stages();
-        if !all.contains(stage) {
-            return Err(format!(
-                "the picture has no stage {stage}.{}",
-                did_you_mean(stage, all.iter().map(String::as_str))
-            ));
-        }
-    }
+    let stage = stage.map(|stage| stage_of(state, &stage)).transpose()?;
     (state.traces.stage, state.traces.file) = match (stage, file) {
         (None, None) => (state.traces.stage.take(), state.traces.file.take()),
         chosen => chosen,

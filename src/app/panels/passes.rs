@@ -38,7 +38,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
     // A parameter that several effects use is shown once.
     let mut shown = BTreeSet::new();
     let show_effect = |ui: &mut Ui, pass: &GraphPass, settings: &mut Settings, shown: &mut BTreeSet<_>| {
-        if show_switch(ui, pass, settings) {
+        if show_switch(ui, shaders, pass, settings) {
             show_parameters(ui, of_effect(shaders, pass), &pass.desc.label, settings, shown);
         }
     };
@@ -66,7 +66,7 @@ pub(super) fn ui(ui: &mut Ui, context: &Context<'_>, commands: &mut Commands) {
         let header = CollapsingHeader::new(title).id_salt("internal passes").open((!words.is_empty()).then_some(true));
         let header = header.show_unindented(ui, |ui| {
             for pass in inside {
-                let _ = show_switch(ui, pass, settings);
+                let _ = show_switch(ui, shaders, pass, settings);
             }
         });
         header.header_response.on_hover_text("Passes whose images the effects read");
@@ -110,7 +110,7 @@ impl<'a> FoundPasses<'a> {
 }
 
 /// Shows the row with the switch of a pass. Returns whether it is on.
-fn show_switch(ui: &mut Ui, pass: &GraphPass, settings: &mut Settings) -> bool {
+fn show_switch(ui: &mut Ui, shaders: &ShaderSet, pass: &GraphPass, settings: &mut Settings) -> bool {
     let name = pass.name();
     let before = pass.is_wanted(&settings.passes);
     if skips(ui) {
@@ -118,7 +118,7 @@ fn show_switch(ui: &mut Ui, pass: &GraphPass, settings: &mut Settings) -> bool {
     }
     let mut on = before;
     let default = INITIAL.passes.get(name).copied().unwrap_or(pass.desc.on);
-    let doc = format!("{}\n{}", pass.desc.doc, pass.desc.stage);
+    let doc = format!("{}\n{}", pass.desc.doc, shaders.name_of(&pass.desc.stage));
     let option = set_option(&format!("passes.{name}"), &on.to_string());
     let row =
         Row { name: &pass.desc.label, doc: doc.trim_start(), option, is_changed: on != default, is_indented: false };

@@ -141,7 +141,7 @@ fn captures(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
 /// The statistics of a stage with their changes: `pbr.frag 4,469 words -212 · 96 registers -8`.
 fn stage(ui: &mut Ui, row: &StageRow) {
     ui.spacing_mut().item_spacing.x = 4.0;
-    ui.label(RichText::new(&row.path).small().color(QUIET)).on_hover_text("The stage that draws the picture");
+    ui.label(RichText::new(&row.name).small().color(QUIET)).on_hover_text("The stage that draws the picture");
     shaders::short_figures(ui, &row.figures);
 }
 

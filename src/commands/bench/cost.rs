@@ -21,6 +21,8 @@ pub(super) fn cost(bench: &Bench<'_>) -> Result<Value, Failure> {
     let mut begin = |at: usize, of: usize, name: &str| bench.progress.begin("function", (at, of), name);
     let wanted = (args.stage.as_deref(), args.function.as_slice());
     let mut result = headless.costs(wanted, args.samples as usize, &mut begin)?.json();
+    let name = result["stage"].as_str().map(|stage| headless.shaders().name_of(stage).to_owned());
+    result["name"] = json!(name);
     (result["size"], result["mode"]) = (json!([args.common.size().0, args.common.size().1]), json!(slug));
     Ok(result)
 }
@@ -30,7 +32,7 @@ pub(super) fn print(result: &Value) {
     let number = |value: &Value| value.as_f64().unwrap_or_default();
     out!(
         "{}: {:.3} ms of {:.3} ms a frame on {}, {} invocations\n",
-        result["stage"].as_str().unwrap_or_default(),
+        result["name"].as_str().unwrap_or_default(),
         number(&result["stage_ms"]),
         number(&result["frame_ms"]),
         result["device"].as_str().unwrap_or_default(),

@@ -18,6 +18,8 @@ const SIZE: (u32, u32) = (64, 64);
 /// Reports on the shader stages.
 pub(super) struct Stages {
     reports: BTreeMap<String, StageReport>,
+    /// The names of the stages for people.
+    names: BTreeMap<String, String>,
     /// Stages of the picture.
     on_screen: BTreeSet<String>,
     /// Time to compile each stage, milliseconds.
@@ -41,8 +43,11 @@ impl Stages {
         }
         headless.check_settings()?;
         let ask_ms = headless.ask_driver()?;
+        let shaders = headless.shaders();
+        let names = shaders.stages.keys().map(|stage| (stage.clone(), shaders.name_of(stage).to_owned())).collect();
         let stages = Self {
             reports: headless.stages()?,
+            names,
             on_screen: headless.frame_state()?.pipelines.stages(),
             compile_ms: reload.report.stages.into_iter().collect(),
             pipeline_ms: reload.pipeline_ms,
@@ -78,7 +83,8 @@ impl Stages {
     pub(super) fn print(&self) {
         out!("\nStages of the picture");
         let shown = || self.reports.iter().filter(|(stage, _)| self.on_screen.contains(*stage));
-        let width = shown().map(|(stage, _)| stage.len()).max().unwrap_or_default();
+        let name = |stage: &String| self.names.get(stage).map_or("", String::as_str);
+        let width = shown().map(|(stage, _)| name(stage).len()).max().unwrap_or_default();
         for (stage, report) in shown() {
             let numbers: Vec<String> = figures(report, None).iter().map(|figure| figure.text()).collect();
             let compile = self.compile_ms.get(stage).map(|ms| format!("compiled in {ms:.0} ms"));
@@ -87,7 +93,7 @@ impl Stages {
                 None => format!("pipeline {:.0} ms", largest.pipeline_ms),
             });
             let all: Vec<String> = numbers.into_iter().chain(compile).chain(driver).collect();
-            out!("  {stage:width$}  {}", escape(&all.join(", ")));
+            out!("  {:width$}  {}", name(stage), escape(&all.join(", ")));
             for (name, figures) in all_statistics(report, None) {
                 let figures: Vec<String> = figures.iter().map(|figure| figure.text()).collect();
                 out!("  {:width$}    {}: {}", "", escape(&name), escape(&figures.join(", ")));

@@ -320,6 +320,7 @@ fn tell(args: &Args, diagnostics: &[Diagnostic]) {
 }
 
 fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, first_frame_ms: f64) {
+    let shaders = headless.shaders();
     match &reload.outcome {
         Outcome::Unchanged { cleared: false } => return,
         Outcome::Unchanged { cleared: true } => message::tell("the shaders are good again"),
@@ -332,13 +333,13 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
             let changed = if report.changed.is_empty() { "removed file".to_owned() } else { report.changed.join(" ") };
             message::tell(format_args!(
                 "{changed} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
-                in_short(&report.stages.iter().map(|(stage, _)| stage.clone()).collect::<Vec<_>>()),
+                in_short(&report.stages.iter().map(|(stage, _)| shaders.name_of(stage).to_owned()).collect::<Vec<_>>()),
                 report.compile_ms,
                 reload.pipeline_ms,
             ));
         }
     }
-    let generation = headless.shaders().generation;
+    let generation = shaders.generation;
     emit(args.common.emits(), &Event::Reload(ReloadEvent::new(reload, generation, detect_ms, first_frame_ms)));
 }
 

@@ -101,8 +101,7 @@ impl<'a> Includes<'a> {
                 }
             }
         }
-        let looked: Vec<String> = candidates.iter().map(|path| self.snapshot.display_path(path)).collect();
-        Err(format!("\"{name}\" not found; looked for {}", looked.join(" and ")))
+        Err(format!("\"{name}\" not found; looked for {}", self.snapshot.looked_for(&candidates)))
     }
 
     /// The uniforms and buffers that the files read so far declare without a binding.

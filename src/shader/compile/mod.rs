@@ -20,11 +20,14 @@ use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, Sh
 
 use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::glsl::{Line, lines, tokens};
+use crate::shader::glsl::{Line, is_same_code, lines, tokens};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::bindings::assign_set;
 use include::Includes;
+
+/// The message about a file without code.
+pub const EMPTY: &str = "the file is empty";
 
 /// Kind of a stage, given by the file's extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -163,6 +166,11 @@ impl Compiler {
             return failed(Diagnostic::error(file(), message));
         };
         match snapshot.read(stage) {
+            Ok(text) if is_same_code(&text, "") => failed(
+                Diagnostic::error(file(), EMPTY)
+                    .on_line(1, None)
+                    .with_help("a stage begins with `#version 460` and has a `void main()`"),
+            ),
             Ok(text) => match unknown_version(&file(), &text, kind) {
                 Some(error) => failed(error),
                 None => self.compile_text(snapshot, stage, &text, kind),

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use crate::message::most_typos;
 use crate::shader::glsl::{BUILT_IN, Code, QUALIFIERS, Token, is_name, tokens};
 use crate::shader::source::TreePath;
 
@@ -71,13 +72,9 @@ impl Names {
     }
 }
 
-/// The first of the nearest names, if at most two letters differ, or a third of a long name. Short names may differ in one letter.
+/// The first of the nearest names, if no more letters differ than [`most_typos`].
 fn nearest<'a>(unknown: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = match unknown.chars().count() {
-        0 | 1 => 0,
-        2 | 3 => 1,
-        length => (length / 3).max(2),
-    };
+    let limit = most_typos(unknown.chars().count());
     // Case decides between names that are equally near.
     let distance = |name: &str| {
         let folded = strsim::osa_distance(&unknown.to_lowercase(), &name.to_lowercase());

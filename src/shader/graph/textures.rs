@@ -121,14 +121,9 @@ pub(super) fn read_texture(
     let most = if is_pattern { paths.len() } else { 1 };
     let files: Vec<TextureFile> = paths.iter().filter_map(read).take(most).collect::<Result<_, _>>()?;
     if files.is_empty() {
-        return Err(refuse(format!("\"{}\" not found; looked for {}", desc.image, shown(&candidates, snapshot))));
+        return Err(refuse(format!("\"{}\" not found; looked for {}", desc.image, snapshot.looked_for(&candidates))));
     }
     Ok(Texture { kind, files, desc: desc.clone() })
-}
-
-fn shown(paths: &[TreePath], snapshot: &Snapshot<'_>) -> String {
-    let shown: Vec<String> = paths.iter().map(|path| snapshot.display_path(path)).collect();
-    shown.join(" and ")
 }
 
 /// A message and a help text if the options of an annotation do not fit the kind of the texture.
@@ -203,7 +198,7 @@ fn faces(
     if paths.len() == set.len() {
         return Ok(paths);
     }
-    let looked = shown(candidates, snapshot);
+    let looked = snapshot.looked_for(candidates);
     if paths.is_empty() {
         let sets: Vec<String> = FACES[..3].iter().map(|set| set.join(" ")).collect();
         let sets = sets.join(", or ");
@@ -226,7 +221,7 @@ fn parts(
 ) -> Result<Vec<TreePath>, String> {
     let found = candidates.iter().map(|path| matching(pattern, path, snapshot)).find(|found| !found.is_empty());
     let Some(found) = found else {
-        return Err(format!("no file matches \"{}\"; looked for {}", desc.image, shown(candidates, snapshot)));
+        return Err(format!("no file matches \"{}\"; looked for {}", desc.image, snapshot.looked_for(candidates)));
     };
     let mut found: Vec<(String, TreePath)> = found.into_iter().collect();
     found.sort_by_cached_key(|(part, _)| {

@@ -29,7 +29,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let found = check_alone(library, &rest);
     out.extend(found);
     out.sort_by_key(|diagnostic| diagnostic.severity);
-    folded(unique(out))
+    folded(unique(out), library.source())
 }
 
 /// Compiles files that are no entry points of the library, each on its own. Files of other kinds, and libraries of mesh stages that no

@@ -70,7 +70,7 @@ mod tests {
             };
             errors
         };
-        let errors = errors_with("");
+        let errors = errors_with("float other;\n");
         let helps: Vec<_> = errors.iter().filter_map(|error| error.help.as_deref()).collect();
         assert!(helps.contains(&"the last edit removed `two`, which was at a.glsl:3"), "{errors:#?}");
         assert_eq!(helps.iter().filter(|help| help.contains("`two`")).count(), 1, "{errors:#?}");

@@ -6,8 +6,8 @@ use super::Library;
 use crate::shader::compile::log::NOT_FOUND;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::glsl::is_same_code;
-use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::{Source, TreePath};
 
 /// Most lines that a note lists.
 const LISTED: usize = 6;
@@ -15,14 +15,14 @@ const LISTED: usize = 6;
 const TOO: &str = "include it, too";
 
 /// The diagnostics with one for each include that was not found, instead of one for each line that includes it.
-pub(super) fn folded(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+pub(super) fn folded(diagnostics: Vec<Diagnostic>, source: &Source) -> Vec<Diagnostic> {
     let mut out: Vec<Diagnostic> = Vec::new();
     let mut first: BTreeMap<String, (usize, Vec<String>)> = BTreeMap::new();
     for diagnostic in diagnostics {
         let name = diagnostic.message.split_once(NOT_FOUND).map(|(name, _)| name.to_owned());
         match name.map(|name| first.entry(name)) {
             Some(std::collections::btree_map::Entry::Occupied(mut known)) => {
-                let place = format!("{}:{}", diagnostic.file, diagnostic.line.unwrap_or(1));
+                let place = format!("{}:{}", source.in_tree(&diagnostic.file), diagnostic.line.unwrap_or(1));
                 let (index, others) = known.get_mut();
                 let is_new = out[*index].file != diagnostic.file && !others.contains(&place);
                 others.extend(is_new.then_some(place));
@@ -53,14 +53,16 @@ impl Library {
             Some(path) => diagnostic.with_help(format!("was it renamed to `{path}`?")),
             None => diagnostic,
         };
-        folded(diagnostics).into_iter().map(renamed).collect()
+        folded(diagnostics, &self.source).into_iter().map(renamed).collect()
     }
 
     /// The new file with the text that an include had that is not found.
     fn renamed(&self, diagnostic: &Diagnostic, snapshot: &Snapshot<'_>) -> Option<TreePath> {
         let (_, looked) = diagnostic.message.split_once(NOT_FOUND)?;
         let texts = &self.set.as_ref()?.texts;
-        let is_it = |path: &&TreePath| looked.split(" and ").any(|shown| shown == self.source.display_path(path));
+        let is_it = |path: &&TreePath| {
+            looked.split(" and ").any(|shown| shown == self.source.in_tree(&self.source.display_path(path)))
+        };
         let text = texts.iter().find(|(path, _)| is_it(path)).map(|(_, text)| text)?;
         let is_same = |path: &TreePath| snapshot.read(path).is_ok_and(|now| is_same_code(&now, text));
         let is_new = |path: &TreePath| path.extension() == Some("glsl") && !texts.contains_key(path);
@@ -99,6 +101,22 @@ mod tests {
         let [error] = errors.as_slice() else { panic!("{errors:#?}") };
         assert_eq!(error.one_line(), "a.glsl:1:11: error: \"lib/one.glsl\" not found; looked for lib/one.glsl");
         assert_eq!(error.help.as_deref(), Some("was it renamed to `lib/first.glsl`?"));
+        assert_eq!(error.notes, ["b.glsl:1 include it, too"]);
+    }
+
+    #[test]
+    fn paths_of_a_missing_include_are_those_in_the_tree() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in
+            [("m.vert", STAGE), ("a.glsl", "#include \"lib/one.glsl\"\n"), ("b.glsl", "#include \"lib/one.glsl\"\n")]
+        {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let mut library = Library::new(Source::disk(folder.path()), Arc::new(Compiler::new().unwrap()), &["m.vert"]);
+        let found = crate::shader::check::check(&mut library);
+        let [error] = found.as_slice() else { panic!("{found:#?}") };
+        assert_eq!(error.message, "\"lib/one.glsl\" not found; looked for lib/one.glsl");
+        assert_eq!(error.file, folder.path().join("a.glsl").display().to_string(), "an editor opens it");
         assert_eq!(error.notes, ["b.glsl:1 include it, too"]);
     }
 }

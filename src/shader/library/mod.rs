@@ -14,6 +14,7 @@
 
 mod beside;
 pub mod check;
+mod emptied;
 mod gone;
 mod link;
 mod missing;
@@ -313,7 +314,9 @@ impl Library {
                 let diagnostics = unique(explained.chain(self.source.refusals()).collect());
                 let mut diagnostics = match self.source.root().filter(|root| !root.is_dir()) {
                     Some(root) => vec![gone(root)],
-                    None => self.with_gone(self.with_renamed(diagnostics, snapshot), snapshot),
+                    None => {
+                        self.with_gone(self.with_renamed(self.with_emptied(diagnostics, snapshot), snapshot), snapshot)
+                    }
                 };
                 let waiting = self.waiting(&diagnostics, snapshot);
                 if let Some(first) = diagnostics.first_mut().filter(|_| !waiting.is_empty()) {

@@ -11,8 +11,8 @@ use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::expression::{self, Watching};
-use crate::shader::graph::{FULL_SCREEN, Graph};
-use crate::shader::source::{TreePath, embedded};
+use crate::shader::graph::{FULL_SCREEN, Graph, GraphPass};
+use crate::shader::source::{TreePath, embedded, opened_file};
 
 /// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
@@ -72,6 +72,35 @@ impl ShaderSet {
     /// The text of a file as its author wrote it.
     pub fn author_text(&self, path: &TreePath) -> Option<&Arc<str>> {
         self.author_texts.get(path).or_else(|| self.texts.get(path))
+    }
+
+    /// The name of a file or stage for people: in a tree that is made of a single file ([`crate::shader::Source::is_toy`]), that of
+    /// the author's file.
+    pub fn name_of<'a>(&'a self, path: &'a str) -> &'a str {
+        let is_toy = || self.texts.keys().any(|file| opened_file(file.as_str()).is_some());
+        match opened_file(path) {
+            Some(file) => file,
+            None if embedded::has(path) || !is_toy() => path,
+            None => self.graph.passes.iter().find(|pass| pass.desc.stage == path).map_or(path, |pass| &pass.desc.label),
+        }
+    }
+
+    /// The name of a pass for people: in a tree that is made of a single file, that of the file that draws its image.
+    pub fn name_of_pass<'a>(&'a self, pass: &'a GraphPass) -> &'a str {
+        let (stage, name) = (&pass.desc.stage, self.name_of(&pass.desc.stage));
+        if name == stage { pass.name() } else { name }
+    }
+
+    /// Whether a file has an author: all but the stages around a single file.
+    pub fn is_authored(&self, path: &str) -> bool {
+        opened_file(path).is_some() || self.name_of(path) == path
+    }
+
+    /// The path of the stage that a user names, by that or by [`Self::name_of`].
+    pub fn stage_named(&self, name: &str) -> Option<&str> {
+        let stages = || self.graph.passes.iter().rev().map(|pass| pass.desc.stage.as_str());
+        let by_path = self.stages.get_key_value(name).map(|(path, _)| path.as_str());
+        by_path.or_else(|| stages().find(|stage| self.name_of(stage) == name))
     }
 
     /// Whether no stage is still to be compiled.

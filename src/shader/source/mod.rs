@@ -31,6 +31,11 @@ pub use read::{is_specula_tree, leads_out};
 pub use tree::Tree;
 pub use tree_path::TreePath;
 
+/// The path of a file beside a single shader file, or of that file, of its path in the tree that is made of it.
+pub(in crate::shader) fn opened_file(path: &str) -> Option<&str> {
+    path.strip_prefix(toy::OPENED)?.strip_prefix('/')
+}
+
 fn too_many_files(path: &Path) -> String {
     format!(
         "{} has more than {} files and folders, too many for a shader tree",

@@ -54,6 +54,12 @@ impl<'a> Snapshot<'a> {
         read
     }
 
+    /// The paths, in the tree, where a file was looked for that is not there.
+    pub fn looked_for(&self, paths: &[TreePath]) -> String {
+        let shown = paths.iter().map(|path| self.source.in_tree(&self.display_path(path)).to_owned());
+        shown.collect::<Vec<_>>().join(" and ")
+    }
+
     /// The path of a file for messages.
     pub fn display_path(&self, path: &TreePath) -> String {
         self.source.display_path(path)

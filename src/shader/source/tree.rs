@@ -56,6 +56,13 @@ impl Tree {
         }
     }
 
+    /// A path for messages, relative to the tree: without the folder in which all its files are.
+    pub fn in_tree<'a>(&self, displayed: &'a str) -> &'a str {
+        let folder = self.folder_of_files().map(|folder| folder.display().to_string()).filter(|folder| folder != ".");
+        let below = |folder: &String| displayed.strip_prefix(folder)?.strip_prefix('/');
+        folder.as_ref().and_then(below).unwrap_or(displayed)
+    }
+
     /// All files, sorted, without hidden files and directories (of editors and git).
     pub fn list(&self) -> Vec<TreePath> {
         match self {

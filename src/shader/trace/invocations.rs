@@ -84,6 +84,8 @@ impl Target {
 pub struct TraceableStage {
     /// Its path.
     pub path: String,
+    /// Its name for people: [`ShaderSet::name_of`](crate::shader::ShaderSet::name_of).
+    pub name: String,
     /// Its purpose, for a list.
     pub label: String,
 }

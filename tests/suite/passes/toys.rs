@@ -237,6 +237,7 @@ fn saving_a_file_of_a_toy_draws_it_again() {
     assert_eq!(pixel(folder.path(), 8, 8), [255, 128, 255, 255]);
     fs::write(path("toy.glsl"), text.replace("c.g", "c.b")).unwrap();
     running.reload(true);
+    running.until_stderr("toy.glsl -> toy.glsl  compile");
     assert_eq!(pixel(folder.path(), 8, 8), [255, 255, 128, 255]);
     paint("slice_2.png".into(), 0);
     fs::write(path("toy.glsl"), text.replace("c.g", "c.r")).unwrap();

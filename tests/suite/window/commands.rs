@@ -109,7 +109,7 @@ fn a_program_drives_the_window_by_standard_input() {
         (json!({"command": "set", "values": "view.exposure=1"}), "Did you mean `view.ev`?"),
         (json!({"command": "set", "values": ["view.ev=1", "view.ev=99"]}), "view.ev is 99"),
         (json!({"command": "set", "values": {"no_such_name": 1}}), "no_such_name"),
-        (json!({"command": "mode", "name": "ruffness"}), "Did you mean `roughness`?"),
+        (json!({"command": "mode", "name": "rougness"}), "Did you mean `roughness`?"),
         (json!({"command": "probe", "at": [9999, 0]}), "is outside of the picture"),
         (json!({"command": "capture", "file": "a.jpg"}), "a.jpg"),
         (json!({"command": "capture", "size": [1, 1000000]}), "pixels a side"),
@@ -254,7 +254,7 @@ fn clicks_grids_defaults_and_looks_are_commands() {
     let shown = running.done(json!({"command": "grid", "modes": ["d", "f", "d"]}));
     assert_eq!(shown["modes"], json!(["d", "f"]));
     assert_eq!(running.done(json!({"command": "get", "path": "mode"})), "d");
-    let message = running.refused(json!({"command": "grid", "modes": ["ruffness", "d"]}));
+    let message = running.refused(json!({"command": "grid", "modes": ["rougness", "d"]}));
     assert!(message.contains("Did you mean `roughness`?"), "{message}");
     assert_eq!(running.done(json!({"command": "grid", "modes": []}))["modes"], json!([]));
     running.done(json!({"command": "mode", "name": "final"}));

@@ -49,9 +49,13 @@ fn values_beside_the_code_are_those_of_trace_and_follow_a_save() {
         "view.msaa=1",
     ];
     let traced = run(&viewer.tree.beside(""), &[&args[..], &["--shaders", "shaders"]].concat()).expect(0, &[]).json();
-    for part in ["lines", "not_reached", "fragments", "proof"] {
+    for part in ["lines", "not_reached", "proof"] {
         assert_eq!(found[part], traced[part], "{part}");
     }
+    // A window on a software device does not list those that the depth test left out.
+    let [fragments, all] = [&found, &traced].map(|of| of["fragments"].as_array().unwrap());
+    assert_eq!(fragments[0], all[0]);
+    assert!(fragments.iter().all(|fragment| all.contains(fragment)), "{fragments:?}\n{all:?}");
     assert!(viewer.screenshot() == picture, "the trace changes the picture");
 
     // One call of several.

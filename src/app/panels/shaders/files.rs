@@ -46,7 +46,9 @@ impl FilesState {
         if self.of.1 != of.1 || self.first.is_empty() {
             self.first.clone_from(&shaders.texts);
         }
-        self.graph = IncludeGraph::new(&shaders.texts, std::mem::take(&mut self.graph));
+        let texts = shaders.texts.iter().filter(|(path, _)| shaders.is_authored(path.as_str()));
+        let texts: BTreeMap<_, _> = texts.map(|(path, text)| (path.clone(), text.clone())).collect();
+        self.graph = IncludeGraph::new(&texts, std::mem::take(&mut self.graph));
         let differs = |(path, text): &(&TreePath, &Arc<str>)| self.first.get(*path) != Some(*text);
         self.edited = shaders.texts.iter().filter(differs).map(|(path, _)| path.clone()).collect();
         self.of = of;
@@ -284,12 +286,12 @@ fn about(ui: &mut Ui, shaders: &ShaderSet, graph: &IncludeGraph, path: &TreePath
         count => format!("{} and {} more", names[..10].join(", "), count - 10),
     };
     let reaches = shaders.stages.iter().filter(|(_, stage)| stage.dependencies.contains(path));
-    let reaches: Vec<&str> = reaches.map(|(stage, _)| stage.as_str()).collect();
-    ui.label(RichText::new(path.as_str()).strong());
+    let reaches: Vec<&str> = reaches.map(|(stage, _)| shaders.name_of(stage)).collect();
+    ui.label(RichText::new(shaders.name_of(path.as_str())).strong());
     let (color, meaning) = mark.words();
     ui.label(RichText::new(meaning).small().color(color));
-    let included_by = graph.included_by(path).map(TreePath::as_str).collect();
-    let includes = graph.includes(path).iter().map(TreePath::as_str).collect();
+    let included_by = graph.included_by(path).map(|path| shaders.name_of(path.as_str())).collect();
+    let includes = graph.includes(path).iter().map(|path| shaders.name_of(path.as_str())).collect();
     for (title, names) in [("Includes", includes), ("Included by", included_by), ("An edit recompiles", reaches)] {
         ui.label(RichText::new(format!("{title}: {}", list(names))).small());
     }

@@ -95,14 +95,14 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
     let (name, meaning) = row.state.words();
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, LINE), Sense::hover());
     ui.painter().circle_filled(rect.center(), 3.5, color(row.state));
-    let shown = middle(ui.painter(), &row.path, &small_font(), width.max(60.0));
+    let shown = middle(ui.painter(), &row.name, &small_font(), width.max(60.0));
     let label = elided(RichText::new(shown).small()).selectable(false).sense(Sense::click());
     let left = egui::Layout::left_to_right(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(egui::vec2(width.max(60.0), LINE), left, |ui| {
         ui.set_min_width(width.max(60.0));
         ui.add(label)
     });
-    let hover = format!("{}: {meaning}\nClick for details", row.path);
+    let hover = format!("{}: {meaning}\nClick for details", row.name);
     let clicked = response.inner.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(hover).clicked();
     ui.label(RichText::new(name).small().color(color(row.state))).on_hover_text(meaning);
     clicked

@@ -77,10 +77,14 @@ fn files(
     newest: Option<&PixelTrace>,
     commands: &mut Commands,
 ) {
-    let shown = model.path().map_or("no file", TreePath::as_str);
+    let shown = model.path().map(TreePath::as_str);
     let of_stage: Vec<TreePath> =
         newest.map(|of| of.files.iter().map(|file| TreePath::from(file.as_str())).collect()).unwrap_or_default();
-    let list = ComboBox::from_id_salt("file").selected_text(small_mono(shown)).width(FILES).height(MENU).truncate();
+    let list = ComboBox::from_id_salt("file")
+        .selected_text(small_mono(shown.map_or("no file", |path| shaders.name_of(path))))
+        .width(FILES)
+        .height(MENU)
+        .truncate();
     let id = ui.id().with("search of files");
     let list = list.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show_ui(ui, |ui| {
         let typed: Option<String> = ui.data(|data| data.get_temp(id));
@@ -96,22 +100,26 @@ fn files(
         ui.data_mut(|data| data.insert_temp(id, typed));
         ScrollArea::vertical().max_height(MENU).show(ui, |ui| {
             let mut file = |ui: &mut Ui, path: &TreePath, is_strong: bool| {
-                if !words.are_in(path.as_str()) {
+                let name = shaders.name_of(path.as_str());
+                if !words.are_in(name) {
                     return;
                 }
-                let text = small_mono(path.as_str());
+                let text = small_mono(name);
                 let text = if is_strong { text } else { text.color(QUIET) };
-                if ui.selectable_label(path.as_str() == shown, text).clicked() || std::mem::take(&mut takes_first) {
+                if ui.selectable_label(Some(path.as_str()) == shown, text).clicked() || std::mem::take(&mut takes_first)
+                {
                     commands.push(SHOW_FILE.with(path.clone()));
                     ui.close();
                 }
             };
             if let Some(newest) = newest.filter(|_| !of_stage.is_empty()) {
-                ui.label(RichText::new(format!("In {} at this pixel", newest.stage)).small().color(QUIET));
+                ui.label(
+                    RichText::new(format!("In {} at this pixel", shaders.name_of(&newest.stage))).small().color(QUIET),
+                );
                 of_stage.iter().for_each(|path| file(ui, path, true));
             }
             let others = shaders.texts.keys().filter(|path| !of_stage.contains(path) && !is_hidden(path));
-            let others: Vec<&TreePath> = others.filter(|path| words.are_in(path.as_str())).collect();
+            let others: Vec<&TreePath> = others.filter(|path| words.are_in(shaders.name_of(path.as_str()))).collect();
             if !of_stage.is_empty() && !others.is_empty() {
                 ui.separator();
                 ui.label(RichText::new("Other files").small().color(QUIET));
@@ -135,7 +143,11 @@ fn stages(ui: &mut Ui, newest: &PixelTrace, commands: &mut Commands) {
     let list = list.truncate().show_ui(ui, |ui| {
         ui.set_min_width(MENU);
         for stage in &newest.stages {
-            let text = format!("{}   {}", stage.label, stage.path);
+            let text = if stage.label == stage.name {
+                stage.name.clone()
+            } else {
+                format!("{}   {}", stage.label, stage.name)
+            };
             if ui.selectable_label(is_now(&stage), RichText::new(text).small()).clicked() {
                 commands.push(CHOOSE_STAGE.with(stage.path.clone()));
             }

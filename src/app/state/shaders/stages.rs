@@ -41,6 +41,8 @@ impl StageState {
 #[derive(Clone, Debug)]
 pub(in crate::app) struct StageRow {
     pub(in crate::app) path: String,
+    /// Its name for people: [`ShaderSet::name_of`].
+    pub(in crate::app) name: String,
     pub(in crate::app) state: StageState,
     /// Its latest compile time, in milliseconds.
     pub(in crate::app) compile_ms: Option<f64>,
@@ -95,7 +97,8 @@ impl StageTable {
             let before = earlier.remove(&path);
             let figures = figures(&now, before.as_ref());
             let state = state(&path, &set.shaders, &on_screen, log);
-            StageRow { state, compile_ms: log.compile_ms(&path), path, now, before, figures }
+            let name = set.shaders.name_of(&path).to_owned();
+            StageRow { state, name, compile_ms: log.compile_ms(&path), path, now, before, figures }
         };
         self.rows = set.report(request).into_iter().map(row).collect();
         let main = main_stage(request);

@@ -29,6 +29,14 @@ fn refused(text: &str, marked: &str, parts: &[&str]) {
 }
 
 #[test]
+fn a_file_without_code_is_told_to_be_empty() {
+    for (text, is_empty) in [("", true), ("// later\n", true), ("float a;\n", false)] {
+        let error = super::super::problems::without_entry("t.glsl", text);
+        assert_eq!(error.message.starts_with("the file is empty: expected `void mainImage("), is_empty, "{error:#?}");
+    }
+}
+
+#[test]
 fn good_lines_have_no_errors() {
     let good = "#iChannel0 \"file://./bricks.png\" // wood\n  #iChannel1 \"self\"\n#iChannel2\"blur.glsl\"\n\
         #iChannel3 \"sky_{}.png\"\n#iChannel3::Type \"cubemap\"\n#iChannel0::WrapMode \"Clamp\"\n#iKeyboard\n\

@@ -10,7 +10,7 @@ use super::beside::{is_there, not_found};
 use super::channel::{CHANNELS, Channel, Kind, OPTIONS, Sampler, channel, channels, samplers};
 use crate::message::{did_you_mean, either};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::glsl::{Line, find_word, is_word, lines};
+use crate::shader::glsl::{Line, find_word, is_same_code, is_word, lines};
 use crate::shader::source::TreePath;
 
 /// Shadertoy's entry point.
@@ -59,7 +59,8 @@ pub(super) fn problems(shown: &str, text: &str, folder: &Path) -> Vec<Diagnostic
 
 /// The error of a file that has no entry point.
 pub(super) fn without_entry(shown: &str, text: &str) -> Diagnostic {
-    let message = format!("expected `{MAIN_IMAGE}` or `void main()`");
+    let is_empty = if is_same_code(text, "") { "the file is empty: " } else { "" };
+    let message = format!("{is_empty}expected `{MAIN_IMAGE}` or `void main()`");
     let error = Diagnostic::error(shown, message);
     match OTHER_ENTRIES.iter().find(|(name, _)| uses(text, name)) {
         Some((name, help)) => error.with_help(format!("this file has `{name}`: {help}")),

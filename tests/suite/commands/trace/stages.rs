@@ -211,6 +211,16 @@ fn toys_are_traced_with_the_frames_before() {
     }
     // Of the stage around it, nothing. An assertion needs no path.
     assert!(found["lines"].as_array().unwrap().iter().all(|line| line["file"] == file), "{found}");
+    // Texts name the author's files; the name of one names its stage.
+    let told = trace(directory.path(), &["toy.glsl", "--at", "24,15", "--stage", "buffer.glsl"]);
+    let all = told.stdout.lines().collect::<Vec<_>>();
+    assert!(
+        all[0].starts_with("pixel 24 15, buffer.glsl, fragment 0 of 1: equal to the image buffer.glsl"),
+        "{told:?}"
+    );
+    assert!(all[2] == "buffer.glsl" && all[3].starts_with("  2  void mainImage("), "{told:?}");
+    let told = trace(directory.path(), &["toy.glsl", "--at", "24,15", "--stage", "bufer.glsl"]);
+    told.expect(2, &["no stage bufer.glsl that can be traced; it has toy.glsl, buffer.glsl, tonemap.frag"]);
     let asserted = ["toy.glsl", "--at", "24,15", "--frames", "4", "--assert", "toy.glsl:4 count > 3"];
     trace(directory.path(), &asserted).expect(0, &[]);
     let stage = ["toy.glsl", "--at", "24,15", "--json", "--frames", "4", "--file", "opened/buffer.glsl"];
