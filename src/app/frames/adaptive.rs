@@ -233,7 +233,7 @@ pub(super) fn submitted(state: &mut State, screen: &Screen, frame: Option<&Bound
         (Drawing::Rest, _) => Drawn::Whole { parts_ms: screen.parts_ms() },
         _ => return,
     };
-    state.previews.submitted(screen.frames().submitted(), drawn);
+    state.previews.submitted(screen.frames().submitted(), drawn, Instant::now());
 }
 
 /// Takes the times of the newest finished frame.

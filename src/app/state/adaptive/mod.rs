@@ -99,8 +99,11 @@ pub(in crate::app) struct Previews {
     whole_ms: Option<f64>,
     /// Whether the next whole picture is the first since a new one.
     is_first: bool,
-    /// When the picture changed last.
+    /// When the last frame with a change of the picture was submitted; before that, when it began. A frame can wait for the device so long
+    /// that it says nothing about the events meanwhile.
     changed: Option<Instant>,
+    /// Whether the last frame had such a change.
+    has_changed: bool,
     /// Whether it has moved since the last whole picture.
     has_moved: bool,
     /// Whether the last preview is drawn. The one before may show the same picture, and its frame then draws the panels alone.
@@ -190,6 +193,7 @@ impl Previews {
     }
 
     fn note(&mut self, (change, accumulates): (Change, bool), now: Option<Instant>) {
+        self.has_changed = change != Change::Nothing;
         match change {
             Change::Nothing => return,
             Change::Moved => self.has_moved = true,
@@ -231,7 +235,10 @@ impl Previews {
     }
 
     /// Notes what a submitted frame has drawn, if its time counts.
-    pub(in crate::app) fn submitted(&mut self, serial: u64, drawn: Drawn) {
+    pub(in crate::app) fn submitted(&mut self, serial: u64, drawn: Drawn, now: Instant) {
+        if self.has_changed && self.changed.is_some() {
+            self.changed = Some(now);
+        }
         let counts = match drawn {
             Drawn::Whole { .. } => !(std::mem::take(&mut self.is_first) && self.compiles_in_frame),
             Drawn::Preview { .. } => self.is_drawn,
@@ -271,7 +278,7 @@ mod tests {
     /// A frame on a software device whose whole picture takes 500 ms, some time after `start`.
     fn slow() -> Previews {
         let mut previews = Previews::new(true);
-        previews.submitted(1, Drawn::Whole { parts_ms: 0.0 });
+        previews.submitted(1, Drawn::Whole { parts_ms: 0.0 }, Instant::now());
         previews.finished(1, 500.0, 10.0);
         previews
     }
@@ -307,6 +314,21 @@ mod tests {
         assert!(previews.is_whole() && previews.take_movement().is_none());
     }
 
+    /// Otherwise a part of the whole picture would be drawn between two previews, and the next frame would wait for it again.
+    #[test]
+    fn a_frame_that_waits_for_the_device_is_no_rest() {
+        let mut previews = slow();
+        let moved = next(Change::Moved);
+        previews.plan(&moved);
+        let submitted = moved.now + 2 * REST;
+        previews.submitted(2, Drawn::Preview { side: 0.5, pixels_of_whole: 4.0, accumulates: false }, submitted);
+        assert_eq!(previews.time_to_parts(false, submitted), Some(REST));
+        // The panels alone change.
+        previews.plan(&NextFrame { now: submitted, ..next(Change::Nothing) });
+        previews.submitted(3, Drawn::Preview { side: 0.5, pixels_of_whole: 4.0, accumulates: false }, submitted + REST);
+        assert_eq!(previews.time_to_parts(false, submitted + REST), Some(Duration::ZERO));
+    }
+
     #[test]
     fn a_new_picture_and_an_awaited_one_are_whole() {
         let mut previews = slow();
@@ -336,15 +358,15 @@ mod tests {
         let mut previews = Previews::new(true);
         assert_eq!(previews.plan(&next(Change::Moved)), Plan::Preview);
         let preview = Drawn::Preview { side: previews.side(), pixels_of_whole: 8.0, accumulates: false };
-        previews.submitted(1, preview);
+        previews.submitted(1, preview, Instant::now());
         assert!(previews.finished(1, 60.0, 10.0) && previews.whole_ms.is_none());
         assert_eq!(previews.plan(&next(Change::Nothing)), Plan::Preview, "the mouse stands still");
-        previews.submitted(2, preview);
+        previews.submitted(2, preview, Instant::now());
         assert!(!previews.finished(2, 11.0, 10.0));
         assert_eq!((previews.whole_ms, previews.may_preview(Adaptive::Auto)), (None, true));
         let mean = NextFrame { accumulates: true, ..next(Change::Nothing) };
         assert_eq!(previews.plan(&mean), Plan::Preview, "another frame of the mean");
-        previews.submitted(3, preview);
+        previews.submitted(3, preview, Instant::now());
         assert!(previews.finished(3, 60.0, 10.0));
     }
 
@@ -354,15 +376,15 @@ mod tests {
         assert!(previews.may_preview(Adaptive::Auto), "a software device is slow until its time is known");
         assert!(!Previews::default().may_preview(Adaptive::Auto), "a GPU is not");
         previews.show_whole(Change::New, false);
-        previews.submitted(1, Drawn::Whole { parts_ms: 0.0 });
+        previews.submitted(1, Drawn::Whole { parts_ms: 0.0 }, Instant::now());
         previews.finished(1, 900.0, 0.0);
         assert_eq!(previews.whole_ms, None, "the first frame has compiled");
         assert_eq!(previews.plan(&next(Change::Moved)), Plan::Preview);
-        previews.submitted(2, Drawn::Preview { side: 0.5, pixels_of_whole: 8.0, accumulates: false });
+        previews.submitted(2, Drawn::Preview { side: 0.5, pixels_of_whole: 8.0, accumulates: false }, Instant::now());
         previews.finished(2, 12.0, 10.0);
         assert_eq!(previews.whole_ms, Some(26.0));
         assert!(!previews.may_preview(Adaptive::Auto) && previews.may_preview(Adaptive::On));
-        previews.submitted(3, Drawn::Whole { parts_ms: 40.0 });
+        previews.submitted(3, Drawn::Whole { parts_ms: 40.0 }, Instant::now());
         previews.finished(3, 20.0, 10.0);
         assert!(previews.may_preview(Adaptive::Auto), "measured");
     }
