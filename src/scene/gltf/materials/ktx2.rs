@@ -42,6 +42,7 @@ pub fn texels(bytes: &[u8], largest: u32, take: Take<'_>) -> Result<(u32, u32, T
     let basis = || {
         // Where the device samples no compressed form. Of floats it is twice as much.
         take(u64::from(width) * u64::from(height) * 4)?;
+        check_lengths(bytes, &header)?;
         Basis::read(bytes, header.level_count).map(Texels::Basis)
     };
     let texels = match header.format {
@@ -77,11 +78,30 @@ fn stored(bytes: &[u8], header: &Header, format: Format, take: Take<'_>) -> Resu
     Ok(Texels::Stored { form: file.form(), levels, bytes: all })
 }
 
+/// Where a level is; `None` if the file ends before it.
+fn level_index(bytes: &[u8], level: u32) -> Option<LevelIndex> {
+    let at = Header::LENGTH + level as usize * LevelIndex::LENGTH;
+    bytes.get(at..).and_then(<[u8]>::first_chunk).map(LevelIndex::from_bytes)
+}
+
+/// Refuses a file one of whose levels says that it is longer than its blocks without supercompression: the transcoder takes as much memory
+/// as a file says.
+fn check_lengths(bytes: &[u8], header: &Header) -> Result<(), String> {
+    for level in 0..header.level_count.max(1) {
+        let (width, height) = mips::size(header.pixel_width, header.pixel_height, level);
+        // No block of 16 bytes has fewer texels.
+        let most = TexelForm::Astc(4, 4).bytes(width, height);
+        let length = level_index(bytes, level).map_or(0, |index| index.uncompressed_byte_length);
+        if length > most {
+            return Err(format!("damaged KTX2: level {level} has {length} bytes, expected {most} at most"));
+        }
+    }
+    Ok(())
+}
+
 /// The stored bytes of a level.
 fn stored_level(bytes: &[u8], level: u32) -> Result<&[u8], String> {
-    let at = Header::LENGTH + level as usize * LevelIndex::LENGTH;
-    let index = bytes.get(at..).and_then(<[u8]>::first_chunk).map(LevelIndex::from_bytes);
-    let range = index.and_then(|index| {
+    let range = level_index(bytes, level).and_then(|index| {
         let start = usize::try_from(index.byte_offset).ok()?;
         Some(start..start.checked_add(usize::try_from(index.byte_length).ok()?)?)
     });
@@ -396,5 +416,9 @@ mod tests {
             let _ = opened_on(&all, bytes);
         });
         assert!(texels(&files[2][..150], 64, &|_| Ok(())).is_err());
+        // A length for which there is no memory would end the program.
+        let long = file(0, 2, (4, 4), UASTC, &[&block], 1 << 37);
+        let problem = texels(&long, 64, &|_| Ok(())).unwrap_err();
+        assert_eq!(problem, "damaged KTX2: level 0 has 137438953472 bytes, expected 16 at most");
     }
 }
