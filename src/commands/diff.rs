@@ -218,9 +218,9 @@ fn print(pair: &Pair) {
             let measure = if found.measure == Measure::Flip { "FLIP" } else { "RMSE" };
             let (x, y) = found.largest_at;
             out!(
-                "{:<10} {name}  {measure}; largest {:.4} at {x},{y}; {} of {} pixels differ",
+                "{:<10} {name}  {measure}; largest {} at {x},{y}; {} of {} pixels differ",
                 number(found.error),
-                found.largest,
+                number(found.largest.into()),
                 found.differing,
                 found.pixels
             );
@@ -228,7 +228,25 @@ fn print(pair: &Pair) {
     }
 }
 
-/// An error with four digits after the point.
+/// An error with four digits after the point; a large one, as of EXR files, with four in all.
 fn number(error: f64) -> String {
-    if error < 0.00005 { "< 0.0001".to_owned() } else { format!("{error:.4}") }
+    match error {
+        error if error < 0.00005 => "< 0.0001".to_owned(),
+        error if error < 1e6 => format!("{error:.4}"),
+        error => format!("{error:.3e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_have_few_digits_at_any_size() {
+        let cases =
+            [(0.0, "< 0.0001"), (0.00005, "0.0001"), (0.25, "0.2500"), (65504.0, "65504.0000"), (1e25, "1.000e25")];
+        for (error, text) in cases {
+            assert_eq!(number(error), text);
+        }
+    }
 }

@@ -9,7 +9,7 @@ const MAPS = ["map", "channel"];
 // Zoom is in pixels of the screen for each of the picture; x and y are where its upper left corner is on the stage.
 const state = { pair: 0, mode: "wipe", wipe: 50, gain: 0, zoom: 1, x: 0, y: 0 };
 
-const number = value => value === null ? "∞" : value === 0 ? "0" : value < 0.00005 ? "< 0.0001" : value.toFixed(4);
+const number = value => value === null ? "∞" : value === 0 ? "0" : value < 0.00005 ? "< 0.0001" : value < 1e6 ? value.toFixed(4) : value.toPrecision(4);
 // NaN and infinity are text.
 const rounded = value => typeof value === "string" ? value : +value.toPrecision(4);
 const pair = () => report.pairs[state.pair];
