@@ -68,19 +68,16 @@ pub(crate) struct Listed {
     pub(crate) kind: FileKind,
 }
 
-/// The folders in a folder, then its files, by their names. `may_hold_look`: whether a file that has the ending of one may be a look; others
-/// are [`FileKind::Other`].
+/// The folders in a folder, then its files, by their names. `may_be`: whether a file with the ending of a kind may be of it; others are
+/// [`FileKind::Other`].
 ///
 /// # Errors
 /// A message: it cannot be read.
-pub(crate) fn list(folder: &Path, may_hold_look: impl Fn(&Path) -> bool) -> Result<Vec<Listed>, String> {
+pub(crate) fn list(folder: &Path, may_be: impl Fn(FileKind, &Path) -> bool) -> Result<Vec<Listed>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let listed = |entry: std::fs::DirEntry| {
         let path = entry.path();
-        let kind = match FileKind::of(&path) {
-            FileKind::Look if !may_hold_look(&path) => FileKind::Other,
-            kind => kind,
-        };
+        let kind = Some(FileKind::of(&path)).filter(|kind| may_be(*kind, &path)).unwrap_or(FileKind::Other);
         Some(Listed { kind, name: entry.file_name().into_string().ok()? })
     };
     let mut files: Vec<Listed> = entries.flatten().take(MOST_LISTED).filter_map(listed).collect();

@@ -20,7 +20,7 @@ use crate::app::state::workspace::PanelRequest;
 use crate::file_kind::{self, FileKind};
 use crate::message::did_you_mean;
 use crate::picture::{may_hold_look, read_checked_look};
-use crate::scene::{BUILT_IN, Problem, find_model};
+use crate::scene::{BUILT_IN, MeasuredKind, Problem, find_model};
 use crate::settings::{AddedModel, MOST_ADDED};
 use crate::shader::{self, Source};
 use crate::threads::Message;
@@ -97,11 +97,20 @@ pub(in crate::app) static NEW_TREE: Spec<Option<PathBuf>> =
     })
     .of_window();
 
+/// Whether a file is what its ending says, at a glance. Most `.toml`, `.png` and `.bin` files are something else.
+pub(in crate::app) fn may_be(kind: FileKind, path: &Path) -> bool {
+    match kind {
+        FileKind::Look => may_hold_look(path),
+        FileKind::Measured => path.metadata().is_ok_and(|file| MeasuredKind::has_length(file.len())),
+        _ => true,
+    }
+}
+
 /// Reads a folder for the command palette, on a thread.
 pub(in crate::app) static LIST_FOLDER: Spec<PathBuf> = Spec::act("list-folder", |state, engine, folder: PathBuf| {
     state.listing.ask(folder.clone());
     engine.threads.wait(move || {
-        let files = file_kind::list(&folder, may_hold_look);
+        let files = file_kind::list(&folder, may_be);
         Some(Message::Listed(folder, files))
     });
 })

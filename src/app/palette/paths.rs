@@ -114,17 +114,20 @@ fn group(kind: FileKind) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::command::file::may_be;
     use crate::file_kind::list;
-    use crate::picture::may_hold_look;
+    use crate::scene::MeasuredKind;
 
     #[test]
     fn a_path_lists_what_can_be_opened() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.hdr", "photo.jpg", "photo.png"] {
+        for name in ["a.glb", "b.hdr", "notes.txt", ".hidden.hdr", "photo.jpg", "photo.png", "scene.bin"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         std::fs::write(folder.path().join("look.toml"), "mode = \"d\"\n").unwrap();
         std::fs::write(folder.path().join("package.toml"), "[package]\n").unwrap();
+        let measured = std::fs::File::create(folder.path().join("wool.bin")).unwrap();
+        measured.set_len(MeasuredKind::Utia.file_bytes() as u64).unwrap();
         std::fs::create_dir(folder.path().join("tree")).unwrap();
         let (mut listing, mut commands) = (Listing::default(), Vec::new());
         let typed = format!("{}/", folder.path().display());
@@ -132,13 +135,13 @@ mod tests {
         let absolute = std::path::absolute(&typed).unwrap();
         assert_eq!(commands, [LIST_FOLDER.with(absolute.clone())]);
         listing.ask(absolute.clone());
-        listing.take(&absolute, list(&absolute, may_hold_look));
+        listing.take(&absolute, list(&absolute, may_be));
         let titles = |query: &str, dialog| -> Vec<String> {
             let found = entries(&listing, query, dialog, &mut Vec::new()).unwrap();
             found.into_iter().map(|entry| entry.title).collect()
         };
         let own = format!("Open {}", folder.path().file_name().unwrap().to_string_lossy());
-        assert_eq!(titles(&typed, None)[1..], ["tree/", "a.glb", "b.hdr", "look.toml"]);
+        assert_eq!(titles(&typed, None)[1..], ["tree/", "a.glb", "b.hdr", "look.toml", "wool.bin"]);
         assert_eq!(titles(&typed, None)[0], own);
         assert_eq!(titles(&format!("{typed}B"), None), ["b.hdr"]);
         assert_eq!(titles(&format!("{typed}."), None), [".hidden.hdr"]);

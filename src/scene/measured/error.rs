@@ -46,10 +46,11 @@ pub enum MeasuredProblem {
     },
     /// The first bytes or the extension match a format, but the size does not.
     #[error(
-        "has {found} bytes, expected {} of a {} file: {}. Copy or download it again.",
+        "has {found} bytes, expected {} of a {} file: {}. Copy or download it again{}.",
         kind.file_bytes(),
         kind.name(),
-        if *found < kind.file_bytes() as u64 { "it looks cut short" } else { "it has more than the data" }
+        if *found < kind.file_bytes() as u64 { "it looks cut short" } else { "it has more than the data" },
+        if *kind == MeasuredKind::Utia { "; if it is the data of a glTF file, open the .gltf beside it" } else { "" }
     )]
     Size {
         /// The format that it seems to have.

@@ -29,6 +29,11 @@ impl MeasuredKind {
         }
     }
 
+    /// Whether a file of a format has so many bytes.
+    pub fn has_length(bytes: u64) -> bool {
+        [Self::Merl, Self::Utia].iter().any(|kind| kind.file_bytes() as u64 == bytes)
+    }
+
     /// The size of every file of this format, bytes.
     pub fn file_bytes(self) -> usize {
         match self {

@@ -214,7 +214,11 @@ fn bad_files_are_refused_with_what_was_found_and_expected() {
         ("a.binary", &header([90, 90, 180]), &["has 12 bytes, expected 34992012 of a MERL file", "cut short"]),
         ("a.binary", &MERL_BYTES[..utia.len()], &["has 1990656 bytes, expected 34992012", "cut short"]),
         ("a.binary", &[&MERL_BYTES[..], &[0]].concat(), &["has 34992013 bytes", "more than the data"]),
-        ("a.bin", &utia[..1_000_000], &["has 1000000 bytes, expected 1990656 of a UTIA file", "cut short"]),
+        (
+            "a.bin",
+            &utia[..1_000_000],
+            &["has 1000000 bytes, expected 1990656 of a UTIA file", "cut short", "the .gltf beside it"],
+        ),
         ("a.binary", &[1, 2, 3], &["not a measured BRDF", "of 3 bytes"]),
         ("a.png", &utia[..1_000_000], &["not a measured BRDF", "of 1000000 bytes"]),
         ("a.binary", &infinite, &["holds inf at green value 7"]),
