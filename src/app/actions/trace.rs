@@ -156,8 +156,7 @@ fn read_saved(state: &mut State, engine: &Engine) {
     if !state.has_errors() && !state.traces.saved.is_behind() {
         return state.traces.saved.forget();
     }
-    let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
-    let Some(path) = state.traces.file_shown().cloned().or_else(of_stage) else { return };
+    let Some(path) = state.traces.file_shown().cloned().or_else(|| state.file_of_picture()) else { return };
     let errors = state.session.diagnostics.iter().filter(|found| found.severity == Severity::Error);
     let last_edit = state.shader.log.edits().next().map(|edit| edit.at);
     if !state.traces.saved.lacks(&path, errors, last_edit) {

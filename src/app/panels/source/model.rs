@@ -165,16 +165,15 @@ impl CodeModel {
     }
 }
 
-/// The file that is shown, with its text: the chosen one, that of the newest trace, or that of the stage of the model.
+/// The file that is shown, with its text: the chosen one, that of the newest trace, or that of the picture.
 fn shown_file(state: &State, shaders: &ShaderSet) -> Option<(TreePath, Arc<str>)> {
     let known = |path: &TreePath| {
         let saved = state.traces.saved.of(path);
         Some((path.clone(), saved.or_else(|| shaders.author_text(path))?.clone()))
     };
-    let of_stage = || state.shown().map(|shown| TreePath::from(shown.pipelines.stage.as_str()));
     let first = || shaders.texts.keys().next().and_then(known);
     let found = state.traces.file_shown().and_then(known);
-    found.or_else(|| of_stage().as_ref().and_then(known)).or_else(first)
+    found.or_else(|| state.file_of_picture().as_ref().and_then(known)).or_else(first)
 }
 
 fn lines(state: &State, shaders: &ShaderSet, inputs: &Inputs, texts: &TextLines) -> Vec<CodeLine> {

@@ -110,7 +110,7 @@ impl StageTable {
 }
 
 /// The stage that draws what is seen: that of the model, or of the last pass that covers it, such as a shader without a model.
-fn main_stage(request: &PipelineRequest) -> &str {
+pub(in crate::app) fn main_stage(request: &PipelineRequest) -> &str {
     let covering = request.passes.iter().rev().filter(|pass| !request.draws_model && pass.covers());
     covering.map(|pass| pass.desc.stage.as_str()).next().unwrap_or(&request.stage)
 }

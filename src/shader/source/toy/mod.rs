@@ -267,7 +267,7 @@ impl Toy {
         drawings.iter().map(|drawing| &drawing.text).chain(&common).any(|text| adapt::reads_keyboard(text))
     }
 
-    /// The block with the sliders of all files, which share it.
+    /// The block with the sliders of all files. Those that have one share it.
     fn sliders(&self, drawings: &[Drawing]) -> String {
         let common = self.common();
         let own = drawings.iter().map(|drawing| (drawing.file.as_str(), drawing.text.as_str()));
@@ -298,7 +298,8 @@ impl Toy {
         let mut variables = variables_of(&texts);
         add_standard(&mut variables, &own.declared);
         out += "#include \"toy.glsl\"\n";
-        if !self.sliders(drawings).is_empty() {
+        // The sliders of other files alone would stand below the row of this one.
+        if !sliders(&variables).is_empty() {
             out += &format!("#include \"{SLIDERS}\"\n");
         }
         out += &globals(&variables);

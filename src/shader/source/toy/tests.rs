@@ -48,6 +48,16 @@ fn buffers_are_drawn_in_the_order_of_their_letters() {
 }
 
 #[test]
+fn a_file_has_the_sliders_that_it_declares() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |name: &str| format!("uniform float {name};\n{IMAGE}");
+    let toy =
+        toy(folder.path(), &[("t.glsl", &with("speed")), ("buffer_a.glsl", IMAGE), ("buffer_b.glsl", &with("size"))]);
+    let has_sliders = |pass: &str| stage(&toy, pass).contains("toy/sliders.glsl");
+    assert!(has_sliders("image") && has_sliders("buffer_b") && !has_sliders("buffer_a"));
+}
+
+#[test]
 fn named_files_are_drawn_before_those_that_read_them() {
     let folder = tempfile::tempdir().unwrap();
     let blur = "#iChannel0 \"self\"\n#iChannel1 \"spots.png\"\n".to_owned() + IMAGE;
