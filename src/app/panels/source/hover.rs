@@ -48,6 +48,9 @@ pub(super) fn show(
     if let Some(before) = &note.before {
         ui.label(small_mono(format!("before the last edit: {before}")).color(ACCENT));
     }
+    if note.is_new {
+        ui.label(small_mono("a line of the last edit").color(ACCENT));
+    }
     let all: Vec<&Once> = done.first.iter().chain(&done.last).collect();
     Grid::new("values").num_columns(4).spacing([12.0, 1.0]).show(ui, |ui| {
         for once in all.iter().take(MOST) {

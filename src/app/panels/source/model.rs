@@ -146,9 +146,9 @@ impl CodeModel {
         self.lines.iter().position(is_error)
     }
 
-    /// How many lines have values that the last edit has changed.
+    /// How many lines have values that the last edit has made or changed.
     pub(super) fn changes(&self) -> usize {
-        let is_changed = |line: &&CodeLine| line.row.notes.iter().any(|note| note.before.is_some());
+        let is_changed = |line: &&CodeLine| line.row.notes.iter().any(Note::is_changed);
         self.lines.iter().filter(is_changed).count()
     }
 

@@ -17,7 +17,7 @@ use super::values::{GAP, Values, are_old};
 use crate::app::command::source::SHOW_FILE;
 use crate::app::commands::Commands;
 use crate::app::state::State;
-use crate::app::state::trace::rows::Reach;
+use crate::app::state::trace::rows::{Note, Reach};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{
     ACCENT, CODE_VALUE, ERROR, PANEL, QUIET, TEXT, WARNING, small_font, small_mono, small_mono_font,
@@ -210,7 +210,7 @@ fn gutter(ui: &Ui, line: &CodeLine, sight: Rect, background: Option<Color32>, lo
     let area = sight.with_max_x(sight.left() + look.gutter - 6.0);
     painter.rect_filled(area, 0.0, PANEL.color());
     background.into_iter().for_each(|color| _ = painter.rect_filled(area, 0.0, color));
-    let is_changed = line.row.notes.iter().any(|note| note.before.is_some());
+    let is_changed = line.row.notes.iter().any(Note::is_changed);
     let is_bad = line.row.notes.iter().any(|note| note.is_bad);
     let mark = pos2(sight.left() + 6.0, sight.center().y);
     let is_wrong = matches!(line.message, Some((Severity::Error, _)));

@@ -12,7 +12,7 @@ use crate::app::commands::Commands;
 use crate::app::source_line::watch;
 use crate::app::state::State;
 use crate::app::state::trace::Progress;
-use crate::app::state::trace::rows::Note;
+use crate::app::state::trace::rows::{NEW, Note};
 use crate::app::widgets::spoken;
 use crate::app::widgets::theme::{ACCENT, CODE_KEYWORD, CODE_VALUE, ERROR, QUIET, small_mono_font};
 use crate::shader::TreePath;
@@ -145,12 +145,15 @@ fn job_of(note: &Note, is_old: bool) -> LayoutJob {
         job.append(text, 0.0, format);
     };
     let is_branch = matches!(note.done.act, Act::Condition | Act::Discard | Act::Leave);
+    if note.is_new {
+        add(NEW, ACCENT.color());
+    }
     add(&note.label, QUIET.color());
     if let Some(before) = &note.before {
         add(before, QUIET.color());
         add(" → ", QUIET.color());
     }
-    let color = match (note.is_bad, note.before.is_some(), is_branch) {
+    let color = match (note.is_bad, note.is_changed(), is_branch) {
         (true, ..) => ERROR,
         (_, true, _) => ACCENT,
         (.., true) => CODE_KEYWORD,

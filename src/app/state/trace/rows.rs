@@ -10,6 +10,9 @@ use super::rounds::{Round, ends_of_do};
 use crate::shader::expression::lines_before;
 use crate::shader::trace::{Act, Done, LineOfTrace, Trace, TracedValue, is_related};
 
+/// The mark of a new line, before its first value.
+pub(in crate::app) const NEW: &str = "new: ";
+
 /// A trace and the text of its file.
 pub(in crate::app) struct Side<'a> {
     pub(in crate::app) trace: &'a Trace,
@@ -44,7 +47,7 @@ pub(in crate::app) struct Row {
     pub(in crate::app) reach: Reach,
     /// The values and decisions of its statements, in order.
     pub(in crate::app) notes: Vec<Note>,
-    /// Whether this is the first line, in the order of execution, whose values differ from the version before.
+    /// Whether this is the first line, in the order of execution, that is new or whose values differ from the version before.
     pub(in crate::app) is_first_change: bool,
 }
 
@@ -57,6 +60,8 @@ pub(in crate::app) struct Note {
     pub(in crate::app) values: String,
     /// The values in the version before, if they differ.
     pub(in crate::app) before: Option<String>,
+    /// Whether it is the first of a line that the version before does not have.
+    pub(in crate::app) is_new: bool,
     /// Whether a value is NaN or infinite.
     pub(in crate::app) is_bad: bool,
 }
@@ -64,18 +69,24 @@ pub(in crate::app) struct Note {
 impl Note {
     /// The text that is shown, on one line.
     pub(in crate::app) fn text(&self) -> String {
-        let Self { label, values, before, .. } = self;
-        before.as_ref().map_or_else(|| format!("{label}{values}"), |before| format!("{label}{before} → {values}"))
+        let Self { label, values, before, is_new, .. } = self;
+        let new = if *is_new { NEW } else { "" };
+        let before = before.as_ref().map(|before| format!("{before} → ")).unwrap_or_default();
+        format!("{new}{label}{before}{values}")
+    }
+
+    /// Whether the last edit has made or changed it.
+    pub(in crate::app) fn is_changed(&self) -> bool {
+        self.is_new || self.before.is_some()
     }
 }
 
 impl Row {
-    /// The values that differ from the version before.
+    /// The values that differ from the version before, which is null for those of new lines.
     pub(super) fn changes_json(&self) -> impl Iterator<Item = Value> {
-        self.notes.iter().filter_map(|note| {
-            let before = note.before.as_ref()?;
-            Some(json!({ "line": self.line, "name": note.done.name, "act": note.done.act, "before": before,
-                "now": note.values, "first": self.is_first_change }))
+        self.notes.iter().filter(|note| note.is_changed()).map(|note| {
+            json!({ "line": self.line, "name": note.done.name, "act": note.done.act, "before": note.before,
+                "now": note.values, "first": self.is_first_change })
         })
     }
 }
@@ -105,19 +116,21 @@ pub(in crate::app) fn rows(sources: &Sources<'_>, choice: &Choice) -> Vec<Row> {
     for (at, row) in rows.iter_mut().enumerate() {
         let Some(line) = traced.get(at).copied().flatten() else { continue };
         row.traced = Some(line);
-        let earlier = earlier.as_ref().and_then(|(of, before)| of.get(&before.get(line as usize - 1).copied()??));
+        let line_before = earlier.as_ref().map(|(_, before)| before.get(line as usize - 1).copied().flatten());
+        let earlier = earlier.as_ref().and_then(|(of, _)| of.get(&line_before??));
         let decides = match texts.get(at) {
             _ if ends.contains(&line) => Decides::Again,
             Some(text) if is_loop(text) => Decides::Round,
             _ => Decides::Branch,
         };
         row.notes = lines.get(&line).map(|line| notes(line, earlier, decides)).unwrap_or_default();
+        row.notes.iter_mut().take(1).for_each(|note| note.is_new = line_before == Some(None));
         row.reach = match (statements.contains(&line), lines.contains_key(&line)) {
             (_, true) => Reach::Reached,
             (true, false) => Reach::Missed,
             (false, false) => Reach::Unknown,
         };
-        let differs = row.notes.iter().filter(|note| note.before.is_some());
+        let differs = row.notes.iter().filter(|note| note.is_changed());
         changed.extend(differs.map(|note| Changed { line, act: note.done.act, name: note.done.name.clone(), row: at }));
     }
     if let Some(first) = first_change(now.trace, choice, &changed) {
@@ -131,7 +144,7 @@ fn by_line(lines: Vec<LineOfTrace>) -> BTreeMap<u32, LineOfTrace> {
     lines.into_iter().map(|line| (line.line, line)).collect()
 }
 
-/// A statement whose values differ from the version before.
+/// A statement that is new, or whose values differ from the version before.
 struct Changed {
     /// The traced line, from 1.
     line: u32,
@@ -200,7 +213,7 @@ fn notes(line: &LineOfTrace, earlier: Option<&LineOfTrace>, decides: Decides) ->
             Act::Condition | Act::Discard | Act::Leave => String::new(),
         };
         let is_bad = done.values().any(|value| !value.is_finite());
-        Note { done: done.clone(), label, values, before, is_bad }
+        Note { done: done.clone(), label, values, before, is_new: false, is_bad }
     };
     line.done.iter().map(note).collect()
 }

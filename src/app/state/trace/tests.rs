@@ -53,14 +53,21 @@ fn a_save_shows_old_and_new_values_on_lines_that_moved() {
     assert_eq!(reach, [Reached, Reached, Reached, Missed, Reached, Unknown]);
 
     add(&mut traces, &shaders(2, NEW), 2, new_events(), &[1, 2, 3, 4, 5, 6]);
-    let expected = ["x = 1", "b = 1", "a = 2 → 4", "not taken → taken", "a = 3", "return 2 → 3", ""];
+    let expected = ["x = 1", "new: b = 1", "a = 2 → 4", "not taken → taken", "a = 3", "return 2 → 3", ""];
     assert_eq!(texts(&traces, NEW), expected);
     let rows = traces.rows(&"a.glsl".into(), NEW);
     let first: Vec<u32> = rows.iter().filter(|row| row.is_first_change).map(|row| row.line).collect();
-    assert_eq!(first, [3], "the first line that differs");
+    assert_eq!(first, [2], "the first line that is new or differs");
     let changed = traces.json().unwrap()["changed"].clone();
-    assert_eq!(changed[0], json!({ "line": 3, "name": "a", "act": "store", "before": "2", "now": "4", "first": true }));
-    assert_eq!(changed.as_array().unwrap().len(), 3);
+    assert_eq!(
+        changed[0],
+        json!({ "line": 2, "name": "b", "act": "store", "before": null, "now": "1", "first": true })
+    );
+    assert_eq!(
+        changed[1],
+        json!({ "line": 3, "name": "a", "act": "store", "before": "2", "now": "4", "first": false })
+    );
+    assert_eq!(changed.as_array().unwrap().len(), 4);
 
     // While a later edit does not compile, the values stay beside the lines that they belong to.
     let broken = format!("// more\n{NEW}");
