@@ -17,7 +17,7 @@ use super::state::State;
 use super::state::adaptive::Previews;
 use super::state::exercise::Learning;
 use super::state::hint::Hint;
-use super::state::last_session::LastSessions;
+use super::state::last_session::{LastSession, LastSessions};
 use super::state::model::ModelStatus;
 use super::state::recent::Recent;
 use super::state::text_writes::TextWrites;
@@ -61,6 +61,9 @@ pub(super) fn start(
         previews: Previews::new(gpu.info().kind == "cpu"),
         ..State::new(options.settings, source.clone())
     };
+    if state.last_sessions.is_always() {
+        state.traces.file = state.last_sessions.here.as_ref().and_then(LastSession::file);
+    }
     let session = &state.session;
     let lights = &session.settings.lights;
     let resources = Resources::new(gpu, layouts, lights.ambient_color.map(|c| c * lights.ambient_strength))?;

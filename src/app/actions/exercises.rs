@@ -81,6 +81,7 @@ pub(in crate::app) fn on_prepared(
     }
     let own = state.session_state();
     if state.learning.exercise.is_none() {
+        state.edits.leave(own.tree.as_deref(), &own.settings.expression);
         state.learning.before.get_or_insert(own);
     }
     find_tree(state, engine, &folder);

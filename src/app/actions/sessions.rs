@@ -36,6 +36,7 @@ pub(in crate::app) fn restore_session(state: &mut State, engine: &mut Engine) {
     let Some(last) = state.last_sessions.here.clone() else {
         return state.say("There is no session to restore");
     };
+    state.traces.file = last.file();
     go_to(state, engine, last.work);
     state.offers_session = false;
 }
@@ -52,7 +53,12 @@ pub(in crate::app) fn show_look(state: &mut State, engine: &mut Engine, look: Lo
         || look.settings.added_files() != now.settings.added_files()
         || is_other(model.as_deref(), now.model.as_deref());
     let tree = look.shaders.or(now.tree);
-    go_to(state, engine, SessionState { settings: Arc::new(look.settings), model: model.clone(), scene, tree });
+    let mut settings = look.settings;
+    // Without names, a look says nothing about clips: it may have been made with a model without any.
+    if look.model.is_none() && settings.animation.clips.is_empty() {
+        settings.animation.clips.clone_from(&now.settings.animation.clips);
+    }
+    go_to(state, engine, SessionState { settings: Arc::new(settings), model: model.clone(), scene, tree });
     loads.then(|| model.unwrap_or_else(|| BUILT_IN[0].into()))
 }
 

@@ -27,11 +27,14 @@ pub(in crate::app) fn on_tree_found(
         }
     };
     state.waiting.tree_found(path, Ok(()));
+    let watched = state.session.settings.expression.clone();
     if !state.learning.holds(source.location()) {
         leave_exercise(state, engine);
     }
     if stops {
+        state.edits.leave(state.source.location(), &watched);
         stop(&mut state.session.settings);
+        state.session.settings.expression = state.edits.come_back(source.location()).unwrap_or_default();
     }
     // Versions of another tree must never be written into this one.
     let tree = change_tree(state, engine, &source);

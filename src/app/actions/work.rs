@@ -11,16 +11,16 @@ pub(in crate::app) fn has_work(state: &State) -> bool {
 /// Remembers the session, if there is anything to go on with.
 pub(in crate::app) fn remember_session(state: &State) {
     if has_work(state) {
-        last_session::remember(&state.session_state());
+        last_session::remember(&state.session_state(), state.traces.file_shown());
     }
 }
 
 /// Remembers the session of a tree that is left, on a thread of its own.
 pub(in crate::app) fn keep_session(state: &State, engine: &Engine) {
     if state.has_window && has_work(state) {
-        let work = state.session_state();
+        let (work, file) = (state.session_state(), state.traces.file_shown().cloned());
         engine.threads.wait(move || {
-            last_session::remember(&work);
+            last_session::remember(&work, file.as_ref());
             None
         });
     }

@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::recent::Kind;
 use crate::recovery::SessionState;
 use crate::scene::BUILT_IN;
+use crate::shader::TreePath;
 use crate::state_folder;
 
 const FILE: &str = "sessions.json";
@@ -35,6 +36,9 @@ pub(in crate::app) struct LastSession {
     /// When its window closed, in seconds since 1970.
     at: i64,
     pub(in crate::app) work: SessionState,
+    /// The file of the tree that the panel Source showed.
+    #[serde(default)]
+    file: Option<String>,
 }
 
 impl LastSession {
@@ -49,6 +53,11 @@ impl LastSession {
         let at = DateTime::from_timestamp(self.at, 0).map(|at| at.with_timezone(&Local));
         let at = at.map(|at| at.format("%Y-%m-%d %H:%M").to_string());
         [Some(model), tree, mode, Some(environment), at].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// The file of the tree that the panel Source showed.
+    pub(in crate::app) fn file(&self) -> Option<TreePath> {
+        self.file.as_deref().map(TreePath::from)
     }
 
     /// Whether its model and its shader tree are still there.
@@ -94,10 +103,11 @@ pub fn session_to_restore(tree: Option<&Path>) -> Option<SessionState> {
     sessions.here.filter(|_| sessions.always).map(|session| session.work)
 }
 
-/// Stores the state of a session that ends.
-pub(in crate::app) fn remember(work: &SessionState) {
+/// Stores the state of a session that ends. `file`: see [`LastSession::file`].
+pub(in crate::app) fn remember(work: &SessionState, file: Option<&TreePath>) {
     let Ok(directory) = std::env::current_dir() else { return };
-    let session = LastSession { at: Local::now().timestamp(), work: absolute(work.clone()), directory };
+    let (at, file) = (Local::now().timestamp(), file.map(TreePath::to_string));
+    let session = LastSession { at, work: absolute(work.clone()), file, directory };
     state_folder::change(FILE, |stored: &mut Stored| insert(stored, session));
 }
 
@@ -152,7 +162,7 @@ mod tests {
         let settings = Settings { mode: mode.to_owned(), ..Settings::of_window() };
         let work =
             SessionState { settings: Arc::new(settings), model: Some("sphere-grid".into()), ..SessionState::default() };
-        LastSession { directory: directory.into(), at: 1_790_000_000, work }
+        LastSession { directory: directory.into(), at: 1_790_000_000, work, file: Some("user.glsl".to_owned()) }
     }
 
     #[test]

@@ -39,7 +39,11 @@ fn an_exercise_is_solved_by_an_edit() {
 fn an_exercise_costs_no_setting_of_the_tree_before() {
     let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
-    viewer.running.done(json!({ "command": "set", "values": { "roughness_scale": 0.4, "view.ev": 1.5 } }));
+    let text = viewer.tree.read("brdf/ndf.glsl");
+    let line = 1 + text.lines().position(|line| line.contains("float a2 = alpha * alpha;")).unwrap();
+    let watched = json!(format!("brdf/ndf.glsl:{line}:a2"));
+    let own = json!({ "roughness_scale": 0.4, "view.ev": 1.5, "expression.at": watched });
+    viewer.running.done(json!({ "command": "set", "values": own }));
     let own = viewer.screenshot();
     let learn = json!({ "command": "run", "entry": "Exercise 1: Square the roughness" });
     viewer.running.done(learn.clone());
@@ -54,6 +58,8 @@ fn an_exercise_costs_no_setting_of_the_tree_before() {
     viewer.running.done(json!({ "command": "open", "tree": tree }));
     assert_eq!(ev(&mut viewer), json!(1.5));
     viewer.until("the picture of before", |shot| *shot == own);
+    let expression = json!({ "command": "get", "path": "expression.at" });
+    assert_eq!(viewer.running.done(expression.clone()), watched);
     // A model that is opened over a single file after an exercise is not shown by the exercise.
     viewer.running.done(learn);
     viewer.running.event("exercise");
@@ -62,6 +68,7 @@ fn an_exercise_costs_no_setting_of_the_tree_before() {
     viewer.running.done(json!({ "command": "open", "tree": toy }));
     viewer.running.done(json!({ "command": "open", "model": "sphere-grid" }));
     viewer.until("the model in its own tree", |shot| *shot == own);
+    assert_eq!(viewer.running.done(expression), watched);
     viewer.running.end_input();
     viewer.quit();
 }

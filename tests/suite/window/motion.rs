@@ -76,5 +76,13 @@ fn an_edit_keeps_an_animation_playing() {
             "the square is {at} m right of the center at {time} s, expected {expected}"
         );
     }
+    // A look that names no clips, as one of a model that stands still, leaves the chosen ones.
+    viewer.running.done(json!({ "command": "set", "values": { "animation.clips": "jump" } }));
+    let look = viewer.tree.beside("still.toml");
+    std::fs::write(&look, "[view]\nev = 1.0\n").unwrap();
+    viewer.running.done(json!({ "command": "open", "look": look }));
+    let get = |path: &str| json!({ "command": "get", "path": path });
+    assert_eq!(viewer.running.done(get("view.ev")), json!(1.0));
+    assert_eq!(viewer.running.done(get("animation.clips")), json!(["jump"]));
     viewer.quit();
 }

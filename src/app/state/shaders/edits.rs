@@ -1,6 +1,7 @@
 //! Changes of the shaders that are not in the files: the watched expression, dragged numbers, an older version in place of the newest.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::settings::{ExpressionSettings, ShaderValue};
@@ -18,6 +19,8 @@ pub(in crate::app) struct Edits {
     pub(in crate::app) watched: ExpressionSettings,
     /// Whether nothing is watched any more once the tree that the user opens is found.
     pub(in crate::app) stops_watching: bool,
+    /// The expressions that were watched in trees that were left since, by their places; `None` is the tree in the program.
+    left: HashMap<Option<PathBuf>, ExpressionSettings>,
     /// Numbers of a line that are dragged.
     pub(in crate::app) draft: Option<Draft>,
     /// The older version that is shown in place of the newest.
@@ -55,6 +58,16 @@ impl Edits {
     /// The edits at the start, when the worker begins with this expression.
     pub(in crate::app) fn new(watched: &ExpressionSettings) -> Self {
         Self { watched: watched.clone(), ..Self::default() }
+    }
+
+    /// Keeps the expression that is watched in a tree, which is left.
+    pub(in crate::app) fn leave(&mut self, tree: Option<&Path>, watched: &ExpressionSettings) {
+        self.left.insert(tree.map(Path::to_owned), watched.clone());
+    }
+
+    /// Takes the expression that was watched in a tree when it was left.
+    pub(in crate::app) fn come_back(&mut self, tree: Option<&Path>) -> Option<ExpressionSettings> {
+        self.left.remove(&tree.map(Path::to_owned))
     }
 
     /// Drops dragged numbers and the shown version, because another tree is opened.
