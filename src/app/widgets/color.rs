@@ -7,12 +7,19 @@ use super::theme::small_mono_font;
 
 /// Width of the field, points.
 const FIELD: f32 = 62.0;
+/// Least width of the picker, points.
+const LEAST_PICKER: f32 = 14.0;
 
 /// Shows and edits a color.
 pub(in crate::app) fn edit(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
     // The picker rounds its color even while it is not used.
     let mut edited = *linear;
+    // The field needs its width; the picker takes what a narrow panel leaves.
+    let width = ui.spacing().interact_size.x;
+    let left = ui.available_width() - FIELD - ui.spacing().item_spacing.x;
+    ui.spacing_mut().interact_size.x = left.clamp(LEAST_PICKER, width.max(LEAST_PICKER));
     let picker = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
+    ui.spacing_mut().interact_size.x = width;
     if picker.changed() {
         *linear = edited;
     }

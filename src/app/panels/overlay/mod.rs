@@ -195,8 +195,10 @@ fn label(egui: &egui::Context, context: &Context<'_>, own: &mut LegendState, pic
     // An area keeps its first size: one with a histogram or other swatches is another.
     let is_whole = legend.is_whole(view, own);
     let id = Id::new(("mode", is_whole, own.shows_histogram, of.swatches.len()));
+    // The offer of the last session stands at the top.
+    let place = if context.state.offers_session { Align2::LEFT_BOTTOM } else { Align2::LEFT_TOP };
     // Clicks on a value alone are for the pixel below.
-    area(id, Align2::LEFT_TOP, picture).fade_in(false).interactable(is_whole).show(egui, |ui| {
+    area(id, place, picture).fade_in(false).interactable(is_whole).show(egui, |ui| {
         card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, own, picture.width()));
     });
     if own.shows_histogram != context.state.workspace.shows_histogram {

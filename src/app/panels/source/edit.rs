@@ -13,7 +13,7 @@ use super::colors::{ROW, colored};
 use super::find::Find;
 use super::look::Look;
 use super::model::CodeModel;
-use super::row::beside;
+use super::row::{beside, message_beside};
 use super::scroll::Scroll;
 use crate::app::command::source::{SAVE_FILE, Typed};
 use crate::app::commands::Commands;
@@ -262,6 +262,11 @@ impl Editor {
                 let y = top + ROW * index as f32;
                 let sight = Rect::from_x_y_ranges(ui.clip_rect().x_range(), y..=y + ROW);
                 shapes.push(beside(ui, (state, path), line, (sight, left), (&look, find), commands));
+            }
+            for (index, line) in model.lines.iter().enumerate().skip(scroll.first).take(count) {
+                let y = top + ROW * index as f32;
+                let sight = Rect::from_x_y_ranges(ui.clip_rect().x_range(), y..=y + ROW);
+                message_beside(ui, (line, model.lines.get(index + 1)), (sight, left), &look);
             }
             ui.painter().set(behind, Shape::Vec(shapes));
         });

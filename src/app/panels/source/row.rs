@@ -158,8 +158,7 @@ fn found(line: &CodeLine, find: &Find, (left, rect): (f32, Rect), look: &Look) -
     Shape::Vec(find.places(&line.text).into_iter().map(place).collect())
 }
 
-/// Shows what stands beside a line that is typed: its number, and its values or the message about it. `left`: where its code begins.
-/// Returns what is behind it.
+/// Shows what stands beside a line that is typed: its number and its values. `left`: where its code begins. Returns what is behind it.
 pub(super) fn beside(
     ui: &mut Ui,
     of: (&State, &TreePath),
@@ -171,27 +170,43 @@ pub(super) fn beside(
     let background = background(line);
     let end = left + look.letter * line.text.chars().count() as f32;
     gutter(ui, line, sight, background, look);
-    match &line.message {
-        Some((severity, text)) => {
-            let color = if *severity == Severity::Error { ERROR } else { WARNING }.color();
-            let mut job = LayoutJob::simple_singleline(text.clone(), small_font(), color);
-            job.wrap =
-                TextWrapping::truncate_at_width((sight.right() - end - 2.0 * GAP).max(MOST_VALUES * sight.width()));
-            let galley = ui.painter().layout_job(job);
-            let at = pos2(sight.right() - 8.0 - galley.size().x, sight.center().y - galley.size().y / 2.0);
-            if at.x < end + GAP {
-                cover(ui, sight.with_min_x(at.x - GAP), background);
-            }
-            let response = ui.interact(galley.rect.translate(at.to_vec2()), message_id(ui, sight), Sense::hover());
-            response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
-            response.on_hover_text(text);
-            ui.painter().galley(at, galley, color);
-        }
+    if line.message.is_none() {
         // A line that is being typed is never cut.
-        None => Values::new(ui, (line, are_old(of.0)), (sight, end), 0.0).show(ui, of, (line, sight), commands),
+        Values::new(ui, (line, are_old(of.0)), (sight, end), 0.0).show(ui, of, (line, sight), commands);
     }
     let behind = background.map_or(Shape::Noop, |color| Shape::rect_filled(sight, 0.0, color));
     Shape::Vec(vec![behind, found(line, find, (left, sight), look)])
+}
+
+/// Shows the message about a line that is typed: behind its code, or below it if there is no room. It never covers code, so where the line
+/// below is long, too, only the mark of the line says that there is a message.
+pub(super) fn message_beside(
+    ui: &mut Ui,
+    (line, below): (&CodeLine, Option<&CodeLine>),
+    (sight, left): (Rect, f32),
+    look: &Look,
+) {
+    let Some((severity, text)) = &line.message else { return };
+    let color = if *severity == Severity::Error { ERROR } else { WARNING }.color();
+    let end = |line: &CodeLine| left + look.letter * line.text.chars().count() as f32;
+    let mut job = LayoutJob::simple_singleline(text.clone(), small_font(), color);
+    job.wrap =
+        TextWrapping::truncate_at_width((sight.right() - end(line) - 2.0 * GAP).max(MOST_VALUES * sight.width()));
+    let galley = ui.painter().layout_job(job);
+    let start = sight.right() - 8.0 - galley.size().x;
+    let is_free = |line: &CodeLine| end(line) + GAP <= start;
+    let row = match is_free(line) {
+        true => sight,
+        false if below.is_none_or(|below| below.message.is_none() && is_free(below)) => sight.translate(vec2(0.0, ROW)),
+        false => return,
+    };
+    // Values of the line below.
+    cover(ui, row.with_min_x(start - GAP), (row == sight).then(|| background(line)).flatten());
+    let at = pos2(start, row.center().y - galley.size().y / 2.0);
+    let response = ui.interact(galley.rect.translate(at.to_vec2()), message_id(ui, sight), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
+    response.on_hover_text(text);
+    ui.painter().galley(at, galley, color);
 }
 
 /// The color behind a line.
