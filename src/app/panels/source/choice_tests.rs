@@ -76,6 +76,8 @@ fn a_call_that_returns_early_says_so() {
     harness.get_by_label("Call").click();
     harness.run_steps(2);
     harness.get_by_label(one);
+    // Beside the line, and beside the call.
+    assert_eq!(harness.query_all_by_label("a = 4").count(), 2);
     harness.get_by_label("shade > add_light [light 2], returns early").click();
     harness.run_steps(2);
     let chosen = Choice { call: Some(two.to_owned()), ..Choice::default() };

@@ -9,7 +9,7 @@ use crate::app::state::trace::choice::{Choice, ListedCall, calls, listed_calls, 
 use crate::app::state::trace::rounds::{Round, TracedLoop, traced_loops};
 use crate::app::widgets::plural;
 use crate::app::widgets::spoken::named;
-use crate::app::widgets::theme::{QUIET, small_mono};
+use crate::app::widgets::theme::{CODE_VALUE, QUIET, small_mono};
 use crate::shader::trace::{Act, Event, Trace, TracedLight, last_call};
 
 /// Points by which a call stands to the right of its caller, and a round of its loop.
@@ -135,6 +135,9 @@ fn call_row(ui: &mut Ui, call: &ListedCall, light: Option<&TracedLight>, is_chos
             let (area, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
             ui.painter().circle(area.center(), 4.0, light_color(light), Stroke::new(1.0, QUIET));
             ui.label(RichText::new(light.text()).small().color(QUIET));
+        }
+        if !call.last.is_empty() && !call.is_cut {
+            ui.label(RichText::new(&call.last).small().color(CODE_VALUE.color()));
         }
         named(button, &format!("{}{end}", call.path)).clicked()
     });

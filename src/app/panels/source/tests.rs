@@ -246,15 +246,15 @@ fn values_of_the_version_before_are_dim() {
     assert_eq!(color(&harness), theme::QUIET.color());
 }
 
-/// Nobody sees that a value is missing where the others end.
+/// Nobody sees that a value is missing where the others end. Values that are 0 are missed least.
 #[test]
 fn values_without_room_are_counted() {
     let many: Vec<Event> = (0..40).map(|index| event(3, Act::Store, &format!("v{index}"), &[index as f32])).collect();
     let mut harness = window(TEXT, many, &[3]);
     harness.run();
-    let shown = (0..40).filter(|index| harness.query_by_label(&format!("v{index} = {index}")).is_some()).count();
-    assert!((1..39).contains(&shown), "{shown} of 40 are shown");
-    let rest: Vec<String> = (shown..40).map(|index| format!("v{index} = {index}")).collect();
+    let shown = (1..40).filter(|index| harness.query_by_label(&format!("v{index} = {index}")).is_some()).count();
+    assert!((1..38).contains(&shown), "{shown} of 39 are shown");
+    let rest: Vec<String> = (shown + 1..40).chain([0]).map(|index| format!("v{index} = {index}")).collect();
     harness.get_by_label(&rest.join("\n"));
 }
 

@@ -31,14 +31,15 @@ const LEAST: f32 = 3.0 * GAP;
 pub(super) struct Values<'a> {
     laid_out: Vec<(&'a Note, Arc<Galley>, Option<TracedValue>)>,
     /// Those for which there is no room, and their mark.
-    left_out: Option<(&'a [Note], Arc<Galley>)>,
+    left_out: Option<(Vec<&'a Note>, Arc<Galley>)>,
     /// Where they begin; infinite without values.
     pub(super) start: f32,
 }
 
 impl<'a> Values<'a> {
     /// Lays out the values of a line, in the part of its row that is in sight: as many as there is room for behind the code, or else in
-    /// `least` points. `is_old`: they are of a version before the shown text.
+    /// `least` points. Where there is no room for all, those that are 0 come last, as the lobes that a material lacks. `is_old`: they are of a
+    /// version before the shown text.
     pub(super) fn new(
         ui: &Ui,
         (line, is_old): (&'a CodeLine, bool),
@@ -47,23 +48,32 @@ impl<'a> Values<'a> {
     ) -> Self {
         let right = sight.right() - MARGIN;
         let most = (right - code_end - GAP).max(least);
-        let (mut laid_out, mut total) = (Vec::new(), 0.0);
-        for note in &line.row.notes {
-            let gap = if laid_out.is_empty() { 0.0 } else { GAP };
-            let room = most - total - gap;
-            if room < LEAST {
-                break;
+        let lay_out = |notes: &[&'a Note]| {
+            let (mut laid_out, mut total) = (Vec::new(), 0.0);
+            for note in notes {
+                let gap = if laid_out.is_empty() { 0.0 } else { GAP };
+                let room = most - total - gap;
+                if room < LEAST {
+                    break;
+                }
+                let bar = bar::value(note);
+                let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
+                let mut job = job_of(note, is_old);
+                job.wrap = TextWrapping::truncate_at_width(room - of_bar);
+                let galley = ui.painter().layout_job(job);
+                total += gap + of_bar + galley.size().x;
+                laid_out.push((*note, galley, bar));
             }
-            let bar = bar::value(note);
-            let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
-            let mut job = job_of(note, is_old);
-            job.wrap = TextWrapping::truncate_at_width(room - of_bar);
-            let galley = ui.painter().layout_job(job);
-            total += gap + of_bar + galley.size().x;
-            laid_out.push((note, galley, bar));
+            (laid_out, total)
+        };
+        let mut notes: Vec<&Note> = line.row.notes.iter().collect();
+        let (mut laid_out, mut total) = lay_out(&notes);
+        if laid_out.len() < notes.len() {
+            notes.sort_by_key(|note| is_zero(note));
+            (laid_out, total) = lay_out(&notes);
         }
-        let rest = line.row.notes.get(laid_out.len()..).filter(|rest| !rest.is_empty());
-        let left_out = rest.map(|rest| {
+        let rest = notes.split_off(laid_out.len());
+        let left_out = (!rest.is_empty()).then(|| {
             let text = format!("+{}", rest.len());
             let galley = ui.painter().layout_no_wrap(text, small_mono_font(), QUIET.color());
             total += galley.size().x + if laid_out.is_empty() { 0.0 } else { GAP };
@@ -112,10 +122,18 @@ impl<'a> Values<'a> {
         let area = Rect::from_x_y_ranges(x..=x + mark.size().x, sight.y_range());
         let response = ui.interact(area, ui.id().with(("left out", line.row.line)), Sense::hover());
         ui.painter().galley(pos2(x, sight.center().y - mark.size().y / 2.0), mark, QUIET.color());
-        let all = rest.iter().map(Note::text).collect::<Vec<_>>().join("\n");
+        let all = rest.iter().map(|note| note.text()).collect::<Vec<_>>().join("\n");
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &all));
         response.on_hover_text(RichText::new(all).monospace().small());
     }
+}
+
+/// Whether a value is 0, and was before.
+fn is_zero(note: &Note) -> bool {
+    let mut values = note.done.values();
+    matches!(note.done.act, Act::Store | Act::Argument)
+        && !note.is_changed()
+        && values.all(|value| value.numbers().all(|number| number == 0.0))
 }
 
 /// The expression that shows a value over the model.

@@ -128,27 +128,39 @@ pub(in crate::app) struct ListedCall {
     pub(in crate::app) light: Option<usize>,
     /// Whether a `return` without a value ended it before its end: it may have left out what it is for.
     pub(in crate::app) is_cut: bool,
+    /// The last value that it stored or returned itself, as `irradiance = 1 2 3`; may be empty. It tells calls apart, as those for lights.
+    pub(in crate::app) last: String,
 }
 
 /// The calls in a fragment and those that led to them, in the order of execution: each behind the one that made it.
 pub(in crate::app) fn listed_calls(trace: &Trace, fragment: usize) -> Vec<ListedCall> {
     let mut listed: Vec<ListedCall> = Vec::new();
     let all = trace.fragments.get(fragment).into_iter().flat_map(|fragment| &fragment.events);
-    let cut: HashSet<&str> = all.filter(|event| event.doing.act == Act::Leave).map(|event| &*event.calls).collect();
+    let cut: HashSet<&str> =
+        all.clone().filter(|event| event.doing.act == Act::Leave).map(|event| &*event.calls).collect();
+    let has_value = |event: &&Event| matches!(event.doing.act, Act::Store | Act::Return);
+    let last: HashMap<&str, String> =
+        all.filter(has_value).filter_map(|event| Some((&*event.calls, last_text(event)?))).collect();
     for path in calls(trace, fragment).iter().flat_map(|path| paths_to(path)) {
         if listed.iter().any(|known| known.path == path) {
             continue;
         }
         let (name, depth) = last_call(path);
         let light = light_of(name).and_then(|number| number.checked_sub(1));
-        let call =
-            ListedCall { path: path.to_owned(), depth, name: name.to_owned(), light, is_cut: cut.contains(path) };
+        let (is_cut, last) = (cut.contains(path), last.get(path).cloned().unwrap_or_default());
+        let call = ListedCall { path: path.to_owned(), depth, name: name.to_owned(), light, is_cut, last };
         let caller = depth.checked_sub(1).and_then(|depth| paths_to(path).nth(depth));
         let is_within = |known: &ListedCall| caller.is_none_or(|caller| paths_to(&known.path).any(|of| of == caller));
         let end = listed.iter().rposition(is_within).map_or(0, |at| at + 1);
         listed.insert(end, call);
     }
     listed
+}
+
+fn last_text(event: &Event) -> Option<String> {
+    let value = event.value?.text();
+    let Doing { act, name, .. } = &*event.doing;
+    Some(if *act == Act::Return { format!("returns{name} {value}") } else { format!("{name} = {value}") })
 }
 
 /// How often the statement ran that ran most often in the chosen call and round.
