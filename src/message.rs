@@ -10,7 +10,7 @@ use std::io::{ErrorKind, Write as _, stderr, stdout};
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError};
 
-/// Fewest letters of a typed word that can stand for a longer name with this word in it.
+/// Fewest letters of a typed word that can stand for a longer name with this word in it, or with the same begin.
 const LEAST_PART: usize = 4;
 /// Longest name that is compared with others, in bytes: the time grows with the square of the length.
 const LONGEST_NAME: usize = 64;
@@ -165,7 +165,7 @@ pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
 }
 
 /// The similarity of a typed name and a known one, 0..1; 1 if they differ only in case. 0 if the known one is not near enough to be meant:
-/// more letters differ than [`most_typos`], and the typed word is no part of it.
+/// more letters differ than [`most_typos`], the typed word is no part of it, and not half of the word is its begin.
 pub(crate) fn likeness(typed: &str, known: &str) -> f64 {
     if typed.len().max(known.len()) > LONGEST_NAME {
         return 0.0;
@@ -173,7 +173,8 @@ pub(crate) fn likeness(typed: &str, known: &str) -> f64 {
     let (typed, known) = (typed.to_lowercase(), known.to_lowercase());
     let (letters, most) = (typed.chars().count(), typed.chars().count().max(known.chars().count()));
     let distance = strsim::damerau_levenshtein(&typed, &known);
-    let is_part = letters >= LEAST_PART && known.contains(&typed);
+    let begin = typed.chars().zip(known.chars()).take_while(|(a, b)| a == b).count();
+    let is_part = letters >= LEAST_PART && known.contains(&typed) || begin >= LEAST_PART.max(letters.div_ceil(2));
     if distance > most_typos(letters) && !is_part { 0.0 } else { 1.0 - distance as f64 / most.max(1) as f64 }
 }
 
@@ -235,6 +236,7 @@ mod tests {
             assert_eq!(nearest(typed, [known]).is_some(), typed == "metal", "{typed} {known}");
         }
         assert_eq!(nearest("helmet", ["Boots", "DamagedHelmet"]), Some("DamagedHelmet"), "a part of a name");
+        assert_eq!(nearest("metal-ness", ["normal", "metallic"]), Some("metallic"), "the same begin");
         assert_eq!(did_you_mean("sly", names), " Did you mean `sky`?");
     }
 

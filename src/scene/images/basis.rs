@@ -25,7 +25,7 @@ impl Basis {
         let transcoder = Transcoder::new(file).map_err(damaged)?;
         let source = transcoder.source_format();
         let is_hdr = matches!(source, SourceFormat::UastcHdr4x4 | SourceFormat::AstcHdr6x6 | SourceFormat::UastcHdr6x6);
-        // What glTF does not have, this one may take 2 GiB for a small file.
+        // glTF does not have XUASTC, and a small file of it may take 2 GiB.
         if matches!(source, SourceFormat::XuastcLdr(_)) || !transcoder.supports(fallback(is_hdr)) {
             return Err(format!("KTX2 with {source:?} is not supported"));
         }
