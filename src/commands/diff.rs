@@ -220,7 +220,7 @@ fn print(pair: &Pair) {
             out!(
                 "{:<10} {name}  {measure}; largest {} at {x},{y}; {} of {} pixels differ",
                 number(found.error),
-                number(found.largest.into()),
+                number(found.largest),
                 found.differing,
                 found.pixels
             );
