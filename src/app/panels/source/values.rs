@@ -124,7 +124,7 @@ impl<'a> Values<'a> {
         ui.painter().galley(pos2(x, sight.center().y - mark.size().y / 2.0), mark, QUIET.color());
         let all = rest.iter().map(|note| note.text()).collect::<Vec<_>>().join("\n");
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &all));
-        response.on_hover_text(RichText::new(all).monospace().small());
+        response.on_hover_text(RichText::new(all).font(small_mono_font()));
     }
 }
 
