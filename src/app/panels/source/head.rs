@@ -29,6 +29,8 @@ use crate::shader::{ShaderSet, TreePath};
 const FILES: f32 = 176.0;
 /// Width of the list of stages, points.
 const STAGES: f32 = 130.0;
+/// Points that the words about changes take.
+const WIDTH_OF_CHANGES: f32 = 150.0;
 
 /// Shows the rows above the code.
 pub(super) fn show(
@@ -238,11 +240,12 @@ fn changes(ui: &mut Ui, state: &State, model: &CodeModel, scroll: &mut Scroll) {
         return drop(ui.add(Label::new(RichText::new(text).small().color(QUIET)).truncate()));
     };
     let line = &model.lines[first].row;
-    let text = format!("first change: line {}, {} in all", line.line, model.changes());
+    let whole = format!("first change: line {}, {} in all", line.line, model.changes());
+    let text = if ui.available_width() < WIDTH_OF_CHANGES { format!("line {}", line.line) } else { whole.clone() };
     let hint = "Values before and after the last edit stand beside the code. Click to go to the line that differs first, in the order of execution";
     let is_bad = line.notes.iter().any(|note| note.is_bad);
     let button = egui::Button::new(RichText::new(text).small().color(if is_bad { ERROR } else { ACCENT })).frame(false);
-    if ui.add(button).on_hover_text(hint).clicked() {
+    if ui.add(button).on_hover_text(format!("{whole}\n{hint}")).clicked() {
         scroll.to(first);
     }
 }

@@ -58,9 +58,14 @@ impl<'a> Values<'a> {
                 }
                 let bar = bar::value(note);
                 let of_bar = if bar.is_some() { bar::WIDTH + BAR_GAP } else { 0.0 };
-                let mut job = job_of(note, is_old);
-                job.wrap = TextWrapping::truncate_at_width(room - of_bar);
-                let galley = ui.painter().layout_job(job);
+                let galley = |before: Option<&str>| {
+                    let mut job = job_of(note, before, is_old);
+                    job.wrap = TextWrapping::truncate_at_width(room - of_bar);
+                    ui.painter().layout_job(job)
+                };
+                let whole = galley(note.before.as_deref());
+                // The new value is wanted more than the old one.
+                let galley = if whole.elided && note.before.is_some() { galley(Some("…")) } else { whole };
                 total += gap + of_bar + galley.size().x;
                 laid_out.push((*note, galley, bar));
             }
@@ -156,7 +161,8 @@ pub(super) fn are_old(state: &State) -> bool {
     !is_done && state.session.shaders.as_ref().is_some_and(|now| traced.is_some_and(|traced| traced != now.generation))
 }
 
-fn job_of(note: &Note, is_old: bool) -> LayoutJob {
+/// `before`: the text of the value in the version before, if it differs.
+fn job_of(note: &Note, before: Option<&str>, is_old: bool) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut add = |text: &str, color: Color32| {
         let format = TextFormat { font_id: small_mono_font(), color, ..TextFormat::default() };
@@ -167,7 +173,7 @@ fn job_of(note: &Note, is_old: bool) -> LayoutJob {
         add(NEW, ACCENT.color());
     }
     add(&note.label, QUIET.color());
-    if let Some(before) = &note.before {
+    if let Some(before) = before {
         add(before, QUIET.color());
         add(" → ", QUIET.color());
     }
