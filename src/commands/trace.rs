@@ -106,7 +106,14 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let asserted_files = args.assert.iter().map(|assertion| assertion.file.as_str());
     let files: Vec<&str> = named.iter().map(String::as_str).chain(asserted_files).collect();
     let stage = args.stage.as_deref();
-    let request = TraceRequest { at: args.at, mode: &mode, stage, invocation: args.invocation, files: &files };
+    let request = TraceRequest {
+        at: args.at,
+        mode: &mode,
+        stage,
+        invocation: args.invocation,
+        files: &files,
+        is_interactive: false,
+    };
     let trace = headless.trace(&request)?;
     let around = if args.around { Some(headless.trace_around(&request)?) } else { None };
     let cut = headless.endless_loop_of(&trace);

@@ -24,6 +24,8 @@ pub struct TraceRequest<'a> {
     pub invocation: Option<[u32; 3]>,
     /// The files of the tree whose statements are traced; without files, all of the stage.
     pub files: &'a [&'a str],
+    /// Whether someone waits for a click, as in [`TraceTools`].
+    pub is_interactive: bool,
 }
 
 impl Headless {
@@ -92,7 +94,7 @@ impl Headless {
         request: &TraceRequest<'_>,
         run: impl FnOnce(&TracedPixel<'_>, &mut PixelTracer, &mut TraceTools<'_>) -> Result<T, HeadlessError>,
     ) -> Result<T, HeadlessError> {
-        let TraceRequest { at, mode, stage, invocation, .. } = *request;
+        let TraceRequest { at, mode, stage, invocation, is_interactive, .. } = *request;
         self.finish_or_fail()?;
         self.provide()?;
         let is_animated = self.is_animated()?;
@@ -121,7 +123,8 @@ impl Headless {
             Some(tracer) => tracer,
             None => PixelTracer::new(&self.gpu, &self.layouts)?,
         };
-        let result = run(&pixel, &mut tracer, &mut TraceTools::new(&mut self.resources, &self.reloader))?;
+        let mut tools = TraceTools { is_interactive, ..TraceTools::new(&mut self.resources, &self.reloader) };
+        let result = run(&pixel, &mut tracer, &mut tools)?;
         self.tracer = Some(tracer);
         Ok(result)
     }

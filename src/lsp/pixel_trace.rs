@@ -80,7 +80,14 @@ impl Thread {
         for path in &asked.files {
             let Some(text) = shaders.texts.get(path).cloned() else { continue };
             let wanted = [path.as_str()];
-            let request = TraceRequest { at: asked.at, mode: &mode, stage: None, invocation: None, files: &wanted };
+            let request = TraceRequest {
+                at: asked.at,
+                mode: &mode,
+                stage: None,
+                invocation: None,
+                files: &wanted,
+                is_interactive: true,
+            };
             match headless.trace(&request) {
                 Ok(trace) => match trace.visible() {
                     Some(fragment) => {

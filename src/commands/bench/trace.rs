@@ -87,7 +87,8 @@ impl Clicks {
         ask: impl FnOnce(&mut Headless, &TraceRequest<'_>) -> Result<T, HeadlessError>,
     ) -> Result<f64, Failure> {
         let files = [self.file.as_str()];
-        let request = TraceRequest { at, mode: &self.mode, stage: None, invocation: None, files: &files };
+        let request =
+            TraceRequest { at, mode: &self.mode, stage: None, invocation: None, files: &files, is_interactive: true };
         let begin = Instant::now();
         ask(&mut self.headless, &request)?;
         Ok(ms(begin))
