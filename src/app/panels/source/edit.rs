@@ -257,18 +257,17 @@ impl Editor {
             let top = -above + show_field(&mut ui.new_child(UiBuilder::new().max_rect(field)), file, id, colored);
             scroll.first = (viewport.top() / ROW) as usize;
             let count = (viewport.height() / ROW) as usize + 2;
-            let mut shapes = Vec::new();
-            for (index, line) in model.lines.iter().enumerate().skip(scroll.first).take(count) {
+            let columns = ui.clip_rect().x_range();
+            let rows = model.lines.iter().enumerate().skip(scroll.first).take(count);
+            let rows = rows.map(|(index, line)| {
                 let y = top + ROW * index as f32;
-                let sight = Rect::from_x_y_ranges(ui.clip_rect().x_range(), y..=y + ROW);
-                shapes.push(beside(ui, (state, path), line, (sight, left), (&look, find), commands));
-            }
-            for (index, line) in model.lines.iter().enumerate().skip(scroll.first).take(count) {
-                let y = top + ROW * index as f32;
-                let sight = Rect::from_x_y_ranges(ui.clip_rect().x_range(), y..=y + ROW);
-                message_beside(ui, (line, model.lines.get(index + 1)), (sight, left), &look);
-            }
+                (Rect::from_x_y_ranges(columns, y..=y + ROW), line, model.lines.get(index + 1))
+            });
+            let of_row = |(sight, line, _)| beside(ui, (state, path), line, (sight, left), (&look, find), commands);
+            let shapes: Vec<Shape> = rows.clone().map(of_row).collect();
             ui.painter().set(behind, Shape::Vec(shapes));
+            // Over the values of the row below.
+            rows.for_each(|(sight, line, below)| message_beside(ui, (line, below), (sight, left), &look));
         });
     }
 }

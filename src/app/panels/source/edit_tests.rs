@@ -46,6 +46,27 @@ fn errors_move_with_their_lines_while_the_user_types() {
     assert!(harness.query_by_label("'q' : undeclared").is_none(), "the line was typed over");
 }
 
+/// The wrong word of a long line was under the message about it.
+#[test]
+fn a_message_covers_no_code_that_is_typed() {
+    let long = "x".repeat(140);
+    let top = |below: &str| {
+        let mut harness = window(&format!("// {long}\n{below}\n"), events(2.0), &[2]);
+        open(&mut harness, Path::new("tree"));
+        let state = &mut harness.state_mut().state;
+        let file = state.source.display_path(&"a.glsl".into());
+        state.session.diagnostics = vec![Diagnostic::error(file, "'q' : undeclared").on_line(1, None)];
+        harness.run_steps(2);
+        harness.get_by_role_and_label(Role::Button, "Edit").click();
+        harness.run_steps(3);
+        let field = harness.get_by_label("Text of the file").rect().top();
+        harness.query_by_label("'q' : undeclared").map(|message| message.rect().top() - field)
+    };
+    let below = top("}").expect("there is room in the row below");
+    assert!((ROW - 4.0..2.0 * ROW).contains(&below), "the message stands {below} points below the text's upper edge");
+    assert_eq!(top(&format!("// {long}")), None, "both lines are long");
+}
+
 /// Opens a tree whose shaders are in use.
 fn open(harness: &mut Harness<'_, Window>, root: &Path) {
     let state = &mut harness.state_mut().state;
