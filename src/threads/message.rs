@@ -167,6 +167,33 @@ pub(crate) enum TaskKind {
     External,
 }
 
+impl TaskKind {
+    /// The name of the thread, for people.
+    pub(crate) fn thread(&self) -> &'static str {
+        match self {
+            Self::Worker => "worker",
+            Self::Loader(_) => "loader",
+            Self::Baker(_) | Self::Tables(_) => "baker",
+            Self::PathTracing(_) => "tracer",
+            Self::MeasuredBrdf(_) => "reader",
+            Self::LoopDiagnosis(_) => "explainer",
+            Self::Checker => "checking",
+            Self::Measurer => "measuring",
+            Self::Finder => "finding",
+            Self::PixelTracer => "pixel tracer",
+            Self::GuestTracer => "guest tracer",
+            Self::OperationChecker => "operation checker",
+            Self::Timekeeper => "timekeeper",
+            Self::Capture(_) => "capturing",
+            Self::SecondTree(_) => "second tree",
+            Self::ImageScaling(_) => "scaling",
+            Self::ToolPipelines => "toolmaker",
+            Self::Writer => "writing",
+            Self::External => "waiting",
+        }
+    }
+}
+
 /// Sends messages to the window, or to the loop of a session without one, and wakes it. After its end, messages are dropped.
 #[derive(Clone)]
 pub(crate) enum MessageSender {
