@@ -50,7 +50,7 @@ fn check(lines: &[LineOfTrace], formula: &Formula, what: &str) -> usize {
 }
 
 fn traced(headless: &mut Headless, mode: &Mode, at: (u32, u32), files: &[&str]) -> Trace {
-    let request = TraceRequest { at, mode, stage: None, invocation: None, files };
+    let request = TraceRequest { at, mode, stage: None, invocation: None, files, is_interactive: false };
     headless.trace(&request).unwrap_or_else(|error| panic!("{at:?}: {error}"))
 }
 
@@ -88,7 +88,8 @@ fn check_case((models, pixels, set, formulas): Case<'_>, stage: Option<&str>) {
         // A module with several files would take a software device long to compile.
         for (file, at) in files.iter().flat_map(|file| pixels.iter().map(move |at| (*file, *at))) {
             let what = format!("{name} {at:?} {set:?}");
-            let request = TraceRequest { at, mode: &mode, stage, invocation: None, files: &[file] };
+            let request =
+                TraceRequest { at, mode: &mode, stage, invocation: None, files: &[file], is_interactive: false };
             let trace = headless.trace(&request).unwrap_or_else(|error| panic!("{what}: {error}"));
             let fragment = trace.visible().unwrap_or_else(|| panic!("{what}: nothing is seen"));
             assert!(trace.is_proven(fragment), "{what}: {}", trace.proof_text(fragment));

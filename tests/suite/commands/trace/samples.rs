@@ -18,7 +18,14 @@ fn of_slug(headless: &Headless, slug: &str) -> Mode {
 /// The traces of a row of pixels that the model covers.
 fn row(headless: &mut Headless, mode: &Mode, y: u32) -> Vec<((u32, u32), Trace)> {
     let traced = |x: u32| {
-        let request = TraceRequest { at: (x, y), mode, stage: None, invocation: None, files: &["pbr.frag"] };
+        let request = TraceRequest {
+            at: (x, y),
+            mode,
+            stage: None,
+            invocation: None,
+            files: &["pbr.frag"],
+            is_interactive: false,
+        };
         Some(((x, y), headless.trace(&request).ok()?))
     };
     (0..SIZE.0).filter_map(traced).collect()
